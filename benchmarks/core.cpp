@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "pindrive/batch.hpp"
+#include "pindrive/motion/batch.hpp"
 
 namespace {
 

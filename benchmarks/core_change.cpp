@@ -12,7 +12,7 @@
 
 #include "draw.hpp"
 #include "given.hpp"
-#include "pindrive/batch.hpp"
+#include "pindrive.hpp"
 
 namespace {
 

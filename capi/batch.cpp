@@ -1,5 +1,5 @@
 // The C interface: many releases, by the kernel as far as it follows them.
-#include "pindrive/batch.hpp"
+#include "pindrive/motion/batch.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,7 +14,7 @@
 #include "interface.hpp"
 #include "owned_motion.hpp"
 #include "pindrive.h"
-#include "pindrive/kernel_block.hpp"
+#include "pindrive/kernel/kernel_block.hpp"
 #ifdef PINDRIVE_KERNELS
 #include "_kernel.hpp"
 #endif

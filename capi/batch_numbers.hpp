@@ -5,9 +5,9 @@
 #include <cstring>
 #include <iterator>
 
-#include "pindrive/batch.hpp"
-#include "pindrive/energy.hpp"
-#include "pindrive/kernel_block.hpp"
+#include "pindrive/kernel/kernel_block.hpp"
+#include "pindrive/motion/batch.hpp"
+#include "pindrive/motion/energy.hpp"
 
 namespace pindrive::batch {
 

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "pindrive/dual.hpp"
-#include "pindrive/motion.hpp"
-#include "pindrive/simulate.hpp"
+#include "pindrive/events/simulate.hpp"
+#include "pindrive/motion/motion.hpp"
+#include "pindrive/numbers/dual.hpp"
 
 namespace pindrive {
 

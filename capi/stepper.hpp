@@ -9,7 +9,7 @@
 #include "interface.hpp"
 #include "owned_motion.hpp"
 #include "pindrive.h"
-#include "pindrive/stepper.hpp"
+#include "pindrive/events/stepper.hpp"
 
 namespace pindrive_c {
 

@@ -5,8 +5,8 @@
 
 #include "instance.hpp"
 #include "interface.hpp"
-#include "pindrive/dual.hpp"
-#include "pindrive/instant.hpp"
+#include "pindrive/motion/instant.hpp"
+#include "pindrive/numbers/dual.hpp"
 #include "stepper.hpp"
 
 namespace pindrive_fmu {

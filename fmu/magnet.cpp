@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "interface.hpp"
-#include "pindrive/functions.hpp"
+#include "pindrive/numbers/functions.hpp"
 
 namespace pindrive_fmu {
 

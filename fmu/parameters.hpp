@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "pindrive.h"
-#include "pindrive/dual.hpp"
+#include "pindrive/numbers/dual.hpp"
 #include "variables.hpp"
 
 namespace pindrive_fmu {

@@ -16,13 +16,13 @@
 /// are set on the way. Names in `pindrive::detail` are internal.
 #pragma once
 
-#include "pindrive/batch.hpp"      // IWYU pragma: export
-#include "pindrive/certify.hpp"    // IWYU pragma: export
-#include "pindrive/crossings.hpp"  // IWYU pragma: export
-#include "pindrive/dual.hpp"       // IWYU pragma: export
-#include "pindrive/energy.hpp"     // IWYU pragma: export
-#include "pindrive/model.hpp"      // IWYU pragma: export
-#include "pindrive/motion.hpp"     // IWYU pragma: export
-#include "pindrive/simulate.hpp"   // IWYU pragma: export
-#include "pindrive/stepper.hpp"    // IWYU pragma: export
-#include "pindrive/transient.hpp"  // IWYU pragma: export
+#include "pindrive/certificate/certify.hpp"  // IWYU pragma: export
+#include "pindrive/events/simulate.hpp"      // IWYU pragma: export
+#include "pindrive/events/stepper.hpp"       // IWYU pragma: export
+#include "pindrive/model/model.hpp"          // IWYU pragma: export
+#include "pindrive/motion/batch.hpp"         // IWYU pragma: export
+#include "pindrive/motion/crossings.hpp"     // IWYU pragma: export
+#include "pindrive/motion/energy.hpp"        // IWYU pragma: export
+#include "pindrive/motion/motion.hpp"        // IWYU pragma: export
+#include "pindrive/motion/transient.hpp"     // IWYU pragma: export
+#include "pindrive/numbers/dual.hpp"         // IWYU pragma: export

@@ -78,7 +78,7 @@ def test_what_works_without(tmp_path: Path, command: tuple[str | Path, ...], sai
         (("sweep", STUDY, "-o", "a.nc"), "a.nc: h5netcdf"),
         (("sensitivity", STUDY), "scipy"),
         (("fit", EXAMPLE, RECORDING, "--free", "mass"), "scipy"),
-        (("design", WISH, "-o", "a"), "scipy"),
+        (("design", WISH, "-o", "a.toml"), "scipy"),
         (("paper", "-o", "a"), "xarray"),
     ],
     ids=lambda value: value[0] if isinstance(value, tuple) else "",

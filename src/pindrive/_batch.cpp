@@ -28,8 +28,8 @@
 #include "_kernel.hpp"
 #include "batch_numbers.hpp"
 #include "interrupt.hpp"
-#include "pindrive/batch.hpp"
-#include "pindrive/energy.hpp"
+#include "pindrive/motion/batch.hpp"
+#include "pindrive/motion/energy.hpp"
 
 namespace nb = nanobind;
 namespace pd = pindrive;

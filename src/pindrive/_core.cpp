@@ -19,10 +19,10 @@
 
 #include "interrupt.hpp"
 #include "owned_motion.hpp"
-#include "pindrive/certify.hpp"
-#include "pindrive/crossings.hpp"
-#include "pindrive/energy.hpp"
-#include "pindrive/transient.hpp"
+#include "pindrive/certificate/certify.hpp"
+#include "pindrive/motion/crossings.hpp"
+#include "pindrive/motion/energy.hpp"
+#include "pindrive/motion/transient.hpp"
 
 namespace nb = nanobind;
 namespace pd = pindrive;

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-#include "pindrive/kernel_block.hpp"
+#include "pindrive/kernel/kernel_block.hpp"
 
 namespace pindrive_extension {
 

@@ -17,6 +17,19 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 COMPILES = pytest.mark.timeout(1800)
 CONSUMER = ROOT / "tests" / "consumer"
+HEADERS = sorted(ROOT.glob("include/pindrive/**/*.hpp"))
+LAYERS = (
+    "numbers",
+    "flow",
+    "model",
+    "law",
+    "series",
+    "events",
+    "motion",
+    "certificate",
+    "kernel",
+)
+"""The folders of the core, each built on those before it alone."""
 PATH = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
 
 
@@ -74,8 +87,7 @@ def test_the_umbrella_header_shows_what_the_consumer_does() -> None:
 
 def test_the_core_stands_alone() -> None:
     """Headers of the standard library alone; nothing that allocates, throws or prints."""
-    headers = {path.name: path.read_text("utf-8") for path in ROOT.glob("include/pindrive/*.hpp")}
-    assert headers
+    headers = {path.name: path.read_text("utf-8") for path in HEADERS}
     allowed = {
         "algorithm",
         "array",
@@ -96,10 +108,23 @@ def test_the_core_stands_alone() -> None:
         assert not re.search(r"\b(new|(?<!= )delete|malloc|throw|try)\b", code), name
 
 
+def test_a_header_includes_its_own_layer_and_those_below_it_alone() -> None:
+    assert {path.parent.name for path in HEADERS} == {*LAYERS}
+    for path in HEADERS:
+        own = LAYERS.index(path.parent.name)
+        for layer in re.findall(r'#include "pindrive/(\w+)/\w+\.hpp"', path.read_text("utf-8")):
+            assert LAYERS.index(layer) <= own, f"{path.relative_to(ROOT)} includes {layer}"
+
+
+def test_the_certificate_includes_nothing_that_selects_modes_or_finds_events() -> None:
+    for path in HEADERS:
+        if path.parent.name == "certificate":
+            assert not re.search(r'#include "pindrive/(law|events)/', path.read_text("utf-8")), path
+
+
 def test_each_header_has_a_test_file() -> None:
-    headers = {path.stem for path in ROOT.glob("include/pindrive/*.hpp")}
+    headers = {path.stem for path in HEADERS}
     tested = {path.stem.removesuffix("_test") for path in ROOT.glob("tests/cpp/*_test.cpp")}
-    assert headers
     assert headers <= tested, sorted(headers - tested)
 
 

@@ -1,5 +1,5 @@
 // One point of a study: the numbers of a motion, as when each is asked of the motion itself.
-#include "pindrive/batch.hpp"
+#include "pindrive/motion/batch.hpp"
 
 #include <vector>
 

@@ -1,6 +1,6 @@
 // What contacts that slip from rest could have carried: nothing where they had to slip, what is left where
 // they could stick, also where one may stick without the other.
-#include "pindrive/breakaway.hpp"
+#include "pindrive/certificate/breakaway.hpp"
 
 #include "check.hpp"
 

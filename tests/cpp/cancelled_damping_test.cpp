@@ -7,8 +7,8 @@
 #include <type_traits>
 #include <vector>
 
-#include "pindrive/batch.hpp"
-#include "pindrive/certify.hpp"
+#include "pindrive/certificate/certify.hpp"
+#include "pindrive/motion/batch.hpp"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // The worst of a certificate is the largest of all its laws, and each of its numbers is that of one law alone.
-#include "pindrive/certificate.hpp"
+#include "pindrive/certificate/certificate.hpp"
 
 #include <iterator>
 #include <set>

@@ -1,13 +1,13 @@
 // The certificate objects: a motion in which one thing has been made wrong breaks the law of that
 // thing, and the motion as it was breaks none.
-#include "pindrive/certify.hpp"
+#include "pindrive/certificate/certify.hpp"
 
 #include <cstdio>
 #include <functional>
 #include <string>
 #include <vector>
 
-#include "pindrive/simulate.hpp"
+#include "pindrive/events/simulate.hpp"
 
 namespace pd = pindrive;
 

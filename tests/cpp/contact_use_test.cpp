@@ -1,5 +1,5 @@
 // What the contacts did, on a pin that slides over the plate and sticks to it, in numbers known beforehand.
-#include "pindrive/contact_use.hpp"
+#include "pindrive/motion/contact_use.hpp"
 
 #include <vector>
 

@@ -1,14 +1,14 @@
 // Creep under a hand that is oblique by little: beside the Taylor series of the whole motion, through an
 // across velocity of zero, and into the aligned case; and the bound of what it leaves out.
-#include "pindrive/creep.hpp"
+#include "pindrive/series/creep.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <random>
 
-#include "pindrive/dual.hpp"
-#include "pindrive/quadrature.hpp"
+#include "pindrive/motion/quadrature.hpp"
+#include "pindrive/numbers/dual.hpp"
 
 namespace pd = pindrive;
 

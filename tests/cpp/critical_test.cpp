@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cases.hpp"
-#include "pindrive/batch.hpp"
+#include "pindrive/motion/batch.hpp"
 
 namespace pd = pindrive;
 

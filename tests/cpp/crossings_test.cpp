@@ -1,7 +1,7 @@
 // Extrema and crossings of random drives against samples of the motion: every sample lies between its
 // neighbouring extrema and on the side of the level that the crossing before it leads to; crossings
 // alternate and lie on the level; a cycle goes on as it was simulated.
-#include "pindrive/crossings.hpp"
+#include "pindrive/motion/crossings.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // The core on dual numbers: derivatives of event times, positions and the transient's numbers, along
 // every parameter, against central differences of the same motions in long double.
-#include "pindrive/dual.hpp"
+#include "pindrive/numbers/dual.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "cases.hpp"
-#include "pindrive/simulate.hpp"
-#include "pindrive/transient.hpp"
+#include "pindrive/events/simulate.hpp"
+#include "pindrive/motion/transient.hpp"
 
 namespace pd = pindrive;
 using Dual = pd::Dual<double>;

@@ -2,7 +2,7 @@
 // range that is used, and give the same bits for a number and for packs of every width.
 //
 //     elementary_test [COUNT]    so many arguments for each function, 200 000 unless given
-#include "pindrive/elementary.hpp"
+#include "pindrive/numbers/elementary.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 // The ledger of energies on a damped swing between two stops of the pin, term by term.
-#include "pindrive/energy.hpp"
+#include "pindrive/motion/energy.hpp"
 
 #include "check.hpp"
-#include "pindrive/certify.hpp"
+#include "pindrive/certificate/certify.hpp"
 
 namespace pd = pindrive;
 using check::expect;

@@ -1,11 +1,11 @@
 // A segment evaluated at an instant: the pin as the motion has it, the force of a stop, the sliding velocity on
 // skin, and how far a force is from that of a plate that slides across too.
-#include "pindrive/evaluated_segment.hpp"
+#include "pindrive/motion/evaluated_segment.hpp"
 
 #include <vector>
 
 #include "check.hpp"
-#include "pindrive/simulate.hpp"
+#include "pindrive/events/simulate.hpp"
 
 namespace pd = pindrive;
 using check::expect;

@@ -1,5 +1,5 @@
 // The extrema of a quantity in a segment against samples: none lies outside those that are next to it.
-#include "pindrive/extrema.hpp"
+#include "pindrive/motion/extrema.hpp"
 
 #include <vector>
 

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <random>
 
-#include "pindrive/transient.hpp"
+#include "pindrive/motion/transient.hpp"
 
 namespace pd = pindrive;
 

@@ -1,6 +1,6 @@
 // The propagator of a mode in every damping regime: exact at the start, two steps are one, the equation of
 // motion holds, zeros are zeros; and the force of a contact along a flow.
-#include "pindrive/flow.hpp"
+#include "pindrive/flow/flow.hpp"
 
 #include "check.hpp"
 

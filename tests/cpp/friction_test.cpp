@@ -1,5 +1,5 @@
 // What a contact may do next, and the force that it carries: by its state, its speed and its branch.
-#include "pindrive/friction.hpp"
+#include "pindrive/law/friction.hpp"
 
 #include "check.hpp"
 

@@ -1,6 +1,6 @@
 // The functions that the core calls: of a double to 2 units in the last place of the long double's answer,
 // whichever branch serves the argument; of a long double the standard library's; of a dual both parts.
-#include "pindrive/functions.hpp"
+#include "pindrive/numbers/functions.hpp"
 
 #include <cmath>
 #include <cstdio>
@@ -9,7 +9,7 @@
 
 #include "cases.hpp"
 #include "check.hpp"
-#include "pindrive/dual.hpp"
+#include "pindrive/numbers/dual.hpp"
 
 namespace pd = pindrive;
 namespace functions = pd::detail;

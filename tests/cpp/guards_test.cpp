@@ -1,5 +1,5 @@
 // The earliest guard of a mode, and which of two at a constant distance is kept.
-#include "pindrive/guards.hpp"
+#include "pindrive/law/guards.hpp"
 
 #include "check.hpp"
 

@@ -1,12 +1,12 @@
 // The pin at an instant of a mode beside the motion itself: the equation of motion gives what its solution does.
-#include "pindrive/instant.hpp"
+#include "pindrive/motion/instant.hpp"
 
 #include <cmath>
 #include <vector>
 
 #include "check.hpp"
-#include "pindrive/dual.hpp"
-#include "pindrive/simulate.hpp"
+#include "pindrive/events/simulate.hpp"
+#include "pindrive/numbers/dual.hpp"
 
 namespace pd = pindrive;
 using check::expect;

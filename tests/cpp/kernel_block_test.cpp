@@ -1,6 +1,6 @@
 // A block of plain releases: what becomes of one does not depend on its neighbours, on the rounds that they
 // need or on what else is asked for. That the answers are right kernel_test shows.
-#include "pindrive/kernel_block.hpp"
+#include "pindrive/kernel/kernel_block.hpp"
 
 #include <array>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "check.hpp"
-#include "pindrive/simulate.hpp"
+#include "pindrive/events/simulate.hpp"
 
 namespace pk = pindrive::detail;
 using Block = pk::KernelBlock;

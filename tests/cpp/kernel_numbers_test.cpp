@@ -1,11 +1,11 @@
 // The numbers of a plain release as they are taken on the way, event by event, by hand.
-#include "pindrive/kernel_numbers.hpp"
+#include "pindrive/kernel/kernel_numbers.hpp"
 
 #include <array>
 #include <cmath>
 
 #include "check.hpp"
-#include "pindrive/pack.hpp"
+#include "pindrive/numbers/pack.hpp"
 
 namespace pk = pindrive::detail;
 using check::expect;

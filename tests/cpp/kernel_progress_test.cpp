@@ -1,10 +1,10 @@
 // What one round of the kernel hands to the next: every number once, in as many columns as it says.
-#include "pindrive/kernel_progress.hpp"
+#include "pindrive/kernel/kernel_progress.hpp"
 
 #include <set>
 
 #include "check.hpp"
-#include "pindrive/pack.hpp"
+#include "pindrive/numbers/pack.hpp"
 
 namespace pk = pindrive::detail;
 using check::expect;

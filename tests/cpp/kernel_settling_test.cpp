@@ -1,5 +1,5 @@
 // When a plain release comes within the settling band to stay: stretches whose times are known by hand.
-#include "pindrive/kernel_settling.hpp"
+#include "pindrive/kernel/kernel_settling.hpp"
 
 #include <cmath>
 

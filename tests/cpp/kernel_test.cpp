@@ -18,9 +18,9 @@
 #include <vector>
 
 #include "cases.hpp"
-#include "pindrive/batch.hpp"
-#include "pindrive/certify.hpp"
-#include "pindrive/kernel_block.hpp"
+#include "pindrive/certificate/certify.hpp"
+#include "pindrive/kernel/kernel_block.hpp"
+#include "pindrive/motion/batch.hpp"
 
 namespace pd = pindrive;
 namespace pk = pindrive::detail;

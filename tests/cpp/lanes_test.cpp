@@ -1,6 +1,6 @@
 // The ways to hold a pack's numbers, each operation of each beside the same on numbers, to the bit: as halves and,
 // where the compiler has them, as vectors.
-#include "pindrive/lanes.hpp"
+#include "pindrive/numbers/lanes.hpp"
 
 #include <cmath>
 #include <cstdint>

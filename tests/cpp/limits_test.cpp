@@ -1,8 +1,8 @@
 // The limits that are not physics: each is where its reason puts it, and those that end a motion do.
-#include "pindrive/limits.hpp"
+#include "pindrive/model/limits.hpp"
 
 #include "check.hpp"
-#include "pindrive/simulate.hpp"
+#include "pindrive/events/simulate.hpp"
 
 namespace pd = pindrive;
 using check::expect;

@@ -1,5 +1,5 @@
 // What goes into the core: friction curves as branches, inputs over time, and the transitions of a contact.
-#include "pindrive/model.hpp"
+#include "pindrive/model/model.hpp"
 
 #include "check.hpp"
 

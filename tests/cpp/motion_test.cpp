@@ -1,6 +1,6 @@
 // A finished motion as a function of time: both limits at an event, cycles folded and expanded, and how two
 // contacts that stick share their force.
-#include "pindrive/motion.hpp"
+#include "pindrive/motion/motion.hpp"
 
 #include <vector>
 

@@ -1,14 +1,14 @@
 // The lists of named numbers: what every interface of pindrive writes under each name.
-#include "pindrive/named_number.hpp"
+#include "pindrive/numbers/named_number.hpp"
 
 #include <cstring>
 #include <set>
 #include <string>
 
 #include "check.hpp"
-#include "pindrive/certify.hpp"
-#include "pindrive/energy.hpp"
-#include "pindrive/transient.hpp"
+#include "pindrive/certificate/certify.hpp"
+#include "pindrive/motion/energy.hpp"
+#include "pindrive/motion/transient.hpp"
 
 namespace pd = pindrive;
 using check::expect;

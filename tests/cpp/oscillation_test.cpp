@@ -1,5 +1,5 @@
 // The swing about a centre against itself a little later, and its inverse against its values.
-#include "pindrive/oscillation.hpp"
+#include "pindrive/kernel/oscillation.hpp"
 
 #include <algorithm>
 #include <cmath>

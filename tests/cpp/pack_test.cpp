@@ -1,5 +1,5 @@
 // Packs of every width, as vectors and as halves, against the same operations on numbers, to the bit.
-#include "pindrive/pack.hpp"
+#include "pindrive/numbers/pack.hpp"
 
 #include <cmath>
 #include <cstdint>

@@ -1,12 +1,12 @@
 // A cycle repeats from its begin on, and samples see where a period or a begin is wrong.
-#include "pindrive/period_samples.hpp"
+#include "pindrive/motion/period_samples.hpp"
 
 #include <cmath>
 #include <vector>
 
 #include "check.hpp"
-#include "pindrive/certify.hpp"
-#include "pindrive/simulate.hpp"
+#include "pindrive/certificate/certify.hpp"
+#include "pindrive/events/simulate.hpp"
 
 namespace pd = pindrive;
 using check::expect;

@@ -1,11 +1,11 @@
 // Plain releases as the kernel sees them: their plates move forward, and what the kernel cannot follow is marked.
-#include "pindrive/plain_release.hpp"
+#include "pindrive/kernel/plain_release.hpp"
 
 #include <array>
 #include <cmath>
 
 #include "check.hpp"
-#include "pindrive/pack.hpp"
+#include "pindrive/numbers/pack.hpp"
 
 namespace pk = pindrive::detail;
 using check::expect;

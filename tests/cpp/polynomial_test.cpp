@@ -1,11 +1,11 @@
 // Quantities along a step as polynomials: their arithmetic, what encloses them, and their zeros with certainty.
-#include "pindrive/polynomial.hpp"
+#include "pindrive/flow/polynomial.hpp"
 
 #include <random>
 #include <vector>
 
 #include "check.hpp"
-#include "pindrive/dual.hpp"
+#include "pindrive/numbers/dual.hpp"
 
 namespace pd = pindrive;
 using check::expect;

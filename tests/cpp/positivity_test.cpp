@@ -1,6 +1,6 @@
 // What PositivityBound proves against dense scanning: no dip below zero escapes it, however short, and what
 // it says is the lowest is nearly so; for paths that are made to touch zero between two times.
-#include "pindrive/positivity.hpp"
+#include "pindrive/flow/positivity.hpp"
 
 #include <algorithm>
 #include <cmath>

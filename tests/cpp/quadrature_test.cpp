@@ -1,6 +1,6 @@
 // Integrals along a mode: the Gauss rules on what they are exact for, and products of two quantities in every
 // damping regime against many small panels.
-#include "pindrive/quadrature.hpp"
+#include "pindrive/motion/quadrature.hpp"
 
 #include "check.hpp"
 

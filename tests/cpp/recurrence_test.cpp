@@ -1,5 +1,5 @@
 // Endings: modes that last for ever, states that close a cycle, and the time from which a motion repeats.
-#include "pindrive/recurrence.hpp"
+#include "pindrive/events/recurrence.hpp"
 
 #include "check.hpp"
 

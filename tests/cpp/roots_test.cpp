@@ -1,6 +1,6 @@
 // Root isolation against dense scanning: no sign change is missed, invented or misplaced, for
 // oscillations with a constant and with a line, decaying, steady and growing, in every regime.
-#include "pindrive/roots.hpp"
+#include "pindrive/flow/roots.hpp"
 
 #include <cmath>
 #include <cstdio>

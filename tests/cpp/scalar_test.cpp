@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "cases.hpp"
-#include "pindrive/certify.hpp"
-#include "pindrive/simulate.hpp"
-#include "pindrive/transient.hpp"
+#include "pindrive/certificate/certify.hpp"
+#include "pindrive/events/simulate.hpp"
+#include "pindrive/motion/transient.hpp"
 
 namespace pd = pindrive;
 

@@ -1,11 +1,11 @@
 // What a mode keeps positive: of a pin that slides its speeds, until the first comes to zero at the event that
 // ends the segment; of one that sticks what its limit leaves; of stops the way to them and the push of one.
-#include "pindrive/segment_guards.hpp"
+#include "pindrive/certificate/segment_guards.hpp"
 
 #include <vector>
 
 #include "check.hpp"
-#include "pindrive/simulate.hpp"
+#include "pindrive/events/simulate.hpp"
 
 namespace pd = pindrive;
 using check::expect;

@@ -1,5 +1,5 @@
 // The mode that follows an event, from the state of a pin on a plate that moves and a finger at rest.
-#include "pindrive/selection.hpp"
+#include "pindrive/law/selection.hpp"
 
 #include "check.hpp"
 

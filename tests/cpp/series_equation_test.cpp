@@ -1,6 +1,6 @@
 // The equation of a mode without a closed form at a later time, and how a pin sets out from a plate that
 // begins to slide across.
-#include "pindrive/series_equation.hpp"
+#include "pindrive/series/series_equation.hpp"
 
 #include <array>
 

@@ -1,8 +1,8 @@
 // Modes as their series have them: which have no closed form, the terms of their equations, and their guards.
-#include "pindrive/series_mode.hpp"
+#include "pindrive/series/series_mode.hpp"
 
 #include "check.hpp"
-#include "pindrive/series.hpp"
+#include "pindrive/series/series.hpp"
 
 namespace pd = pindrive;
 using check::expect;

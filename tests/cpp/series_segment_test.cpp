@@ -1,6 +1,6 @@
 // A segment that is a step of a series: a pin on a plate whose load grows while its friction changes with speed,
 // beside the same equation integrated by Runge and Kutta's method in short steps.
-#include "pindrive/series_segment.hpp"
+#include "pindrive/events/series_segment.hpp"
 
 #include <array>
 

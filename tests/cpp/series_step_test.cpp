@@ -1,6 +1,6 @@
 // A step of a series whose coefficients are known: how long it may be, the same quantities over a part of
 // it, and the last terms that are left out.
-#include "pindrive/series_step.hpp"
+#include "pindrive/series/series_step.hpp"
 
 #include "check.hpp"
 

@@ -1,6 +1,6 @@
 // The power series of modes without a closed form: against forty digits, against the closed form where
 // there is one, against polynomials whose zeros are known; and the bounds of what they leave out.
-#include "pindrive/series.hpp"
+#include "pindrive/series/series.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "pindrive/dual.hpp"
-#include "pindrive/series_mode.hpp"
+#include "pindrive/numbers/dual.hpp"
+#include "pindrive/series/series_mode.hpp"
 
 #ifndef PINDRIVE_SERIES
 #define PINDRIVE_SERIES "tests/oracle/series_cases.txt"  // from the root

@@ -1,5 +1,5 @@
 // When a motion has settled, against samples: at that time it comes into the band, and it never leaves it again.
-#include "pindrive/settling.hpp"
+#include "pindrive/motion/settling.hpp"
 
 #include "check.hpp"
 

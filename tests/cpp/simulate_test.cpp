@@ -1,5 +1,5 @@
 // One motion: what its sink sees, how it is stopped, and the limits that end it.
-#include "pindrive/simulate.hpp"
+#include "pindrive/events/simulate.hpp"
 
 #include "check.hpp"
 

@@ -1,7 +1,7 @@
 // The selection of the next mode: two surfaces that part against the one solution of the force law,
 // whichever of them is called the plate; no mode that lasts no time; and three drives on which a
 // selection from history went wrong.
-#include "pindrive/simulation.hpp"
+#include "pindrive/events/simulation.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,11 @@
 // Skin with its slider: what stretches it, when it grips and slips, and what becomes of it as its load changes.
-#include "pindrive/skin.hpp"
+#include "pindrive/law/skin.hpp"
 
 #include <cmath>
 #include <limits>
 
 #include "check.hpp"
-#include "pindrive/friction.hpp"
+#include "pindrive/law/friction.hpp"
 
 namespace pd = pindrive;
 using check::expect;

@@ -1,5 +1,5 @@
 // Where the slider of a compliant contact goes from an end of its branch.
-#include "pindrive/slider.hpp"
+#include "pindrive/law/slider.hpp"
 
 #include <array>
 

@@ -1,14 +1,14 @@
 // The slider of stiff skin without its fast part: beside the Taylor series of the whole motion in more digits, up to
 // a load of zero, and what it leaves out.
-#include "pindrive/slow_slider.hpp"
+#include "pindrive/series/slow_slider.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <random>
 
-#include "pindrive/creep.hpp"
-#include "pindrive/dual.hpp"
+#include "pindrive/numbers/dual.hpp"
+#include "pindrive/series/creep.hpp"
 
 namespace pd = pindrive;
 

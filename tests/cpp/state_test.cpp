@@ -1,5 +1,5 @@
 // What counts as exact at an instant.
-#include "pindrive/state.hpp"
+#include "pindrive/law/state.hpp"
 
 #include "check.hpp"
 

@@ -1,13 +1,13 @@
 // Numbers of steady and irregular motions beside closed forms and samples.
-#include "pindrive/steady_numbers.hpp"
+#include "pindrive/motion/steady_numbers.hpp"
 
 #include <cmath>
 #include <limits>
 #include <vector>
 
 #include "check.hpp"
-#include "pindrive/recurrence.hpp"
-#include "pindrive/simulate.hpp"
+#include "pindrive/events/recurrence.hpp"
+#include "pindrive/events/simulate.hpp"
 
 namespace pd = pindrive;
 using check::expect;

@@ -1,6 +1,6 @@
 // A pin followed in steps of any length is the pin that one simulation follows: the same modes, events and
 // quantities, also from a state that was kept, through changes of the inputs, and in derivatives.
-#include "pindrive/stepper.hpp"
+#include "pindrive/events/stepper.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,9 +13,9 @@
 
 #include "cases.hpp"
 #include "check.hpp"
-#include "pindrive/dual.hpp"
-#include "pindrive/instant.hpp"
-#include "pindrive/simulate.hpp"
+#include "pindrive/events/simulate.hpp"
+#include "pindrive/motion/instant.hpp"
+#include "pindrive/numbers/dual.hpp"
 
 namespace pd = pindrive;
 using check::expect;

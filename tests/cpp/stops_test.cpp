@@ -1,10 +1,10 @@
 // The end stops: what they may do next, their force, and how a pin meets and leaves them.
-#include "pindrive/stops.hpp"
+#include "pindrive/law/stops.hpp"
 
 #include <vector>
 
 #include "check.hpp"
-#include "pindrive/simulate.hpp"
+#include "pindrive/events/simulate.hpp"
 
 namespace pd = pindrive;
 using check::expect;

@@ -1,5 +1,5 @@
 // A contact at an instant: which way an option slips, and what is asked of what it does.
-#include "pindrive/touch_state.hpp"
+#include "pindrive/law/touch_state.hpp"
 
 #include <limits>
 

@@ -1,11 +1,11 @@
 // The two forms of a segment's quantities beside each other: a segment in closed form has a series too, and
 // both give the same values, rates, zeros and integrals.
-#include "pindrive/trajectory.hpp"
+#include "pindrive/motion/trajectory.hpp"
 
 #include <vector>
 
 #include "check.hpp"
-#include "pindrive/simulate.hpp"
+#include "pindrive/events/simulate.hpp"
 
 namespace pd = pindrive;
 using check::expect;

@@ -1,5 +1,5 @@
 // The numbers of a free decay, against its closed form: (13) to (19) of the paper, corrected.
-#include "pindrive/transient.hpp"
+#include "pindrive/motion/transient.hpp"
 
 #include "check.hpp"
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "judge.hpp"
-#include "pindrive/transient.hpp"
+#include "pindrive/motion/transient.hpp"
 #include "round_numbers.hpp"
 
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "case.hpp"
-#include "pindrive/simulate.hpp"
+#include "pindrive.hpp"
 
 namespace fuzz {
 

@@ -9,8 +9,8 @@
 
 #include "given.hpp"
 #include "laws.hpp"
-#include "pindrive/certify.hpp"
-#include "pindrive/energy.hpp"
+#include "pindrive/certificate/certify.hpp"
+#include "pindrive/motion/energy.hpp"
 
 namespace fuzz {
 

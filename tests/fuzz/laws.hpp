@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "given.hpp"
-#include "pindrive/motion.hpp"
+#include "pindrive/motion/motion.hpp"
 
 namespace fuzz {
 

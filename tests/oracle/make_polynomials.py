@@ -1,4 +1,4 @@
-"""The coefficients in include/pindrive/elementary.hpp: minimax polynomials by the Remez exchange.
+"""The coefficients in numbers/elementary.hpp: minimax polynomials by the Remez exchange.
 
 Each polynomial approximates the remainder of a function after its leading terms, so that the
 coefficients before it are exact. The weight makes the error one relative to the whole function.

@@ -1,0 +1,162 @@
+/// Whether contacts that slip from rest had to: what they would have had to carry to stick.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "pindrive/model/limits.hpp"
+#include "pindrive/model/model.hpp"
+#include "pindrive/motion/evaluated_segment.hpp"
+#include "pindrive/numbers/functions.hpp"
+
+namespace pindrive {
+
+/// The instant at which a segment begins: the pin, the friction on it and the inputs, and which
+/// rigid contacts it is at rest against, to rounding.
+template <class T>
+struct Beginning {
+  T x, v, plate_force, finger_force;
+  Line<T> plate_velocity;
+  T plate_load, finger_load, force;
+  bool rests_on_plate, rests_on_finger;
+  bool plate_began, finger_began;  ///< to do what they do
+};
+
+/// What contacts that slip from rest could have carried beyond what they would have had to, N; 0 where
+/// they could not stick. Where the law allows several modes none is preferred: a contact that slips
+/// while the other sticks is not asked.
+template <class T>
+T spare_stick_limit(const Drive<T>& drive, const Mode& mode, const Beginning<T>& now) {
+  using std::abs;
+  const bool plate = now.rests_on_plate && slips(mode.plate);
+  const bool finger = now.rests_on_finger && slips(mode.finger);
+  if (mode.stuck() || !(plate || finger)) return T(0);
+  const T at_plate = drive.plate.static_limit * now.plate_load;
+  const T at_finger = drive.finger.static_limit * now.finger_load;
+  const T pull = drive.damping * now.v + drive.stiffness * now.x - now.force;
+  const T inertia = drive.mass * now.plate_velocity.rate;
+  if (plate && finger && inertia == 0) return std::max(at_plate + at_finger - abs(pull), T(0));
+  // Each alone. Where both part, the one that does not stick slips the way in which they part.
+  const int side = inertia > 0 ? 1 : -1;
+  const T of_finger =
+      plate && finger ? -side * drive.finger.kinetic * now.finger_load : now.finger_force;
+  const T of_plate =
+      plate && finger ? side * drive.plate.kinetic * now.plate_load : now.plate_force;
+  T spare{0};
+  if (plate && now.plate_began) spare = at_plate - abs(pull - of_finger);
+  if (finger && now.finger_began)
+    spare = std::max(spare, at_finger - abs(pull - inertia - of_plate));
+  return std::max(spare, T(0));
+}
+
+namespace detail {
+
+/// Asks it of the segments of a motion, one after another. Those in which nothing has time to change are one
+/// instant with the next, but for what sticks within its limit however briefly.
+template <class T>
+class Breakaways {
+ public:
+  /// What contacts that slip from rest as a segment begins could have carried beyond what they had to, N.
+  template <class Trajectory>
+  T spare(const EvaluatedSegment<T, Trajectory>& segment) {
+    const Mode& mode = segment.mode();
+    const T begin = segment.segment.begin;
+    if (!brief_) instant_ = begin;
+    const PinState<T> s = segment.at(T(0));
+    brief_ = is_brief(segment, s);
+    const bool plate = began(plate_, mode.plate, begin);
+    const bool finger = began(finger_, mode.finger, begin);
+    if (brief_ || held_by_stop(segment.drive, mode)) return T(0);
+    return spare_at(segment, s, plate, finger);
+  }
+
+ private:
+  /// What a contact does, and since when.
+  struct Doing {
+    ContactState state{ContactState::absent};
+    T since{0};
+  };
+
+  /// Whether a contact began what it does at this instant.
+  bool began(Doing& doing, ContactState does, T time) const {
+    const bool slides_on = doing.state == ContactState::slip_oblique && slips(does);
+    if (does != doing.state && !slides_on) doing.since = time;
+    doing.state = does;
+    return doing.since >= instant_;
+  }
+
+  template <class Trajectory>
+  static bool is_brief(const EvaluatedSegment<T, Trajectory>& segment, const PinState<T>& s) {
+    using std::abs;
+    using std::sqrt;
+    const Scales<T>& scales = segment.scales;
+    const Drive<T>& drive = segment.drive;
+    const T rate = sqrt((drive.stiffness + drive.finger.stiffness) / drive.mass);
+    // A plate's direction may turn in no more time than that.
+    const auto turned = [&] {
+      return abs(segment.at(segment.span).plate_force - s.plate_force) > T(1e-10) * scales.force;
+    };
+    return segment.segment.end - segment.segment.begin <= T(1e-11) / rate &&
+           !(within_limit(segment, s) > 8 * rounding<T> * scales.force) &&
+           !(segment.oblique() && turned());
+  }
+
+  /// How far within its limit the force is of what sticks, N; 0 where nothing does.
+  template <class Trajectory>
+  static T within_limit(const EvaluatedSegment<T, Trajectory>& segment, const PinState<T>& s) {
+    using std::abs;
+    const Mode& mode = segment.mode();
+    T most{0}, force{0};
+    if (mode.plate == ContactState::stick) {
+      most += segment.drive.plate.static_limit * segment.load.value;
+      force += s.plate_force;
+    }
+    if (mode.finger == ContactState::stick) {
+      most += segment.drive.finger.static_limit * segment.finger_load.value;
+      force += s.finger_force;
+    }
+    return most - abs(force);
+  }
+
+  /// Of a pin in a state, where the plate or the finger has just begun to do what it does.
+  template <class Trajectory>
+  static T spare_at(const EvaluatedSegment<T, Trajectory>& segment, PinState<T> s, bool plate,
+                    bool finger) {
+    using std::abs;
+    const Drive<T>& drive = segment.drive;
+    const Line<T>& plate_velocity = segment.plate_velocity;
+    const T still = T(1e-12) * segment.scales.v;
+    const bool with_plate = abs(s.v - plate_velocity.value) <= still;
+    // Where both sliding velocities are zero, a plate's direction is that in which the pin sets out, or stays.
+    const T drags = plate_velocity.rate, turns = hypot(drags, segment.across.rate);
+    if (segment.oblique() && turns > 0 && with_plate && abs(segment.across.value) <= still)
+      s.plate_force = segment.load.value * kinetic_friction(drive.plate, T(0)) * drags / turns;
+    // A rigid stop keeps the pin from going with the plate.
+    const int end = s.x < 0 ? -1 : 1;
+    const bool at_stop = drive.stops.rigid() && end * s.x >= drive.stops.travel;
+    const bool on_plate =
+        with_plate && !segment.oblique() && !(at_stop && end * plate_velocity.rate > 0);
+    const bool on_finger = abs(s.v) <= still && drive.finger.rigid();
+    if (!(plate && on_plate) && !(finger && on_finger)) return T(0);
+    const T push = segment.force.value + segment.stop_force(s), unsure = segment.unsure(s);
+    const auto spare_of = [&](bool rests_on_plate, bool rests_on_finger) {
+      return spare_stick_limit(drive, segment.mode(),
+                               Beginning<T>{s.x, s.v, s.plate_force, s.finger_force, plate_velocity,
+                                            segment.load.value, segment.finger_load.value, push,
+                                            rests_on_plate, rests_on_finger, plate, finger}) -
+             unsure;
+    };
+    // What slid before and slides on is at rest or not where its speed is rounding.
+    T spare = spare_of(on_plate, on_finger);
+    if (on_plate && !plate) spare = std::min(spare, spare_of(false, on_finger));
+    if (on_finger && !finger) spare = std::min(spare, spare_of(on_plate, false));
+    return std::max(spare, T(0));
+  }
+
+  Doing plate_{}, finger_{};
+  T instant_{0};  ///< when the instant began that ends where the segment begins
+  bool brief_{false};
+};
+
+}  // namespace detail
+}  // namespace pindrive

@@ -1,0 +1,444 @@
+/// Checks a finished motion against the laws it must obey, without using the solver: no mode is
+/// chosen here and no event looked for; the motion is evaluated and held against docs/theory.md, 1 and 4.
+///
+/// Each segment is walked once. At Gauss nodes the laws are held against the state, and sums over
+/// the nodes give the integrals; between the nodes a bound proves that no guard dips unseen.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+#include "pindrive/certificate/breakaway.hpp"
+#include "pindrive/certificate/certificate.hpp"
+#include "pindrive/certificate/segment_guards.hpp"
+#include "pindrive/flow/positivity.hpp"
+#include "pindrive/motion/evaluated_segment.hpp"
+#include "pindrive/motion/motion.hpp"
+#include "pindrive/motion/period_samples.hpp"
+#include "pindrive/motion/quadrature.hpp"
+#include "pindrive/motion/steady_since.hpp"
+
+namespace pindrive {
+
+template <class T, class GoOn = Unattended>
+class Certifier {
+ public:
+  Certifier(const Motion<T>& motion, T duration, GoOn go_on = {})
+      : motion_(motion), drive_(motion.drive()), duration_(duration), go_on_(go_on) {}
+
+  Certificate<T> certify() {
+    for (const Segment<T>& segment : motion_) {
+      if (segment.begin > duration_ || !go_on_()) break;
+      scales(segment);
+    }
+    for (const Segment<T>& segment : motion_) {
+      if (segment.begin > duration_ || !go_on_()) break;
+      const Numbers last = motion_.along(segment, [&](const auto& along) -> Numbers {
+        const auto evaluated = evaluate(segment, along);
+        worst(result_.transitions, breakaways_.spare(evaluated), scales_.force);
+        return walk(evaluated);
+      });
+      if (segment.end > duration_) break;
+      const Segment<T>* next = motion_.after(segment);
+      if (next == nullptr) break;
+      const bool in_order = next == &segment + 1;
+      if (in_order) worst(result_.continuity, segment.end - next->begin, segment.end);
+      junction(segment, last, start_of(*next), in_order ? next->begin : segment.end);
+    }
+    const T energy = std::max({stored_, input_, dissipated_});
+    worst(result_.energy, unaccounted_, energy);
+    // Forces are known to their rounding, and so is what they do on the way.
+    const T time = std::min(duration_, motion_.outcome().until);
+    const T known = detail::rounding<T> * scales_.force * scales_.v * time;
+    worst(result_.dissipation, std::max(gained_ - known, T(0)), energy);
+    repetition();
+    return result_;
+  }
+
+ private:
+  /// Holds the samples of a steady motion against its period and its begin.
+  void repetition() {
+    using std::abs;
+    if (!motion_.outcome().steady()) return;
+    const T since = steady_since(motion_);
+    if (!(since <= duration_)) return;
+    const detail::PeriodSamples<T> samples(motion_);
+    const T tolerance = T(detail::repeat_tolerance);
+    // The begin is found from four instants between two events: between those the difference may be larger.
+    raise(result_.period, std::max(samples.difference_since(since) - 2 * tolerance, T(0)));
+    const Outcome<T>& outcome = motion_.outcome();
+    if (!outcome.cycles()) return;  // a mode of its own begins where its mode does
+    // Continuity from the last segment to the begin of the cycle closes a round: it lasts one period.
+    const T round = std::prev(motion_.end())->end - outcome.cycle_begin;
+    const T known = detail::rounding<T> * outcome.until;
+    raise(result_.period, std::max(abs(round - outcome.period) - known, T(0)) / outcome.period);
+    const T begin = std::max(samples.begin(tolerance), detail::last_row(motion_.inputs()));
+    raise(result_.steady_since, std::max((since - begin) / outcome.period - T(1), T(0)));
+  }
+
+  /// How deep, as a part of the largest, a guard may dip between two nodes unseen; and how many
+  /// panels are walked at each end of a segment before what lies between is leapt over.
+  static constexpr T unseen = T(1e-10);
+  static constexpr int walked = 2048;
+
+  template <class Trajectory>
+  using Evaluated = detail::EvaluatedSegment<T, Trajectory>;
+  template <class Trajectory>
+  using Guards = detail::SegmentGuards<T, Trajectory>;
+  using Closed = Evaluated<ClosedForm<T>>;
+  using ClosedState = typename Closed::State;
+  using Numbers = detail::PinState<T>;
+
+  template <class Trajectory>
+  Evaluated<Trajectory> evaluate(const Segment<T>& segment, const Trajectory& along) const {
+    return {drive_, scales_, motion_.inputs(), duration_, segment, along};
+  }
+  Numbers start_of(const Segment<T>& segment) const {
+    return motion_.along(
+        segment, [&](const auto& along) -> Numbers { return evaluate(segment, along).at(T(0)); });
+  }
+
+  T energy(const Numbers& s) const {
+    const T skin = drive_.finger.compliant()
+                       ? s.finger_force * s.finger_force / (2 * drive_.finger.stiffness)
+                       : T(0);
+    return drive_.mass * s.v * s.v / 2 + drive_.stiffness * s.x * s.x / 2 + skin +
+           motion_.stop_energy(s.x);
+  }
+
+  /// Keeps the larger of what was found and |error|; infinity for what is not a number.
+  static void raise(T& most, T error) {
+    using std::abs;
+    const T size = abs(error);
+    if (!(size <= most)) most = size < never ? size : never;
+  }
+  static void worst(T& residual, T error, T scale) {
+    raise(residual, scale > 0 ? error / scale : error);
+  }
+
+  /// The largest displacement, velocity and force: where segments begin and end, and within, where
+  /// no wave is that begins and ends at nothing.
+  void scales(const Segment<T>& segment) {
+    using std::abs;
+    using std::sqrt;
+    const T omega0 = sqrt(drive_.stiffness / drive_.mass);
+    motion_.along(segment, [&](const auto& along) {
+      const auto evaluated = evaluate(segment, along);
+      for (const T part : {T(0), T(0.382), T(1)}) {
+        const T tau = part * evaluated.span;
+        const Numbers s = evaluated.at(tau);
+        scales_.x = std::max({scales_.x, abs(s.x), abs(s.v) / omega0,
+                              abs(evaluated.plate_velocity.at(tau)) / omega0});
+        scales_.force =
+            std::max({scales_.force, abs(drive_.mass * s.a), abs(drive_.damping * s.v),
+                      abs(s.plate_force), abs(s.finger_force), abs(evaluated.force.at(tau))});
+        if (drive_.stops.present() && !drive_.stops.rigid())
+          scales_.stop = std::max(
+              {scales_.stop, drive_.stops.stiffness * abs(s.x), drive_.stops.damping * abs(s.v)});
+      }
+    });
+    scales_.v = scales_.x * omega0;
+    scales_.force = std::max(scales_.force, drive_.stiffness * scales_.x);
+    scales_.stop = std::max(scales_.stop, scales_.force);
+  }
+
+  // ---- along a segment ---------------------------------------------------------------------------
+
+  /// The largest error of each law in a segment, in its own unit.
+  struct Errors {
+    T law{0}, velocity{0}, friction{0}, sticking{0};
+  };
+
+  /// Powers, and the sums of them and of v and a over a panel.
+  struct Sums {
+    T v{0}, a{0}, input{0}, damper{0}, plate{0}, finger{0}, stop{0};
+  };
+
+  /// Holds the laws all along a segment; its last state.
+  Numbers walk(const Closed& evaluated) {
+    const Oscillator<T>& oscillator = evaluated.segment.flow.oscillator;
+    const T alpha = oscillator.alpha(), fastest = oscillator.fastest_rate();
+    const T quick = exact_over / fastest;
+    const bool waves = evaluated.along.waves();
+    const Guards<ClosedForm<T>> guards(evaluated);
+    Errors errors;
+    auto from = evaluated.at(T(0));
+    laws(evaluated, from, errors);
+    T low{0};
+    for (int panels = 0; low < evaluated.span && go_on_(); ++panels) {
+      const bool grows = !oscillator.oscillates() || -alpha * low > 40;
+      const T length = !waves ? evaluated.span : grows ? std::max(quick, low / 2) : quick;
+      const bool leaps = panels == walked && evaluated.span - low > (walked + 1) * length;
+      T high = leaps ? evaluated.span - walked * length : std::min(low + length, evaluated.span);
+      if (!(high > low)) high = evaluated.span;  // so late that a panel is lost in rounding
+      const auto to = evaluated.at(high);
+      if (leaps)
+        leap(evaluated, from, to);
+      else
+        panel(evaluated, guards, from, to, !waves || (high - low) * fastest < T(1.2), errors);
+      from = to;
+      low = high;
+    }
+    judge(evaluated, errors, fastest);
+    return from;
+  }
+
+  /// The same for a step of a series, of which all is smooth.
+  Numbers walk(const Evaluated<BySeries<T>>& evaluated) {
+    Errors errors;
+    const auto from = evaluated.at(T(0)), to = evaluated.at(evaluated.span);
+    const T known = std::max(evaluated.unsure(from), evaluated.unsure(to));
+    for (const auto& [guard, law, scale, slid] : Guards<BySeries<T>>(evaluated)) {
+      const T least =
+          lowest(guard, unseen * scale) + (law == &Certificate<T>::force_bound ? known : slid);
+      if (!(least >= 0)) worst(result_.*law, least, scale);
+    }
+    laws(evaluated, from, errors);
+    Sums sums;
+    gauss_nodes(gauss16, T(0), evaluated.span, [&](T tau, T weight) {
+      const auto now = evaluated.at(tau);
+      laws(evaluated, now, errors);
+      gather(evaluated, now, weight, sums);
+    });
+    laws(evaluated, to, errors);
+    balance(evaluated, from, to, sums);
+    judge(evaluated, errors, 1 / evaluated.span);
+    return to;
+  }
+
+  template <class Trajectory>
+  void judge(const Evaluated<Trajectory>& evaluated, const Errors& errors, T fastest) {
+    worst(result_.motion_law, errors.law, scales_.stop);
+    // An error in the rate of the position counts by how far it moves the pin in a mode.
+    const T moves = scales_.x * std::max(fastest, 1 / evaluated.span);
+    worst(result_.kinematics, errors.velocity, std::max(scales_.v, moves));
+    worst(result_.friction_law, errors.friction, scales_.force);
+    worst(result_.sticking, errors.sticking, scales_.v);
+  }
+
+  void panel(const Closed& evaluated, const Guards<ClosedForm<T>>& guards, const ClosedState& from,
+             const ClosedState& to, bool brief, Errors& errors) {
+    const Oscillator<T>& oscillator = evaluated.segment.flow.oscillator;
+    std::array<typename PositivityBound<T>::Flatness, Guards<ClosedForm<T>>::capacity> flatness;
+    for (int i = 0; i < guards.size(); ++i)
+      flatness[i] = guards[i].guard.flatness(oscillator, from.moment, from.tau, to.tau - from.tau);
+    ClosedState before = from;
+    const auto follow = [&](const ClosedState& now) {
+      for (int i = 0; i < guards.size(); ++i) {
+        const auto& [guard, law, scale, slid] = guards[i];
+        const T lowest = guard.lowest(oscillator, guard.at(before.moment), guard.at(now.moment),
+                                      flatness[i], unseen * scale);
+        if (!(lowest >= 0)) worst(result_.*law, lowest, scale);
+      }
+      laws(evaluated, now, errors);
+      before = now;
+    };
+    Sums sums;
+    const auto visit = [&](T tau, T weight) {
+      const auto now = evaluated.at(tau);
+      follow(now);
+      gather(evaluated, now, weight, sums);
+    };
+    if (brief)
+      gauss_nodes(gauss8, from.tau, to.tau, visit);
+    else
+      gauss_nodes(gauss16, from.tau, to.tau, visit);
+    follow(to);
+    balance(evaluated, from, to, sums);
+  }
+
+  /// Changes against the sums of their rates.
+  template <class Trajectory>
+  void balance(const Evaluated<Trajectory>& evaluated, const Numbers& from, const Numbers& to,
+               const Sums& sums) {
+    worst(result_.kinematics, to.x - from.x - sums.v, scales_.x);
+    worst(result_.kinematics, to.v - from.v - sums.a, scales_.v);
+    if (evaluated.segment.mode.finger == ContactState::elastic_stick)
+      worst(result_.kinematics,
+            (to.finger_force - from.finger_force) / drive_.finger.stiffness + sums.v, scales_.x);
+    account(energy(from), energy(to), sums);
+  }
+
+  /// The same over the middle of a very long oscillation, in closed form and without guards.
+  void leap(const Closed& evaluated, const ClosedState& from, const ClosedState& to) {
+    const Segment<T>& segment = evaluated.segment;
+    const Path<T>&v = segment.flow.velocity, plate = segment.plate_force;
+    const Path<T> v_plate = evaluated.plate_velocity;
+    const auto over = [&](const Path<T>& p, const Path<T>& q) {
+      return product_integral(segment.flow.oscillator, p, q, from.tau, to.tau);
+    };
+    Line<T> push = evaluated.force;
+    push.value += drive_.mass * evaluated.plate_velocity.rate;
+    const Path<T> inertia = push;
+    Sums sums;
+    sums.input = over(plate, v_plate) + over(inertia, v);
+    sums.damper = drive_.damping * over(v, v);
+    sums.plate = -over(plate, v + T(-1) * v_plate);
+    if (touches(segment.mode.stop)) sums.stop = drive_.stops.damping * over(v, v);
+    if (segment.mode.finger != ContactState::elastic_stick)
+      sums.finger = -over(segment.finger_force, v);
+    account(energy(from), energy(to), sums);
+  }
+
+  template <class Trajectory>
+  void laws(const Evaluated<Trajectory>& evaluated, const typename Evaluated<Trajectory>::State& s,
+            Errors& errors) {
+    using std::abs;
+    const Trajectory& along = evaluated.along;
+    const Mode mode = evaluated.segment.mode;
+    raise(errors.velocity, along.at(evaluated.x_rate, s.moment) - s.v);
+    if (mode.finger == ContactState::elastic_stick)
+      raise(errors.velocity,
+            along.at(evaluated.finger_rate, s.moment) / drive_.finger.stiffness + s.v);
+    const T missed = drive_.mass * (s.a - evaluated.plate_velocity.rate) + drive_.damping * s.v +
+                     drive_.stiffness * s.x - s.plate_force - s.finger_force -
+                     evaluated.force.at(s.tau) - evaluated.stop_force(s);
+    raise(errors.law, std::max(abs(missed) - evaluated.unsure(s), T(0)));
+    if (held_by_stop(drive_, mode)) {
+      const int end = side(mode.stop);
+      raise(errors.sticking, s.v);
+      worst(result_.sticking, end * s.x - drive_.stops.travel, scales_.x);
+      const T pull = end * evaluated.stop_force(s) - evaluated.unsure(s);
+      worst(result_.force_bound, std::max(pull, T(0)), scales_.force);
+    }
+    const auto contact = [&](const Contact<T>& law, ContactState does, T u, T force, T load,
+                             T unsure) {
+      if (slips(does))
+        raise(errors.friction,
+              std::max(
+                  abs(force + sign(does) * load * detail::kinetic_friction(law, abs(u))) - unsure,
+                  T(0)));
+      else if (does == ContactState::stick)
+        raise(errors.sticking, u);
+      else if (does == ContactState::absent && law.present())
+        raise(errors.friction,
+              std::max(load * detail::kinetic_friction(law, abs(u)) - unsure, T(0)));
+    };
+    if (evaluated.oblique())
+      raise(errors.friction, evaluated.oblique_error(s));
+    else
+      contact(drive_.plate, mode.plate, s.v - evaluated.plate_velocity.at(s.tau), s.plate_force,
+              evaluated.load.at(s.tau), T(0));
+    const T pressed = evaluated.finger_load.at(s.tau);
+    const T slope =
+        drive_.finger.branches > 0
+            ? abs(drive_.finger
+                      .branch(std::clamp(mode.finger_branch, 0, drive_.finger.branches - 1))
+                      .slope)
+            : T(0);
+    contact(drive_.finger, mode.finger, evaluated.on_finger(s), s.finger_force, pressed,
+            mode.finger == ContactState::absent ? evaluated.lifted_unsure()
+                                                : pressed * slope * evaluated.slider_unsure);
+  }
+
+  template <class Trajectory>
+  void gather(const Evaluated<Trajectory>& evaluated,
+              const typename Evaluated<Trajectory>::State& s, T weight, Sums& sums) {
+    // A whole wave may begin and end at nothing, and be summed from what is stored on the way.
+    stored_ = std::max(stored_, energy(s));
+    const T v_plate = evaluated.plate_velocity.at(s.tau);
+    const T push = drive_.mass * evaluated.plate_velocity.rate + evaluated.force.at(s.tau);
+    sums.v += weight * s.v;
+    sums.a += weight * s.a;
+    sums.input += weight * (s.plate_force * v_plate + push * s.v);
+    sums.damper += weight * drive_.damping * s.v * s.v;
+    sums.plate -= weight * s.plate_force * (s.v - v_plate);
+    const StopState stop = evaluated.segment.mode.stop;
+    if (stop != StopState::apart && !drive_.stops.rigid())
+      sums.stop +=
+          weight * s.v *
+          (touches(stop) ? drive_.stops.damping * s.v
+                         : drive_.stops.stiffness * (side(stop) * drive_.stops.travel - s.x));
+    if (evaluated.segment.mode.finger != ContactState::elastic_stick)
+      sums.finger -= weight * s.finger_force * evaluated.on_finger(s);
+  }
+
+  void account(T before, T after, const Sums& sums) {
+    using std::abs;
+    const T loss = sums.damper + sums.plate + sums.finger + sums.stop;
+    balance_ += after - before - sums.input + loss;
+    raise(unaccounted_, balance_);
+    stored_ = std::max({stored_, before, after});
+    input_ += abs(sums.input);
+    dissipated_ += abs(loss);
+    for (const T part : {sums.damper, sums.plate, sums.finger, sums.stop})
+      raise(gained_, std::min(part, T(0)));
+  }
+
+  // ---- from segment to segment -------------------------------------------------------------------
+
+  void junction(const Segment<T>& before, const Numbers& left, const Numbers& right, T time) {
+    using std::abs;
+    const Event event = before.event;
+    worst(result_.continuity, left.x - right.x, scales_.x);
+    if (stops(event.stop) && drive_.stops.rigid()) {  // it takes the velocity, which was towards it
+      worst(result_.continuity, right.v, scales_.v);
+      worst(result_.sliding_sign, std::min(left.v * (left.x < 0 ? -1 : 1), T(0)), scales_.v);
+      worst(result_.continuity, abs(left.x) - drive_.stops.travel, scales_.x);
+    } else {
+      // The time at which it is, and so how long the pin is accelerated, is known to its rounding.
+      const T known = detail::rounding<T> * before.end * std::max(abs(left.a), abs(right.a));
+      worst(result_.continuity, std::max(abs(left.v - right.v) - known, T(0)), scales_.v);
+    }
+    if (!drive_.finger.compliant()) return;
+    const T asked = abs(left.finger_force), drop = asked - abs(right.finger_force);
+    if (event.finger != Transition::slip) {
+      const Line<T> load = motion_.inputs().finger_load.from(before.begin);
+      const T known = detail::skin_unsure(drive_, load, before.end, left);
+      const T jump = abs(left.finger_force - right.finger_force);
+      worst(result_.continuity, std::max(jump - known, T(0)), scales_.force);
+      return;
+    }
+    const T load = motion_.inputs().finger_load.from(time).value;
+    const bool gripped = before.mode.finger == ContactState::elastic_stick;
+    if (gripped)
+      worst(result_.transitions, std::max(drive_.finger.static_limit * load - asked, T(0)),
+            scales_.force);
+    const bool lifts = !(load > 0) || lifts_off(before.mode, left.v, time);
+    const T most = !lifts ? load * most_from(gripped ? 0 : before.mode.finger_branch + 1) : T(0);
+    const T unmet = std::max(most - asked, T(0));
+    worst(result_.continuity, drop > 0 ? std::min(drop, unmet) : drop, scales_.force);
+    raise(gained_, std::min(energy(left) - energy(right), T(0)));
+  }
+
+  /// Whether a load that falls to zero is so near to that that the times in which skin follows it are within
+  /// the rounding of the time: those of its slider or of the rounds in which it grips and slips.
+  bool lifts_off(const Mode& mode, T v, T time) const {
+    using std::abs;
+    const Contact<T>& finger = drive_.finger;
+    const Line<T> load = motion_.inputs().finger_load.from(time);
+    if (!(load.rate < 0)) return false;
+    const T slope = slips(mode.finger) ? finger.branch(mode.finger_branch).slope : T(0);
+    const T limit = finger.static_limit;
+    const T follows = slope > 0 ? 1 / slope : limit > 0 ? abs(v) / limit : T(0);
+    const T known = 65 * detail::rounding<T> * time;
+    return load.value <= known * (finger.stiffness * follows - load.rate);
+  }
+
+  /// The largest friction of the finger from a branch of its curve on, under a load of 1: skin becomes
+  /// shorter at once only where no speed carries what it asks.
+  T most_from(int index) const {
+    const Contact<T>& finger = drive_.finger;
+    if (finger.branches == 0) return finger.kinetic;
+    T most{0};
+    for (int i = index; i < finger.branches; ++i) most = std::max(most, finger.curve[i].force);
+    return finger.curve[finger.branches - 1].slope > 0 ? never : most;
+  }
+
+  static constexpr T never = std::numeric_limits<T>::infinity();
+
+  Motion<T> motion_;
+  Drive<T> drive_;
+  T duration_;
+  GoOn go_on_;
+  detail::Scales<T> scales_{};
+  T balance_{0}, unaccounted_{0}, gained_{0};  ///< J: of the ledger so far, at its worst …
+  T stored_{0}, input_{0}, dissipated_{0};     ///< … and what it is measured against
+  detail::Breakaways<T> breakaways_{};
+  Certificate<T> result_{};
+};
+
+}  // namespace pindrive

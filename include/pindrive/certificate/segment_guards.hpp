@@ -1,0 +1,137 @@
+/// What the mode of a segment keeps positive all along it: speeds against the ends of a branch, stick limits
+/// against forces, the way to a stop or the push of one.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <type_traits>
+#include <utility>
+
+#include "pindrive/certificate/certificate.hpp"
+#include "pindrive/flow/positivity.hpp"
+#include "pindrive/motion/evaluated_segment.hpp"
+
+namespace pindrive::detail {
+
+template <class T>
+PositivityBound<T> positive(const ClosedForm<T>& along, const Path<T>& path) {
+  return {along.oscillator(), path};
+}
+template <class T>
+Polynomial<T> positive(const BySeries<T>&, const Polynomial<T>& path) {
+  return path;
+}
+
+template <class T, class Trajectory>
+class SegmentGuards {
+  using Evaluated = EvaluatedSegment<T, Trajectory>;
+  using Quantity = typename Evaluated::Quantity;
+
+ public:
+  static constexpr int capacity = 6;
+
+  /// A quantity, and the law that is broken where it is negative.
+  struct Watch {
+    decltype(positive(std::declval<Trajectory>(), std::declval<Quantity>())) guard;
+    T Certificate<T>::* law;
+    T scale;
+    T known{0};  ///< how well, by the rounding of the time
+  };
+
+  explicit SegmentGuards(const Evaluated& segment) : evaluated_(segment), along_(segment.along) {
+    const Drive<T>& drive = segment.drive;
+    const Mode& mode = segment.mode();
+    const Line<T>&load = segment.load, finger_load = segment.finger_load;
+    if (!segment.oblique())
+      slipping(drive.plate, mode.plate, mode.plate_branch,
+               along_.velocity() + T(-1) * along_.line(segment.plate_velocity));
+    else if constexpr (std::is_same_v<Trajectory, BySeries<T>>)
+      within(drive.plate.branch(mode.plate_branch), along_.sliding_speed(), false);
+    // A slider is slower than the pin by what its skin stretches.
+    if (drive.finger.compliant()) {
+      const int others = count_;
+      slipping(drive.finger, mode.finger, mode.finger_branch,
+               along_.velocity() + 1 / drive.finger.stiffness * segment.finger_rate);
+      for (int i = others; i < count_; ++i) watches_[i].known = segment.slider_unsure;
+    } else {
+      slipping(drive.finger, mode.finger, mode.finger_branch, along_.velocity());
+    }
+    beyond_stops(drive.stops, mode.stop);
+    if (held_by_stop(drive, mode)) return;
+    const Line<T> at_plate{drive.plate.static_limit * load.value,
+                           drive.plate.static_limit * load.rate};
+    const Line<T> at_finger{drive.finger.static_limit * finger_load.value,
+                            drive.finger.static_limit * finger_load.rate};
+    if (mode.both_stuck()) {
+      sticking(along_.plate_force(),
+               {at_plate.value + at_finger.value, at_plate.rate + at_finger.rate});
+    } else {
+      if (mode.plate == ContactState::stick) sticking(along_.plate_force(), at_plate);
+      if (mode.finger == ContactState::stick || mode.finger == ContactState::elastic_stick)
+        sticking(along_.finger_force(), at_finger);
+    }
+  }
+
+  int size() const { return count_; }
+  const Watch& operator[](int i) const { return watches_[i]; }
+  const Watch* begin() const { return watches_.data(); }
+  const Watch* end() const { return watches_.data() + count_; }
+
+ private:
+  static constexpr T never = std::numeric_limits<T>::infinity();
+
+  template <class Path>
+  void watch(const Path& path, T Certificate<T>::* law, T scale) {
+    watches_[count_++] = {positive(along_, path), law, scale, T(0)};
+  }
+
+  /// A speed within its branch, whose begin it cannot come to at rest where it has no direction.
+  template <class Path>
+  void within(const Branch<T>& branch, const Path& speed, bool directed) {
+    const T scale = evaluated_.scales.v;
+    if (directed || branch.from > 0)
+      watch(along_.above(speed, branch.from), &Certificate<T>::sliding_sign, scale);
+    if (branch.to < never)
+      watch(along_.above(T(-1) * speed, -branch.to), &Certificate<T>::sliding_sign, scale);
+  }
+  template <class Path>
+  void slipping(const Contact<T>& contact, ContactState does, int branch, const Path& sliding) {
+    if (!slips(does)) return;
+    const int last = std::max(contact.branches - 1, 0);
+    within(contact.branch(std::clamp(branch, 0, last)), T(sign(does)) * sliding, true);
+  }
+  template <class Path>
+  void sticking(const Path& force, const Line<T>& limit) {
+    const auto most = along_.line(limit);
+    const T scale = evaluated_.scales.force;
+    watch(most + force, &Certificate<T>::force_bound, scale);
+    watch(most + T(-1) * force, &Certificate<T>::force_bound, scale);
+  }
+  /// The way to the end stops or, of an elastic one, its depth and its push.
+  void beyond_stops(const Stops<T>& stops, StopState does) {
+    if (!stops.present()) return;
+    const auto beyond = [&](int end, int sense) {
+      watch(along_.above(T(sense * end) * along_.position(), sense * stops.travel),
+            &Certificate<T>::sliding_sign, evaluated_.scales.x);
+    };
+    if (does == StopState::apart || stops.rigid()) {
+      beyond(1, -1);
+      beyond(-1, -1);
+      return;
+    }
+    const int end = side(does), sense = touches(does) ? 1 : -1;
+    beyond(end, 1);
+    auto push = T(sense * end) * stops.damping * along_.velocity();
+    push = T(sense * end) * stops.stiffness * along_.position() + push;
+    watch(along_.above(push, sense * stops.stiffness * stops.travel), &Certificate<T>::force_bound,
+          evaluated_.scales.stop);
+  }
+
+  const Evaluated& evaluated_;
+  const Trajectory& along_;
+  std::array<Watch, capacity> watches_{};
+  int count_{0};
+};
+
+}  // namespace pindrive::detail

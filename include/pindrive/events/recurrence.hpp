@@ -1,0 +1,250 @@
+/// Detection of steady motions by recurrence (docs/theory.md, section 5).
+///
+/// A cycle is found in two phases (Brent 1980). `CycleDetector` finds its period during the simulation, by
+/// comparing the state after each event with kept states. `steady_since` (steady_since.hpp) finds its
+/// beginning afterwards, from the stored segments.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+#include "pindrive/law/state.hpp"
+#include "pindrive/model/limits.hpp"
+#include "pindrive/model/model.hpp"
+
+namespace pindrive::detail {
+
+/// Sets the ending of a motion whose last mode lasts for ever.
+template <class T>
+void end_with(const Segment<T>& last, Outcome<T>& outcome) {
+  const Flow<T>& flow = last.flow;
+  const T alpha = flow.oscillator.alpha();
+  if (!flow.position.oscillates()) {
+    const bool still = flow.velocity.start == 0 && flow.velocity.straight();
+    if (still) outcome.end = last.without == FastPart::motion ? End::decaying : End::resting;
+  } else if (alpha < 0) {
+    outcome.end = End::decaying;
+  } else if (alpha == 0) {
+    // Released without a relative acceleration it touches the plate's velocity once a period.
+    const bool grazes = slips(last.mode.plate) && flow.velocity.slope == 0 &&
+                        flow.velocity.start == last.plate_velocity.value;
+    outcome.end = grazes ? End::grazing : End::free;
+    outcome.period = flow.oscillator.period();
+  }
+}
+
+/// Natural scales of a motion, measured along its events: range of the position and largest speed.
+template <class T>
+class Extent {
+ public:
+  /// Includes an event, between a segment and the state after the event.
+  void add(const Flow<T>& ended, T x, T v) {
+    using std::abs;
+    lowest_ = std::min(lowest_, x);
+    highest_ = std::max(highest_, x);
+    amplitude_ = std::max(amplitude_, abs(ended.position.value));
+    speed_ = std::max({speed_, abs(v), abs(ended.velocity.value)});
+  }
+  T length() const { return std::max(highest_ - lowest_, amplitude_); }  ///< m
+  T speed() const { return speed_; }                                     ///< m/s
+
+ private:
+  T lowest_{std::numeric_limits<T>::infinity()}, highest_{-std::numeric_limits<T>::infinity()};
+  T amplitude_{0}, speed_{0};
+};
+
+/// Detects that a motion between constant inputs has returned to an earlier state. Events of every kind are
+/// compared.
+///
+/// Each state is compared with two kept states. One is renewed after ever more events, so that a period of any
+/// length is found, and the other after few events, so that a short period is found soon. The first three events
+/// are not kept: most motions come to rest after few. A return within `return_tolerance` closes a cycle. A cycle
+/// that is approached geometrically is followed from return to return, and closed when the contraction bounds its
+/// remaining distance by `approach_tolerance`.
+///
+/// A motion that has not returned after many events is irregular (chaotic or quasi-periodic), unless it grows
+/// or decays: then the durations of windows of equally many events increase or decrease without exception, or
+/// the ranges of the position in blocks of windows do.
+template <class T>
+class CycleDetector {
+ public:
+  explicit CycleDetector(const Drive<T>& drive) : drive_(drive) {}
+
+  /// Compares an event at time + time_error, between a segment and the mode and state after the event. Sets the
+  /// ending in the outcome if the event closes a cycle.
+  void visit(const Segment<T>& ended, const Mode& mode, T time, T time_error, const State<T>& state,
+             Outcome<T>& outcome) {
+    if (count_ < first_kept) {
+      ++count_;
+      return;
+    }
+    const Event now{time, time_error, mode, state};
+    if (count_ > first_kept) {
+      if (returns_to(kept_, ended, now, outcome)) return;
+      if (count_ > short_memory && returns_to(recent_, ended, now, outcome)) return;
+      if (period_ > 0 && approaches(ended, now, outcome)) return;
+    }
+    if (count_ >= irregular_window) {
+      block_.add(ended.flow, state.x, state.v);
+      if (++in_window_ == irregular_window) end_window(time, outcome);
+    }
+    if (count_ % short_memory == 0) keep(recent_, now);
+    if (count_ == next_) {
+      keep(kept_, now);
+      next_ += std::max(next_ / 4, std::min(next_, short_memory)) + 1;
+    }
+    ++count_;
+  }
+
+ private:
+  /// An event: its time, and the mode and the state after it.
+  struct Event {
+    T time, time_error;  ///< s; their sum is the time
+    const Mode& mode;
+    const State<T>& state;
+  };
+  /// A kept event, and the scales of the motion since then.
+  struct Visit {
+    long long index{0};
+    T time{0}, time_error{0};
+    Mode mode{};
+    State<T> state{};
+    Extent<T> extent{};
+    T stuck{0};  ///< for how long the plate has stuck to the pin since then, s
+  };
+
+  static constexpr long long first_kept = 3;  ///< index of the first event that is kept
+  /// Events after which the recent state is renewed.
+  static constexpr long long short_memory = 32;
+  static constexpr int windows_in_block = irregular_windows / 8;
+  static constexpr T never = std::numeric_limits<T>::infinity();
+
+  void keep(Visit& visit, const Event& now) const {
+    visit = {count_, now.time, now.time_error, now.mode, now.state, {}, T(0)};
+  }
+  /// Includes the segment that an event ends in the scales since a kept event.
+  static void extend(Visit& visit, const Segment<T>& ended, const Event& now) {
+    visit.extent.add(ended.flow, now.state.x, now.state.v);
+    if (ended.mode.plate == ContactState::stick) visit.stuck += ended.end - ended.begin;
+  }
+
+  /// Distance between the states after two events as a part of the natural scales; infinite if they have
+  /// different modes, or if the motion between them is not larger than the rounding of its position.
+  T separation(const Visit& earlier, const Event& now) const {
+    using std::abs;
+    using std::sqrt;
+    if (!same_mode(earlier.mode, now.mode) || !(now.time > earlier.time)) return never;
+    const T length = earlier.extent.length();
+    if (!(length > T(rest_tolerance) * abs(now.state.x))) return never;
+    const T rounded = rounding<T> * std::max(abs(now.state.x), length);
+    const auto apart = [](T one, T other, T known, T scale) {
+      const T beyond = abs(one - other) - known;
+      return beyond > 0 ? beyond / scale : T(0);
+    };
+    const State<T>&one = earlier.state, &other = now.state;
+    const T displaced = apart(one.x, other.x, rounded, length);
+    if (!(displaced < near_return)) return never;  // most events: the rest need not be compared
+    const T omega0 = sqrt(drive_.stiffness / drive_.mass);
+    const T speed = earlier.extent.speed();
+    T most = std::max(displaced, apart(one.v, other.v, rounded * omega0, speed));
+    const Contact<T>& finger = drive_.finger;
+    if (finger.may_lag())
+      most = std::max(most, apart(one.slide, other.slide, rounded * omega0, speed));
+    if (finger.may_lag() || now.mode.finger == ContactState::elastic_stick)
+      most = std::max(most, apart(one.skin, other.skin, finger.stiffness * rounded,
+                                  std::min(finger.stiffness * length, finger.static_limit)));
+    return most;
+  }
+
+  /// Compares an event with a kept one. True if it closes a cycle; a near return is followed.
+  bool returns_to(Visit& earlier, const Segment<T>& ended, const Event& now, Outcome<T>& outcome) {
+    extend(earlier, ended, now);
+    const T distance = separation(earlier, now);
+    if (distance <= T(return_tolerance)) return close(earlier, now, outcome);
+    if (distance < near_return && (period_ == 0 || distance < distance_)) {
+      period_ = count_ - earlier.index;
+      distance_ = distance;
+      ratio_ = T(1);
+      keep(followed_, now);
+    }
+    return false;
+  }
+
+  /// Compares the next return of the followed period. True if the remaining returns together, a geometric
+  /// series, stay within the tolerance, so that the cycle is closed.
+  bool approaches(const Segment<T>& ended, const Event& now, Outcome<T>& outcome) {
+    if (count_ == followed_.index) return false;
+    extend(followed_, ended, now);
+    if (count_ != followed_.index + period_) return false;
+    const T distance = separation(followed_, now), ratio = distance / distance_;
+    const T slower = std::max(ratio, ratio_);
+    ratio_ = ratio;
+    distance_ = distance;
+    if (!(ratio < 1)) period_ = 0;
+    const bool within = slower < 1 && distance <= T(approach_step) &&
+                        distance / (1 - slower) <= T(approach_tolerance);
+    if (within || distance <= T(return_tolerance)) return close(followed_, now, outcome);
+    keep(followed_, now);
+    return false;
+  }
+
+  /// Compares the duration of a window of events with that of the window before.
+  void end_window(T time, Outcome<T>& outcome) {
+    using std::abs;
+    const T lasts = time - window_begin_, longer = lasts - lasted_;
+    if (abs(longer) > T(repeat_tolerance) * lasts) {
+      if (windows_ > 1 && (longer > 0) != grew_) ++turns_;
+      grew_ = longer > 0;
+    }
+    lasted_ = lasts;
+    window_begin_ = time;
+    in_window_ = 0;
+    if (++windows_ == irregular_windows / 2) half_time_ = time;
+    if (windows_ % windows_in_block == 0) end_block();
+    if (windows_ < irregular_windows) return;
+    if (4 * turns_ >= irregular_windows && !grows_ && !decays_) {
+      outcome.end = End::irregular;
+      outcome.cycle_begin = half_time_;
+    }
+    windows_ = turns_ = 0;
+    grows_ = decays_ = true;
+  }
+  /// Compares the range of the position in a block of windows with that in the block before.
+  void end_block() {
+    const T length = block_.length();
+    if (windows_ > windows_in_block) {
+      grows_ = grows_ && length > length_;
+      decays_ = decays_ && length < length_;
+    }
+    length_ = length;
+    block_ = {};
+  }
+
+  bool close(const Visit& begin, const Event& now, Outcome<T>& outcome) const {
+    outcome.period = (now.time - begin.time) + (now.time_error - begin.time_error);
+    const bool sticks = begin.stuck > T(repeat_tolerance) * outcome.period;  // it does not graze
+    outcome.end = sticks ? End::stick_slip : End::limit_cycle;
+    outcome.cycle_begin = begin.time;
+    return true;
+  }
+
+  const Drive<T>& drive_;
+  Visit kept_, recent_, followed_;
+  long long count_{0};          ///< events so far
+  long long next_{first_kept};  ///< count at which the kept visit is renewed
+  long long period_{0};         ///< of the followed approach, in events; 0 without one
+  T distance_{0}, ratio_{1};    ///< of its last return, and to the distance before
+
+  int in_window_{0}, windows_{0};  ///< events in the window, windows so far
+  int turns_{0};                   ///< changes between longer and shorter windows
+  bool grew_{false};
+  bool grows_{true}, decays_{true};  ///< in each block of windows
+  Extent<T> block_;
+  T length_{0};                    ///< range in the block before, m
+  T window_begin_{0}, lasted_{0};  ///< of the window, and duration of the window before, s
+  T half_time_{0};                 ///< after half of the windows, s
+};
+
+}  // namespace pindrive::detail

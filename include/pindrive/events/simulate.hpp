@@ -1,0 +1,15 @@
+/// One motion of a pin.
+#pragma once
+
+#include "pindrive/events/simulation.hpp"
+#include "pindrive/model/model.hpp"
+
+namespace pindrive {
+
+/// Follows one pin and hands each segment to the sink, in order of time; a sink may return false to stop.
+template <class T, class Sink>
+Outcome<T> simulate(const Drive<T>& drive, const Inputs<T>& inputs, Sink&& sink) {
+  return detail::Simulation<T>(drive, inputs).run(sink);
+}
+
+}  // namespace pindrive

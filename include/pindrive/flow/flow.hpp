@@ -1,0 +1,327 @@
+/// The closed form of one mode: between two events the pin is a damped sinusoid plus a line.
+///
+/// Every mode obeys  m x'' + c x' + κ x = f + g τ  with constant coefficients, so
+///
+///     x(τ) = x₀ + y (Φ(τ) − 1) + y' Ψ(τ) + p τ,
+///
+/// where y and y' are value and slope of the free oscillation at τ = 0, p is the slope of the line,
+/// and Φ, Ψ are the responses of the free oscillator to a unit displacement and a unit velocity.
+/// Each derivative of x has the same form. Written as a change from the start, a quantity that is
+/// set exactly at an event (a velocity at that of a surface) stays exact there.
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "pindrive/numbers/functions.hpp"
+
+namespace pindrive {
+
+/// How the free oscillator has moved on after a time τ.
+template <class T>
+struct Propagator {
+  T decline;  ///< Φ(τ) − 1: change of a unit displacement; dimensionless
+  T gain;     ///< Ψ(τ): displacement grown from a unit velocity, s
+  T tau;      ///< s
+
+  /// Of what does not oscillate.
+  static Propagator still(T tau) { return {T(0), T(0), tau}; }
+};
+
+/// Zeros of a free oscillation at τ > 0: first, first + spacing, …; infinity where there is none.
+template <class T>
+struct Zeros {
+  T first;
+  T spacing;
+
+  T at(T index) const { return index == 0 ? first : first + index * spacing; }
+};
+
+/// The free oscillator  y'' = 2α y' − ω₀² y  of a mode, in every damping regime.
+template <class T>
+class Oscillator {
+ public:
+  /// y'' = −y
+  Oscillator() = default;
+
+  /// m x'' + c x' + κ x; mass and stiffness > 0, damping of either sign.
+  Oscillator(T mass, T damping, T stiffness)
+      : alpha_(-damping / (2 * mass)), omega0_squared_(stiffness / mass) {
+    using std::abs;
+    using std::sqrt;
+    const T omega0 = sqrt(omega0_squared_);
+    discriminant_ = (omega0 - abs(alpha_)) * (omega0 + abs(alpha_));
+    omega_ = sqrt(abs(discriminant_));
+  }
+
+  T alpha() const { return alpha_; }                    ///< α = −c/2m, 1/s
+  T omega0_squared() const { return omega0_squared_; }  ///< ω₀² = κ/m, 1/s²
+  T omega() const { return omega_; }                    ///< |ω₀² − α²|^½, rad/s
+  bool oscillates() const { return discriminant_ > 0; }
+  /// No part of the motion changes at more than twice the root of this rate, 1/s².
+  T hurry_squared() const { return omega0_squared_ + alpha_ * alpha_; }
+  T period() const { return 2 * half_period(); }
+  T half_period() const { return oscillates() ? pi / omega_ : std::numeric_limits<T>::infinity(); }
+
+  /// The modulus of its fastest rate, 1/s.
+  T fastest_rate() const {
+    using std::abs;
+    using std::sqrt;
+    return oscillates() ? sqrt(omega0_squared_) : abs(alpha_) + omega_;
+  }
+  /// The rate at which the slowest part of the motion grows (> 0) or decays (< 0), 1/s.
+  T slowest_rate() const { return oscillates() ? alpha_ : alpha_ < 0 ? gentle() : alpha_ + omega_; }
+
+  /// How long it is in the range of doubles: until what is slowest has decayed to e^−700 of its start,
+  /// or has grown by e^700. Beyond, no zero is looked for.
+  T lasts_for() const {
+    using std::abs;
+    return extinct / abs(slowest_rate());
+  }
+
+  /// How long a start of rounded numbers serves: where two growing waves draw apart, so does what
+  /// rounding put into the faster one, by e⁶ in this time.
+  T serves_for() const {
+    return alpha_ > 0 && discriminant_ < 0 ? 3 / omega_ : std::numeric_limits<T>::infinity();
+  }
+
+  /// The second derivative of a free oscillation from its value and slope.
+  T bend(T value, T slope) const { return 2 * alpha_ * slope - omega0_squared_ * value; }
+
+  /// Φ(τ) − 1 and Ψ(τ) for finite τ ≥ 0.
+  Propagator<T> after(T tau) const {
+    using detail::expm1;
+    using detail::sine_and_cosine_of;
+    using std::abs;
+    if (tau == 0) return {T(0), tau, tau};
+    if (hurry_squared() * tau * tau < early * early) return soon_after(tau);
+    const T z = discriminant_ * tau * tau;
+    if (abs(z) < series_reach && alpha_ * alpha_ < 2 * omega0_squared_)
+      return damped(tau, cosine_series(z), tau * sine_series(z));
+    if (oscillates()) {
+      const auto [sine, cosine] = sine_and_cosine_of(omega_ * tau);
+      return damped(tau, cosine - 1, sine / omega_);
+    }
+    const T rate = gentle(), apart = to_other_root();
+    const auto [decay, decay_change] = detail::exponential_and_change(rate * tau);
+    const T gain = decay * expm1(apart * tau) / apart;
+    return {decay_change - rate * gain, gain, tau};
+  }
+
+  /// The same for half a period: where a velocity has come from zero to zero again.
+  Propagator<T> half_turn() const {
+    using detail::exp;
+    return {-1 - exp(alpha_ * half_period()), T(0), half_period()};
+  }
+
+  /// How far from zero a free oscillation turns whose rate has this value and slope at τ = 0: so far,
+  /// times e^(ατ), whenever that rate vanishes.
+  T reach(T rate, T rate_slope) const {
+    using detail::hypot;
+    return hypot(omega_ * rate, rate_slope - alpha_ * rate) / omega0_squared_;
+  }
+
+  /// Where a free oscillation of this value and slope at τ = 0 vanishes while it lasts.
+  Zeros<T> zeros(T value, T slope) const {
+    using detail::atan2;
+    constexpr T never = std::numeric_limits<T>::infinity();
+    const auto lasting = [&](T tau) { return tau <= lasts_for() ? tau : never; };
+    if (!oscillates()) return {lasting(only_zero(value, slope)), never};
+    // The phase in (0, π], by one formula for an oscillation and its mirror image.
+    const T cosine = slope - alpha_ * value;
+    const int mirror = cosine < 0 ? -1 : 1;
+    T angle = value == 0 ? T(0) : atan2(-mirror * value * omega_, mirror * cosine);
+    if (angle <= 0) angle += pi;
+    return {lasting(angle / omega_), lasting(pi / omega_)};
+  }
+
+ private:
+  static constexpr T pi = T(3.141592653589793238462643383279502884L);
+  static constexpr T series_reach = T(0.1);
+  static constexpr T early = T(0.2);
+  static constexpr T extinct = T(700);  ///< e^−700 is about the smallest double
+
+  /// The power series of Ψ and of Φ − 1 = −ω₀² ∫Ψ: their first moments without cancellation.
+  Propagator<T> soon_after(T tau) const {
+    const T damp = 2 * alpha_ * tau, pull = omega0_squared_ * tau * tau;
+    T before{0}, term = tau;
+    T gain = tau, integral = tau * tau / 2;
+    for (int n = 2; n <= 14; ++n) {
+      const T next = (damp * T(n - 1) * term - pull * before) / T(n * (n - 1));
+      before = term;
+      term = next;
+      gain += term;
+      integral += term * tau / T(n + 1);
+    }
+    return {-omega0_squared_ * integral, gain, tau};
+  }
+
+  /// cos √z − 1 and sin √z / √z as entire functions of z: one expression through ω² = 0.
+  static T cosine_series(T z) {
+    return -z / 2 *
+           (1 -
+            z / 12 * (1 - z / 30 * (1 - z / 56 * (1 - z / 90 * (1 - z / 132 * (1 - z / 182))))));
+  }
+  static T sine_series(T z) {
+    return 1 - z / 6 *
+                   (1 - z / 20 *
+                            (1 - z / 42 *
+                                     (1 - z / 72 * (1 - z / 110 * (1 - z / 156 * (1 - z / 210))))));
+  }
+
+  /// Where two real waves cancel. A wave whose part is rounding is absent, and one alone has no zero.
+  T only_zero(T value, T slope) const {
+    using detail::log1p;
+    using std::abs;
+    constexpr T never = std::numeric_limits<T>::infinity();
+    constexpr T rounding = 4 * std::numeric_limits<T>::epsilon();
+    const T steady = gentle() * value, apart = to_other_root(), other = steady + apart * value;
+    const auto cancels = [&](T wave) {
+      return abs(wave - slope) <= rounding * (abs(wave) + abs(slope));
+    };
+    if (cancels(steady) || cancels(other)) return never;
+    const T ratio = value / (steady - slope);
+    if (!(ratio > 0) || apart * ratio <= -1) return never;
+    return omega_ > 0 ? log1p(apart * ratio) / apart : ratio;
+  }
+
+  /// The gentle one of two real rates: from the other, which needs no subtraction, and ω₀².
+  T gentle() const { return omega0_squared_ / (alpha_ < 0 ? alpha_ - omega_ : alpha_ + omega_); }
+  /// From it to the other: −2ω in a decay, 2ω in a growth.
+  T to_other_root() const { return alpha_ < 0 ? -2 * omega_ : 2 * omega_; }
+
+  Propagator<T> damped(T tau, T cosine_change, T sine) const {
+    const auto [decay, decay_change] = detail::exponential_and_change(alpha_ * tau);
+    const T gain = decay * sine;
+    return {decay_change + decay * cosine_change - alpha_ * gain, gain, tau};
+  }
+
+  T alpha_{0}, omega0_squared_{1}, discriminant_{1}, omega_{1};
+};
+
+/// One quantity along a mode: start + value·(Φ − 1) + slope·Ψ + drift·τ + curvature·τ²/2.
+template <class T>
+struct Path {
+  T start;         ///< its value at τ = 0
+  T value;         ///< the oscillating part's value at τ = 0
+  T slope;         ///< the oscillating part's derivative at τ = 0
+  T drift{0};      ///< slope of the line
+  T curvature{0};  ///< of a pin that is carried by an accelerating plate
+
+  /// What it has changed by since τ = 0.
+  T change(const Propagator<T>& moved) const {
+    const T tau = moved.tau;
+    return value * moved.decline + slope * moved.gain + (drift + curvature * tau / 2) * tau;
+  }
+  T change(const Oscillator<T>& oscillator, T tau) const {
+    return change(oscillates() ? oscillator.after(tau) : Propagator<T>::still(tau));
+  }
+  T at(const Propagator<T>& moved) const { return start + change(moved); }
+  T at(const Oscillator<T>& oscillator, T tau) const { return start + change(oscillator, tau); }
+
+  Path derivative(const Oscillator<T>& oscillator) const {
+    return {slope + drift, slope, oscillator.bend(value, slope), curvature, T(0)};
+  }
+  struct Rates {
+    T first, second, third;
+  };
+  /// Its first three derivatives there.
+  Rates rates(const Oscillator<T>& oscillator, const Propagator<T>& moved) const {
+    const T wave = value + value * moved.decline + slope * moved.gain;
+    const T rate = slope + slope * moved.decline + oscillator.bend(value, slope) * moved.gain;
+    const T bend = oscillator.bend(wave, rate);
+    return {rate + drift + curvature * moved.tau, bend + curvature, oscillator.bend(rate, bend)};
+  }
+  /// The same path with its time counted from τ on.
+  Path from(const Oscillator<T>& oscillator, T tau) const {
+    const Propagator<T> moved = oscillator.after(tau);
+    const T wave = value + value * moved.decline + slope * moved.gain;
+    const T bend = oscillator.bend(value, slope);
+    return {at(moved), wave, slope + slope * moved.decline + bend * moved.gain,
+            drift + curvature * tau, curvature};
+  }
+  bool oscillates() const { return value != 0 || slope != 0; }
+  bool straight() const { return drift == 0 && curvature == 0; }
+  bool constant() const { return straight() && !oscillates(); }
+
+  /// Where a straight path oscillates about and, if it decays, ends.
+  T centre() const { return start - value; }
+
+  friend Path operator+(const Path& p, const Path& q) {
+    return {p.start + q.start, p.value + q.value, p.slope + q.slope, p.drift + q.drift,
+            p.curvature + q.curvature};
+  }
+  friend Path operator*(T factor, const Path& p) {
+    return {factor * p.start, factor * p.value, factor * p.slope, factor * p.drift,
+            factor * p.curvature};
+  }
+};
+
+/// A quantity that changes at a constant rate.
+template <class T>
+struct Line {
+  T value{0}, rate{0};
+
+  T at(T tau) const { return value + rate * tau; }
+  operator Path<T>() const { return {value, T(0), T(0), rate, T(0)}; }
+};
+
+/// Position and velocity in one mode as functions of the time τ since it began.
+template <class T>
+struct Flow {
+  Oscillator<T> oscillator;
+  Path<T> position, velocity;
+
+  /// Free to move from x, v, at y from a rest that drifts; the acceleration at τ = 0 is given, so
+  /// that a start which is exactly tangential can say so.
+  static Flow free(const Oscillator<T>& oscillator, T x, T v, T acceleration, T y, T drift) {
+    const T y_rate = v - drift;
+    return {oscillator, {x, y, y_rate, drift}, {v, y_rate, acceleration}};
+  }
+  /// Stuck to a surface that moves with the given velocity.
+  static Flow stuck(T x, Line<T> velocity) {
+    return {{}, {x, T(0), T(0), velocity.value, velocity.rate}, velocity};
+  }
+
+  Path<T> acceleration() const { return velocity.derivative(oscillator); }
+
+  /// How the oscillation has moved on after τ; a stuck pin does not oscillate.
+  Propagator<T> after(T tau) const {
+    return velocity.oscillates() ? oscillator.after(tau) : Propagator<T>::still(tau);
+  }
+
+  /// Half the width of the oscillation about its centre if it were undamped from now on, m.
+  T amplitude() const {
+    using detail::hypot;
+    const T y = position.value;
+    return hypot(y, (position.slope - oscillator.alpha() * y) / oscillator.omega());
+  }
+};
+
+namespace detail {
+/// Whether a number is zero, whatever it is differentiated along.
+template <class T>
+bool vanishes(T number) {
+  return number == 0;
+}
+}  // namespace detail
+
+/// A force on the pin in one mode: constant − drag x' − stiffness (x − x₀), N.
+template <class T>
+struct Force {
+  Line<T> constant{};
+  T drag{0}, stiffness{0};
+  T rounding{0};  ///< how well the drag is known, N s/m
+
+  Path<T> along(const Flow<T>& flow) const {
+    using detail::vanishes;
+    Path<T> path = constant;
+    if (!vanishes(drag)) path = path + (-drag) * flow.velocity;
+    Path<T> moved = flow.position;
+    moved.start = T(0);
+    if (!vanishes(stiffness)) path = path + (-stiffness) * moved;
+    return path;
+  }
+};
+
+}  // namespace pindrive

@@ -1,0 +1,358 @@
+/// Every root of a damped sinusoid plus a line, in order and with certainty: by isolation.
+///
+/// A guard  G(τ) = oscillation + constant + D τ  is monotone between the zeros of G', G' is monotone
+/// between the zeros of G'', and the zeros of G'' are known in closed form. So each root lies alone
+/// in a bracket whose ends differ in sign; nothing is sampled and nothing can be stepped over.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "pindrive/flow/flow.hpp"
+#include "pindrive/numbers/dual.hpp"
+
+namespace pindrive {
+
+/// How a root depends on what the path depends on; of plain numbers there is nothing to say.
+template <class T>
+struct Rooted {
+  static T at(const Oscillator<T>&, const Path<T>&, T root) { return root; }
+};
+
+/// A root moves so that its path stays at zero, however it was found: dτ = −dG / G'.
+template <class T>
+struct Rooted<Dual<T>> {
+  static Dual<T> at(const Oscillator<Dual<T>>& oscillator, const Path<Dual<T>>& path,
+                    Dual<T> root) {
+    if (!isfinite(root)) return root;
+    const Dual<T> tau = root.value;
+    const T slope = path.derivative(oscillator).at(oscillator, tau).value;
+    return {root.value, -path.at(oscillator, tau).slope / slope};
+  }
+};
+
+/// The one root in a bracket where the path is monotone, of sign `side` at `low`, not at `high`, by
+/// Newton's iteration and, where it is near, Householder's: beside the value of a damped sinusoid
+/// its derivatives cost next to nothing. Such a step leaves of an error its fourth power.
+template <class T>
+T root_between(const Oscillator<T>& oscillator, const Path<T>& path, T low, T high, int side,
+               T guess) {
+  using std::abs;
+  using std::sqrt;
+  constexpr T rounding = 2 * std::numeric_limits<T>::epsilon();
+  T tau = guess > low && guess < high ? guess : low + (high - low) / 2;
+  T step = high - low, step_before = step;
+  for (;;) {
+    const Propagator<T> moved = oscillator.after(tau);
+    const T value = path.at(moved);
+    (side * value > 0 ? low : high) = tau;
+    const auto rates = path.rates(oscillator, moved);
+    const T newton = value / rates.first;
+    const T bend = newton * rates.second / (2 * rates.first);
+    const T twist = newton * newton * rates.third / (6 * rates.first);
+    const bool near = abs(bend) < T(0.25) && abs(twist) < T(0.25);
+    T next = tau - (near ? newton * (1 - bend) / (1 - 2 * bend + twist) : newton);
+    if (abs(newton) <= rounding * tau) return next;
+    if (near && next > low && next < high) {
+      // What such a step leaves is of third order in how far the path is from straight.
+      const T curved =
+          std::max({bend * bend, abs(twist), oscillator.hurry_squared() * newton * newton});
+      if (8 * curved * sqrt(curved) * abs(newton) <= rounding * tau) return next;
+    }
+    // Steps that do not shrink creep through rounding: halving the bracket comes to an end.
+    const bool creeps = 2 * abs(next - tau) > step_before;
+    if (creeps || !(next > low && next < high)) next = low + (high - low) / 2;
+    if (next <= low || next >= high) return next;
+    step_before = step;
+    step = abs(next - tau);
+    tau = next;
+  }
+}
+template <class T>
+T root_between(const Oscillator<T>& oscillator, const Path<T>& path, T low, T high, int side) {
+  return root_between(oscillator, path, low, high, side, low);
+}
+
+/// The path with the zeros that its side declares made exact, changed as little as that takes: a slope to
+/// the other side was rounded, or the start was and the path turns back within its rounding.
+template <class T>
+Path<T> exact_at_start(const Oscillator<T>& oscillator, Path<T> path, int side) {
+  using std::sqrt;
+  if (!(side * path.start > 0)) path.start = T(0);
+  const T slope = path.slope + path.drift;
+  if (path.start != 0 || side * slope > 0) return path;
+  const T bend = side * oscillator.bend(path.value, path.slope);
+  if (!path.oscillates())
+    path.drift = T(0);
+  else if (bend > -side * slope * sqrt(oscillator.omega0_squared()))
+    path.start = side * slope * slope / bend;  // twice as deep as it dips
+  else
+    path.slope = -path.drift;
+  return path;
+}
+
+/// The path with a centre that is rounding made exact: a wave that dies out towards its zero does not
+/// end on one side of it by chance.
+template <class T>
+Path<T> exact_at_centre(Path<T> path) {
+  using std::abs;
+  constexpr T rounding = 4 * std::numeric_limits<T>::epsilon();
+  if (path.straight() && abs(path.centre()) <= rounding * (abs(path.start) + abs(path.value)))
+    path.value = path.start;
+  return path;
+}
+
+/// The earliest τ > 0 at which start + drift·τ + curvature·τ²/2, on its side before, leaves it.
+template <class T>
+T parabola_root(Path<T> path, int side) {
+  using std::sqrt;
+  constexpr T never = std::numeric_limits<T>::infinity();
+  const T a = side * path.curvature, c = std::max(side * path.start, T(0));
+  const T b = c > 0 || side * path.drift > 0 ? side * path.drift : T(0);
+  const T square = b * b - 2 * a * c;
+  if (a == 0) return b < 0 ? -c / b : never;
+  if (!(square > 0)) return never;  // stays, or touches
+  const T root = b > 0 ? -(b + sqrt(square)) / a : 2 * c / (sqrt(square) - b);
+  return root > 0 ? root : never;
+}
+
+/// The sign changes of a path in (0, horizon], one by one; infinity when there are no more.
+/// Degree 1: an oscillation with a constant; 2: with a line too (the horizon is finite then).
+///
+/// `side` is the sign of the path just after τ = 0, which the mode has chosen: a path that starts
+/// at its zero, or tangentially to it, leaves it to that side, and that zero is no root. Where
+/// rounded numbers contradict the side, they are rounding.
+template <class T, int Degree>
+class Roots {
+ public:
+  Roots(const Oscillator<T>& oscillator, const Path<T>& path, int side, T horizon)
+      : oscillator_(oscillator),
+        path_(exact_at_start(oscillator, path, side)),
+        side_(side),
+        horizon_(horizon),
+        extrema_(oscillator, path_.derivative(oscillator), side_of_slope(), horizon),
+        approaching_(side_of_slope() != side),
+        exhausted_(shrinks() && path_.start == 0 && slope() == 0) {}
+
+  T next() {
+    while (!exhausted_ && left_ < horizon_) {
+      if (!(left_ < extremum_)) extremum_ = extrema_.next();
+      const T right = end_of_bracket();
+      if (!(left_ < right)) break;
+      const T low = left_;
+      const bool turned = right == extremum_;
+      left_ = right;
+      if (recedes()) {
+        approaching_ = turned;
+        continue;
+      }
+      const T value = path_.at(oscillator_, right);
+      using std::isfinite;
+      if (!isfinite(value)) break;  // grown beyond all numbers on its side
+      if (side_ * value < 0) {
+        // From its start to an extremum it is near a parabola with its vertex there.
+        using std::sqrt;
+        const T guess =
+            turned && low == 0 ? right * (1 - sqrt(value / (value - path_.start))) : low;
+        const T root = root_between(oscillator_, path_, low, right, side_, guess);
+        side_ = -side_;
+        approaching_ = turned;
+        return root;
+      }
+      if (!turned) continue;
+      // A decaying oscillation that turned back before zero never comes as far again; a growing
+      // one comes farther by one factor each time.
+      exhausted_ = shrinks();
+      if constexpr (Degree == 1)
+        if (oscillator_.alpha() > 0) left_ = skip_short_swings(value);
+      approaching_ = !approaching_;
+    }
+    return never;
+  }
+
+ private:
+  static constexpr T never = std::numeric_limits<T>::infinity();
+
+  bool shrinks() const { return Degree == 1 && oscillator_.alpha() <= 0; }
+
+  /// Whether it moves away from zero until its next extremum, whose time is a closed form.
+  bool recedes() const { return Degree == 1 && !approaching_; }
+
+  T slope() const { return path_.slope + path_.drift; }
+
+  int side_of_slope() const {
+    if (slope() != 0) return slope() > 0 ? 1 : -1;
+    if (path_.start == 0) return side_;
+    return oscillator_.bend(path_.value, path_.slope) > 0 ? 1 : -1;
+  }
+
+  /// The last extremum of a growing oscillation that still turns back before zero.
+  T skip_short_swings(T value) {
+    using detail::log;
+    using std::abs;
+    using std::floor;
+    const T growth = 2 * oscillator_.alpha() * extrema_.spacing();  // in a period
+    const T short_of = abs(path_.centre() / (value - path_.centre()));
+    if (!(short_of > 1) || !(growth > 0)) return left_;
+    const T periods = floor(log(short_of) / growth) - 1;
+    if (periods < 1) return left_;
+    extremum_ = extrema_.skip(2 * periods);
+    return std::min(extremum_, horizon_);
+  }
+
+  /// The path is monotone up to here: to its next extremum, to the horizon or, where there is
+  /// neither, as far as shows whether it comes to zero. A growing one is followed in strides that
+  /// do not overflow.
+  T end_of_bracket() {
+    const T right = std::min(extremum_, horizon_);
+    if (recedes()) return right < never ? right : left_;
+    const T rate = oscillator_.slowest_rate();
+    if (rate > 0) return right < never || approaching_ ? std::min(right, left_ + 16 / rate) : left_;
+    if (right < never) return right;
+    if (!shrinks() || !(side_ * path_.centre() < 0)) return left_;
+    T step = -1 / rate;
+    while (side_ * path_.at(oscillator_, left_ + step) > 0) step *= 2;
+    return left_ + step;
+  }
+
+  Oscillator<T> oscillator_;
+  Path<T> path_;
+  int side_;
+  T horizon_;
+  Roots<T, Degree - 1> extrema_;
+  T left_{0}, extremum_{0};
+  bool approaching_;
+  bool exhausted_;
+};
+
+/// Degree 0, a pure oscillation: its zeros are known in closed form.
+template <class T>
+class Roots<T, 0> {
+ public:
+  Roots(const Oscillator<T>& oscillator, const Path<T>& path, int side, T horizon)
+      : zeros_(oscillator.zeros(side * path.start > 0 ? path.start : T(0), path.slope)),
+        horizon_(std::min(horizon, oscillator.lasts_for())) {}
+
+  T next() {
+    const T zero = zeros_.at(count_);
+    count_ += 1;
+    return zero <= horizon_ ? zero : std::numeric_limits<T>::infinity();
+  }
+  /// Passes over so many zeros, an even number, from the last one returned to the one returned now.
+  T skip(T zeros) {
+    count_ += zeros - 1;
+    return next();
+  }
+  T spacing() const { return zeros_.spacing; }
+
+ private:
+  Zeros<T> zeros_;
+  T horizon_;
+  T count_{0};
+};
+
+/// How long an oscillation cannot bring a path, whose line is on its side, to zero. A growing one is
+/// given half of the way between them, the line the other half.
+template <class T>
+T out_of_reach(const Oscillator<T>& oscillator, const Path<T>& path, int side) {
+  using detail::hypot;
+  using detail::log1p;
+  constexpr T never = std::numeric_limits<T>::infinity();
+  const T alpha = oscillator.alpha();
+  const T reach = hypot(path.value, (path.slope - alpha * path.value) / oscillator.omega());
+  const T distance = side * path.centre() - reach, approach = -side * path.drift;
+  if (!(distance > 0)) return T(0);
+  if (!(alpha > 0)) return approach > 0 ? distance / approach : never;
+  const T grown = log1p(distance / (2 * reach)) / alpha;
+  return approach > 0 ? std::min(grown, distance / (2 * approach)) : grown;
+}
+
+/// Whether a decaying oscillation about a constant on its side is too small to bring it to zero.
+template <class T>
+bool too_small(const Oscillator<T>& oscillator, const Path<T>& path, int side) {
+  const T sine = path.slope - oscillator.alpha() * path.value;
+  const T cosine = oscillator.omega() * path.value;
+  const T distance = oscillator.omega() * path.centre();
+  return side * distance > 0 && sine * sine + cosine * cosine < distance * distance;
+}
+
+/// Calls visit(τ) at each sign change of a path in (0, horizon], until it returns false.
+template <class T, class Visitor>
+void each_root(const Oscillator<T>& oscillator, const Path<T>& given, int side, T horizon,
+               Visitor&& visit) {
+  const Path<T> path = exact_at_centre(given);
+  const auto all = [&](auto roots) {
+    for (;;) {
+      const T root = roots.next();
+      if (!(root < std::numeric_limits<T>::infinity())) return;
+      if (!visit(Rooted<T>::at(oscillator, given, root))) return;
+    }
+  };
+  if (!path.oscillates()) {
+    const T root = parabola_root(path, side);
+    if (!(root <= horizon) || !visit(root) || path.curvature == 0) return;
+    const T other = -2 * path.drift / path.curvature - root;
+    if (other > root && other <= horizon) visit(other);
+  } else if (path.drift != 0) {
+    all(Roots<T, 2>(oscillator, path, side, horizon));
+  } else if (path.centre() != 0) {
+    all(Roots<T, 1>(oscillator, path, side, horizon));
+  } else {
+    all(Roots<T, 0>(oscillator, path, side, horizon));
+  }
+}
+
+/// The earliest τ in (0, horizon] at which the path leaves its side, else infinity.
+template <class T>
+T first_root(const Oscillator<T>& oscillator, const Path<T>& path, int side, T horizon) {
+  constexpr T never = std::numeric_limits<T>::infinity();
+  const auto earliest = [&](const Path<T>& from_here, T until) {
+    T first = never;
+    each_root(oscillator, from_here, side, until, [&](T root) {
+      first = root;
+      return false;
+    });
+    return first;
+  };
+  if (!oscillator.oscillates() || !path.oscillates()) return earliest(path, horizon);
+  if (path.drift == 0) {
+    const bool never_reaches = oscillator.alpha() <= 0 && too_small(oscillator, path, side);
+    return never_reaches ? never : earliest(path, horizon);
+  }
+  // While the line is out of the oscillation's reach, nothing need be looked at; else a few periods
+  // are, before the reach is measured again.
+  Path<T> rest = path;
+  T passed{0};
+  for (;;) {
+    // Not all of it, so that the path stays clearly on its side.
+    const T idle = out_of_reach(oscillator, rest, side) * T(0.99);
+    if (!(idle < horizon - passed)) return never;
+    T leap = idle;
+    if (!(idle * oscillator.omega() > 8)) {
+      leap = std::min(horizon - passed, 64 / oscillator.omega());
+      const T first = earliest(rest, leap);
+      if (first < never) return passed + first;
+      if (!(passed + leap < horizon)) return never;
+    }
+    rest = rest.from(oscillator, leap);
+    passed += leap;
+  }
+}
+
+/// The sign of a path just after τ = 0; 0 if it stays zero. A second derivative that is the rounding
+/// of its terms is none: then the third decides.
+template <class T>
+int side_after_start(const Oscillator<T>& oscillator, const Path<T>& path) {
+  using std::abs;
+  constexpr T rounding = 4 * std::numeric_limits<T>::epsilon();
+  const auto sign = [](T value) { return value > 0 ? 1 : value < 0 ? -1 : 0; };
+  if (path.start != 0) return sign(path.start);
+  if (path.slope + path.drift != 0) return sign(path.slope + path.drift);
+  const T pulled = oscillator.bend(path.value, T(0)), damped = oscillator.bend(T(0), path.slope);
+  const T bend = pulled + damped + path.curvature;
+  if (abs(bend) > rounding * (abs(pulled) + abs(damped) + abs(path.curvature))) return sign(bend);
+  return sign(oscillator.bend(path.slope, -path.curvature));
+}
+
+}  // namespace pindrive

@@ -1,0 +1,54 @@
+/// How far a plain release has been followed: what one round of the kernel hands to the next.
+#pragma once
+
+#include "pindrive/kernel/kernel_numbers.hpp"
+#include "pindrive/kernel/kernel_settling.hpp"
+
+namespace pindrive::detail {
+inline namespace PINDRIVE_TARGET {
+
+/// Where a release is at the start of a round, its plate moving forward.
+template <class V>
+struct Standing {
+  V position, velocity, time;  ///< m, m/s, s
+  V time_error;                ///< what the rounding of the time leaves out of it, s
+  V released;                  ///< 1 where the plate carried it and let it go, else 0
+
+  explicit Standing(const ForwardRelease<V>& r)
+      : position(r.start), velocity(r.start_velocity), time(0.0), time_error(0.0), released(0.0) {}
+  template <class F>
+  void columns(const F& f) {
+    f(position), f(velocity), f(time), f(time_error), f(released);
+  }
+  static constexpr int column_count = 5;
+};
+
+/// All of it at the start of a round. `Measured`: with its numbers.
+template <class V, bool Measured>
+struct Progress {
+  Standing<V> standing;
+  explicit Progress(const ForwardRelease<V>& r) : standing(r) {}
+  template <class F>
+  void columns(const F& f) {
+    standing.columns(f);
+  }
+  static constexpr int column_count = Standing<V>::column_count;
+};
+template <class V>
+struct Progress<V, true> {
+  Standing<V> standing;
+  TransientNumbers<V> numbers;
+  Settling<V> settling;
+  explicit Progress(const ForwardRelease<V>& r) : standing(r), numbers(r) {}
+  template <class F>
+  void columns(const F& f) {
+    standing.columns(f);
+    numbers.columns(f);
+    settling.columns(f);
+  }
+  static constexpr int column_count =
+      Standing<V>::column_count + TransientNumbers<V>::column_count + Settling<V>::column_count;
+};
+
+}  // namespace PINDRIVE_TARGET
+}  // namespace pindrive::detail

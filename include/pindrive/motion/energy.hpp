@@ -1,0 +1,138 @@
+/// Where the energy of a motion comes from and where it goes.
+///
+/// Each term is integrated on its own, none is what is left over, so that they add up only if the
+/// motion is right.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "pindrive/motion/contact_use.hpp"
+#include "pindrive/motion/motion.hpp"
+#include "pindrive/motion/quadrature.hpp"
+#include "pindrive/numbers/named_number.hpp"
+
+namespace pindrive {
+
+template <class T>
+struct Ledger {
+  T kinetic_start, kinetic_end;  ///< J
+  T spring_start, spring_end;    ///< J
+  T skin_start, skin_end;        ///< in a compliant finger, J
+  T stop_start, stop_end;        ///< in elastic end stops, J
+  T plate_work;                  ///< what the moving plate puts in through friction, across too, J
+  T inertia_work;                ///< what the housing puts in by accelerating, J
+  T force_work;                  ///< what the force from outside puts in, J
+  T damper_dissipated, plate_dissipated, finger_dissipated, stop_dissipated;  ///< J
+  T exchanged;  ///< what the housing puts in or takes back on the way, at most, J
+
+  T residual() const {
+    return (kinetic_end - kinetic_start) + (spring_end - spring_start) + (skin_end - skin_start) +
+           (stop_end - stop_start) - plate_work - inertia_work - force_work + damper_dissipated +
+           plate_dissipated + finger_dissipated + stop_dissipated;
+  }
+  /// The largest energy in the ledger, or on the way: what the residual is measured against.
+  T scale() const {
+    using std::abs;
+    return std::max({kinetic_start, kinetic_end, spring_start, spring_end, skin_start, skin_end,
+                     stop_start, stop_end, abs(plate_work), abs(inertia_work), abs(force_work),
+                     damper_dissipated, plate_dissipated, finger_dissipated, stop_dissipated,
+                     exchanged});
+  }
+};
+
+/// Its terms, by their names in the table of quantities, after "energy.".
+template <class T>
+inline constexpr NamedNumber<T, Ledger<T>> ledger_numbers[] = {
+    {"kinetic_start", [](const Ledger<T>& l) { return l.kinetic_start; }},
+    {"kinetic_end", [](const Ledger<T>& l) { return l.kinetic_end; }},
+    {"spring_start", [](const Ledger<T>& l) { return l.spring_start; }},
+    {"spring_end", [](const Ledger<T>& l) { return l.spring_end; }},
+    {"skin_start", [](const Ledger<T>& l) { return l.skin_start; }},
+    {"skin_end", [](const Ledger<T>& l) { return l.skin_end; }},
+    {"stop_start", [](const Ledger<T>& l) { return l.stop_start; }},
+    {"stop_end", [](const Ledger<T>& l) { return l.stop_end; }},
+    {"plate_work", [](const Ledger<T>& l) { return l.plate_work; }},
+    {"inertia_work", [](const Ledger<T>& l) { return l.inertia_work; }},
+    {"force_work", [](const Ledger<T>& l) { return l.force_work; }},
+    {"damper_dissipated", [](const Ledger<T>& l) { return l.damper_dissipated; }},
+    {"plate_dissipated", [](const Ledger<T>& l) { return l.plate_dissipated; }},
+    {"finger_dissipated", [](const Ledger<T>& l) { return l.finger_dissipated; }},
+    {"stop_dissipated", [](const Ledger<T>& l) { return l.stop_dissipated; }},
+    {"residual", [](const Ledger<T>& l) { return l.residual(); }},
+};
+
+/// What the end stops take in a stretch of a segment over which ∫ v² dτ is known, and at its end, J.
+template <class Trajectory, class T>
+T lost_at_stop(const Motion<T>& motion, const Trajectory& along, const Segment<T>& segment, T from,
+               T to, T v_squared) {
+  const Drive<T>& drive = motion.drive();
+  if (!drive.stops.present()) return T(0);
+  if (drive.stops.rigid()) {
+    const bool meets = stops(segment.event.stop) && to >= segment.end - segment.begin;
+    if (!meets) return T(0);
+    const T v = along.at(along.velocity(), to);
+    return drive.mass * v * v / 2;
+  }
+  if (touches(segment.mode.stop)) return drive.stops.damping * v_squared;
+  const auto energy = [&](T tau) { return motion.stop_energy(along.at(along.position(), tau)); };
+  return segment.mode.stop == StopState::apart ? T(0) : energy(from) - energy(to);
+}
+
+/// The ledger of a motion over [0, duration].
+template <class T, class GoOn = Unattended>
+Ledger<T> energy_ledger(const Motion<T>& motion, T duration, GoOn go_on = {}) {
+  using std::abs;
+  using std::sqrt;
+  const Drive<T>& drive = motion.drive();
+  const bool skin = drive.finger.present() && !drive.finger.rigid();
+  const auto& pushes = motion.inputs().force;
+  const bool pushed = !pushes.constant() || pushes.first() != 0;
+  Ledger<T> ledger{};
+  const auto state = [&](T t, T& kinetic, T& spring, T& in_skin, T& in_stop) {
+    const auto [segment, tau] = motion.locate(t, Side::left);
+    motion.along(*segment, [&, tau = tau](const auto& along) {
+      const T x = along.at(along.position(), tau), v = along.at(along.velocity(), tau);
+      const T stretched = along.at(along.finger_force(), tau);
+      kinetic = drive.mass * v * v / 2;
+      spring = drive.stiffness * x * x / 2;
+      in_stop = motion.stop_energy(x);
+      in_skin = skin ? stretched * stretched / (2 * drive.finger.stiffness) : T(0);
+    });
+  };
+  state(T(0), ledger.kinetic_start, ledger.spring_start, ledger.skin_start, ledger.stop_start);
+  state(duration, ledger.kinetic_end, ledger.spring_end, ledger.skin_end, ledger.stop_end);
+
+  motion.stretches(T(0), duration, [&](const Segment<T>& segment, T from, T to, T times) {
+    motion.along(segment, [&](const auto& along) {
+      const auto over = [&](const auto& p, const auto& q) {
+        return times * along.product_integral(p, q, from, to);
+      };
+      const T inertia = drive.mass * segment.plate_velocity.rate;
+      const T v_squared = over(along.velocity(), along.velocity());
+      const T plate_work = over(along.plate_force(), along.line(segment.plate_velocity));
+      ledger.damper_dissipated += drive.damping * v_squared;
+      ledger.plate_work += plate_work;
+      ledger.inertia_work += over(along.line({inertia, T(0)}), along.velocity());
+      T largest = abs(inertia);
+      if (pushed) {
+        const Line<T> push = pushes.from(segment.begin);
+        ledger.force_work += over(along.line(push), along.velocity());
+        largest += std::max(abs(push.at(from)), abs(push.at(to)));
+      }
+      ledger.stop_dissipated +=
+          times * lost_at_stop(motion, along, segment, from, to, v_squared / times);
+      // What goes in and comes out again within a segment leaves its rounding in their sum: by Schwarz's
+      // inequality no part of it is larger.
+      ledger.exchanged += abs(plate_work) + largest * sqrt((to - from) * times * v_squared);
+    });
+    return go_on();
+  });
+  const ContactsUse<T> used = ContactMeasurement<T, GoOn>(motion, go_on).measure(T(0), duration);
+  ledger.plate_work += used.across_dissipated;
+  ledger.plate_dissipated = used.plate.dissipated;
+  ledger.finger_dissipated = used.finger.dissipated;
+  return ledger;
+}
+
+}  // namespace pindrive

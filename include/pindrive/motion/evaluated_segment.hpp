@@ -1,0 +1,180 @@
+/// A segment of a motion evaluated from its trajectory and the inputs as they were given: the pin at an
+/// instant, the forces on it that the law of friction does not give, and how well each is known.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+#include <utility>
+
+#include "pindrive/model/limits.hpp"
+#include "pindrive/motion/motion.hpp"
+#include "pindrive/numbers/functions.hpp"
+
+namespace pindrive::detail {
+
+/// The largest displacement, velocity and force of a motion; of forces also where elastic stops are, which
+/// may be stiffer by far.
+template <class T>
+struct Scales {
+  T x{0}, v{0}, force{0}, stop{0};
+};
+
+/// The pin at an instant, τ after its segment begins.
+template <class T>
+struct PinState {
+  T tau, x, v, a, plate_force, finger_force, finger_rate;
+};
+
+/// Kinetic friction under a load of 1 at a sliding speed, from the rows of a contact's curve, N.
+template <class T>
+T kinetic_friction(const Contact<T>& contact, T speed) {
+  T force = contact.kinetic;
+  for (int i = 0; i < contact.branches; ++i)
+    if (speed >= contact.curve[i].from)
+      force = contact.curve[i].force + contact.curve[i].slope * (speed - contact.curve[i].from);
+  return force;
+}
+
+/// What the force of skin is unsure by, N: it changes within the rounding of the time, as its load does.
+template <class T>
+T skin_unsure(const Drive<T>& drive, const Line<T>& load, T time, const PinState<T>& s) {
+  using std::abs;
+  return !drive.finger.rigid() && load.rate != 0 ? rounding<T> * time * abs(s.finger_rate) : T(0);
+}
+
+template <class T, class Trajectory>
+class EvaluatedSegment {
+ public:
+  using Quantity = std::decay_t<decltype(std::declval<Trajectory>().position())>;
+  struct State : PinState<T> {
+    typename Trajectory::Moment moment;
+  };
+
+  const Drive<T>& drive;
+  const Scales<T>& scales;
+  const Segment<T>& segment;
+  const Trajectory& along;
+  const Line<T> plate_velocity, load, finger_load, force, across;
+  const T span;  ///< s, until the segment or what is looked at ends
+  const Quantity x_rate, acceleration, finger_rate;
+
+  EvaluatedSegment(const Drive<T>& of, const Scales<T>& largest, const Inputs<T>& inputs,
+                   T duration, const Segment<T>& part, const Trajectory& trajectory)
+      : drive(of),
+        scales(largest),
+        segment(part),
+        along(trajectory),
+        plate_velocity(inputs.mouse_velocity.from(part.begin)),
+        load(inputs.plate_load.from(part.begin)),
+        finger_load(inputs.finger_load.from(part.begin)),
+        force(inputs.force.from(part.begin)),
+        across(InputLines<T>::across_from(inputs, part.begin, plate_velocity, held(of, part.mode))),
+        span(std::min(part.end, std::max(duration, part.begin)) - part.begin),
+        x_rate(along.derivative(along.position())),
+        acceleration(along.acceleration()),
+        finger_rate(along.derivative(along.finger_force())) {}
+
+  const Mode& mode() const { return segment.mode; }
+  bool oblique() const { return mode().plate == ContactState::slip_oblique; }
+
+  State at(T tau) const {
+    const auto now = along.moment(tau);
+    return {{tau, along.at(along.position(), now), along.at(along.velocity(), now),
+             along.at(acceleration, now), along.at(along.plate_force(), now),
+             along.at(along.finger_force(), now), along.at(finger_rate, now)},
+            now};
+  }
+
+  /// The force of an elastic stop on the pin, or of a rigid one that keeps it in equilibrium, N.
+  T stop_force(const PinState<T>& s) const {
+    if (!touches(mode().stop)) return T(0);
+    const Stops<T>& stops = drive.stops;
+    if (!stops.rigid())
+      return stops.stiffness * (side(mode().stop) * stops.travel - s.x) - stops.damping * s.v;
+    return drive.stiffness * s.x - drive.mass * plate_velocity.rate - s.plate_force -
+           s.finger_force - force.at(s.tau);
+  }
+
+  /// The sliding velocity on the finger, m/s.
+  T on_finger(const State& s) const {
+    if (!drive.finger.compliant()) return s.v;
+    return s.v + along.at(finger_rate, s.moment) / drive.finger.stiffness;
+  }
+
+  /// How far a force and a sliding velocity are from the law of a plate that slides across too, N: by the
+  /// force at that velocity or, where that turns steeply, by how far the velocity is from those with the
+  /// direction of the force, as a part of the largest.
+  T oblique_error(const PinState<T>& s) const {
+    using std::abs;
+    using std::sqrt;
+    const T u = s.v - plate_velocity.at(s.tau), w = across.at(s.tau), speed = hypot(u, w);
+    const T strength = load.at(s.tau) * kinetic_friction(drive.plate, speed);
+    if (!(strength > 0)) return s.plate_force;
+    const T part = -s.plate_force / strength, axial = std::clamp(part, T(-1), T(1));
+    const T beside = abs(u * sqrt((1 - axial) * (1 + axial)) - abs(w) * axial);
+    const T too_large = strength * abs(part - axial);
+    // Without a scale nothing moves, and nothing pulls.
+    const T by_velocity = (scales.v > 0 ? beside / scales.v * scales.force : beside) + too_large;
+    return speed > 0 ? std::min(by_velocity, abs(s.plate_force + strength * u / speed))
+                     : by_velocity;
+  }
+
+  /// What the forces are unsure by, N.
+  T unsure(const PinState<T>& s) const {
+    const T time = segment.begin + s.tau;
+    const T of_skin = slips(mode().finger) ? skin_unsure(drive, finger_load, time, s) : T(0);
+    return of_skin + turning_unsure(s, time);
+  }
+  /// What skin carries at most where it is not followed, as its load comes from zero or to it: what this does to the
+  /// momentum is within the rounding of the time, N.
+  T lifted_unsure() const {
+    if (!drive.finger.compliant() || finger_load.rate == 0 || !(span > 0)) return T(0);
+    return 256 * rounding<T> * scales.force * (segment.begin + span) / span;
+  }
+  /// What the speed of a slider under a load that changes is unsure by, m/s: by the rounding of the time, in which it
+  /// changes, and by that of the force, of whose change it is known.
+  const T slider_unsure = unsure_slider();
+
+ private:
+  /// Of that, what a plate that slides across too brings: its force turns with the velocity, which is known to
+  /// its rounding and to that of the time.
+  T turning_unsure(const PinState<T>& s, T time) const {
+    using std::abs;
+    if (!oblique()) return T(0);
+    const T u = s.v - plate_velocity.at(s.tau), w = across.at(s.tau);
+    const T speed = hypot(u, w);
+    const T pressed = std::max(load.at(s.tau), T(0));  // less by rounding where it ends
+    const T strength = pressed * kinetic_friction(drive.plate, speed);
+    const T moves = scales.v + time * (abs(s.a) + abs(plate_velocity.rate));
+    if (!(speed > 0)) return T(0);
+    const T turns = w / speed;
+    return 4 * rounding<T> * moves * strength * turns * turns / speed;
+  }
+
+  T unsure_slider() const {
+    using std::abs;
+    if (!drive.finger.compliant() || finger_load.rate == 0) return T(0);
+    const auto bend = along.derivative(finger_rate);
+    T most{0}, terms{0};  // of its rate, and of the force, whose parts may cancel
+    for (const T tau : {T(0), span}) {
+      const auto now = along.moment(tau);
+      const T faster = along.at(acceleration, now) + along.at(bend, now) / drive.finger.stiffness;
+      most = std::max(most, abs(faster));
+      terms = std::max(terms, abs(along.at(along.finger_force(), now)) +
+                                  2 * finger_load.at(tau) * finger_at_rest());
+    }
+    const T rate = span > 0 ? terms / (drive.finger.stiffness * span) : T(0);
+    return rounding<T> * (most * (segment.begin + span) + rate);
+  }
+  /// How large the friction of the finger's branch is, continued to no speed, N.
+  T finger_at_rest() const {
+    using std::abs;
+    if (!slips(mode().finger)) return T(0);
+    const int last = std::max(drive.finger.branches - 1, 0);
+    const Branch<T> branch = drive.finger.branch(std::clamp(mode().finger_branch, 0, last));
+    return abs(branch.force - branch.slope * branch.from);
+  }
+};
+
+}  // namespace pindrive::detail

@@ -1,0 +1,116 @@
+/// What is known of a pin at an instant from its state, its inputs and the mode that holds: the equation of
+/// motion itself, without its solution over time. On dual numbers, the derivatives there.
+#pragma once
+
+#include <cmath>
+
+#include "pindrive/law/oblique.hpp"
+#include "pindrive/law/state.hpp"
+#include "pindrive/model/model.hpp"
+#include "pindrive/motion/motion.hpp"
+#include "pindrive/series/series_mode.hpp"
+
+namespace pindrive {
+
+/// The pin at an instant of a mode. `state` is read for its position and velocity and, of a compliant finger, for
+/// what the mode has as its state: the force in skin that sticks, the velocity of a slider that lags.
+template <class T>
+class Instant {
+ public:
+  Instant(const Drive<T>& drive, const Mode& mode, const InputLines<T>& inputs,
+          const detail::State<T>& state) {
+    const SeriesMode<T> series(drive, mode, inputs);
+    const SeriesEquation<T> e = series.equation();
+    const bool lags = series.lags(), at_stop = held_by_stop(drive, mode);
+    position_ = at_stop ? side(mode.stop) * drive.stops.travel : drive.stops.within(state.x);
+    const Line<T> surface = at_stop ? Line<T>{} : e.surface;
+    velocity_ = e.held ? surface.value : state.v;
+    const T skin = e.skin_factor.value * (lags ? state.slide : state.skin);
+    const T pull = e.force.value - e.damping * velocity_ - e.stiffness * position_ - skin;
+    const T plate = slips(mode.plate) ? plate_slip(e, pull) : T(0);
+    acceleration_ = e.held ? surface.rate : (pull + plate) / e.mass;
+    const T carried = e.mass * acceleration_ - pull - plate;  // by what holds the pin
+    const bool plate_holds = mode.plate == ContactState::stick && !at_stop;
+    const bool finger_holds = mode.finger == ContactState::stick && !at_stop;
+    friction_.plate = plate_holds ? carried : plate;
+    if (finger_holds && !plate_holds) friction_.finger = carried;
+    if (finger_holds && plate_holds) {  // they share as in friction_along()
+      const T at_plate = drive.plate.static_limit * inputs.plate_load.value;
+      const T at_finger = drive.finger.static_limit * inputs.finger_load.value;
+      const T part = at_plate > 0 ? at_plate / (at_plate + at_finger) : T(0);
+      friction_ = {part * carried, (1 - part) * carried};
+    }
+    if (mode.finger == ContactState::elastic_stick) {
+      friction_.finger = -state.skin;
+      stretch_rate_ = velocity_;
+    } else if (slips(mode.finger)) {
+      const Branch<T> branch = drive.finger.branch(mode.finger_branch);
+      const T speed = lags ? state.slide : velocity_;
+      const T at_load_1 =
+          along(mode.finger, branch.force - branch.slope * branch.from) + branch.slope * speed;
+      friction_.finger = -at_load_1 * inputs.finger_load.value;
+      if (lags)
+        stretch_rate_ = velocity_ - state.slide;
+      else
+        stretch_rate_ = at_load_1 * inputs.finger_load.rate / drive.finger.stiffness;
+    }
+    stretch_ = -friction_.finger / drive.finger.stiffness;
+  }
+
+  T position() const { return position_; }          ///< m
+  T velocity() const { return velocity_; }          ///< m/s
+  T acceleration() const { return acceleration_; }  ///< m/s²
+  const Friction<T>& friction() const { return friction_; }
+  T stretch() const { return stretch_; }            ///< of skin, m; 0 without
+  T stretch_rate() const { return stretch_rate_; }  ///< m/s
+
+ private:
+  /// The friction of the plate as it slips, on a pin that `pull` acts on beside. A pin that has the plate's velocity
+  /// sets out as that begins to slide across.
+  T plate_slip(const SeriesEquation<T>& e, T pull) const {
+    using detail::hypot;
+    const T u = velocity_ - e.plate_velocity.value, w = e.across.value;
+    T along = T(e.side);
+    if (e.side == 0 && u == 0 && w == 0) {
+      const T rest = pull - e.mass * e.plate_velocity.rate;
+      const T p = e.held ? e.surface.rate - e.plate_velocity.rate
+                         : setting_out(e.mass, e.load.value * e.plate_force, e.across.rate, rest);
+      along = p / hypot(p, e.across.rate);
+    } else if (e.side == 0) {
+      along = u / hypot(u, w);
+    }
+    return -e.load.value * (e.plate_force * along + e.plate_slope * u);
+  }
+
+  T position_{}, velocity_{}, acceleration_{}, stretch_{0}, stretch_rate_{0};
+  Friction<T> friction_{T(0), T(0)};
+};
+
+/// The pin at the beginning of the mode that a release at x, v with that stretch of the skin leads to; NaN is as it
+/// slides or, at rest, none. `pin` is the same in plain numbers: a rigid stop may have taken its velocity.
+template <class T, class Plain>
+detail::State<T> released(const Drive<T>& drive, const Mode& mode, const InputLines<T>& inputs, T x,
+                          T v, T stretch, const detail::State<Plain>& pin) {
+  using std::abs;
+  using std::isnan;
+  detail::State<T> state{x, v};
+  if (plain(v) != pin.v) state = {pin.x < 0 ? -drive.stops.travel : drive.stops.travel, T(0)};
+  const Contact<T>& finger = drive.finger;
+  if (finger.rigid()) return state;
+  const T load = inputs.finger_load.value, speed = abs(state.v);
+  if (!isnan(stretch))
+    state.skin = finger.stiffness * stretch;
+  else if (speed != 0)
+    state.skin = (state.v < 0 ? -load : load) * finger.branch(finger.branch_of(speed)).at(speed);
+  if (!SeriesMode<T>(drive, mode, inputs).lags()) return state;
+  const int slid = finger.branch_of(speed);
+  const Branch<T> branch = finger.branch(mode.finger_branch);
+  // Where its curve falls a slider goes on at once to another speed, of the same friction.
+  const T asked = abs(state.skin) / load - branch.force;
+  state.slide = slid == mode.finger_branch && isnan(stretch)
+                    ? state.v
+                    : along(mode.finger, branch.from + asked / branch.slope);
+  return state;
+}
+
+}  // namespace pindrive

@@ -1,0 +1,102 @@
+/// Beginning of a steady motion.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+#include "pindrive/model/limits.hpp"
+#include "pindrive/model/model.hpp"
+#include "pindrive/motion/motion.hpp"
+#include "pindrive/motion/steady_numbers.hpp"
+
+namespace pindrive {
+
+namespace detail {
+
+/// Time of the last row of the inputs, s; 0 without rows. No motion is steady before.
+template <class T>
+T last_row(const Inputs<T>& inputs) {
+  T last{0};
+  for (T row; (row = inputs.next_row(last)) < std::numeric_limits<T>::infinity();) last = row;
+  return last;
+}
+
+/// Beginning of a steady motion: the first event from which the motion agrees with its own periodic
+/// continuation into the past.
+///
+/// Both are compared backwards from event to event, those of the motion and those of the continuation. The
+/// comparison at equal times, not at equal events, also serves phases that vanish as a cycle is approached,
+/// and motions that join within a phase.
+template <class T>
+class FirstRepeat {
+ public:
+  explicit FirstRepeat(const Motion<T>& motion)
+      : motion_(motion),
+        known_(motion.outcome().cycles() ? motion.outcome().cycle_begin
+                                         : std::prev(motion.end())->begin),
+        period_(motion.outcome().period),
+        last_row_(last_row(motion.inputs())) {}
+
+  T find() const {
+    const T tolerance = T(repeat_tolerance) * amplitude();
+    const Segment<T>* own = motion_.locate(known_, Side::right).segment;
+    const Segment<T>*const first = own, *const last = std::prev(motion_.end());
+    const Segment<T>* continued = last;
+    T periods{1};
+    for (T since = known_; since > last_row_;) {
+      const T before = own == motion_.begin() ? T(0) : std::prev(own)->begin;
+      const T before_too =
+          motion_.outcome().cycles() ? continued->begin - periods * period_ : last_row_;
+      const T next = std::max({before, before_too, last_row_});
+      for (const T part : {T(0), T(0.25), T(0.5), T(0.75)})
+        if (next < since && !agrees(next + part * (since - next), tolerance)) return since;
+      since = std::min(since, next);
+      if (before >= next && own != motion_.begin()) --own;
+      if (!(before_too >= next)) continue;
+      if (continued == first) periods += T(1);
+      continued = continued == first ? last : std::prev(continued);
+    }
+    return last_row_;
+  }
+
+ private:
+  /// True if the motion is, at a time, where its continuation is; of an oscillation without events, which begins
+  /// in finite time, also in the same mode.
+  bool agrees(T time, T tolerance) const {
+    using std::abs;
+    using std::floor;
+    const Mode mode = motion_.locate(time, Side::right).segment->mode;
+    if (!motion_.outcome().cycles() && !same_mode(mode, std::prev(motion_.end())->mode))
+      return false;
+    const T one = position(time);
+    const T other = position(time - floor((time - known_) / period_) * period_);
+    return abs(one - other) <= tolerance + rounding<T> * std::max(abs(one), abs(other));
+  }
+  T position(T time) const {
+    const auto place = motion_.locate(time, Side::right);
+    return motion_.value(*place.segment, place.tau, Quantity::position);
+  }
+  /// Of the steady motion, m.
+  T amplitude() const {
+    if (!motion_.outcome().cycles()) return std::prev(motion_.end())->flow.amplitude();
+    return SteadyMeasurement<T>(motion_).range().half();
+  }
+
+  const Motion<T>& motion_;
+  T known_;              ///< time from which the motion is steady in any case, s
+  T period_, last_row_;  ///< s
+};
+
+}  // namespace detail
+
+/// Time from which a motion that ends in a steady one is periodic, to `repeat_tolerance` of its amplitude, s;
+/// NaN of any other motion.
+template <class T>
+T steady_since(const Motion<T>& motion) {
+  return motion.outcome().steady() ? detail::FirstRepeat<T>(motion).find()
+                                   : std::numeric_limits<T>::quiet_NaN();
+}
+
+}  // namespace pindrive

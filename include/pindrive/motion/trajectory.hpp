@@ -1,0 +1,188 @@
+/// The quantities of a segment as functions of the time τ since it began, and what is asked of them: in
+/// closed form, or by the series of a mode that has none, behind one interface.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+#include <utility>
+
+#include "pindrive/flow/roots.hpp"
+#include "pindrive/model/model.hpp"
+#include "pindrive/motion/quadrature.hpp"
+#include "pindrive/series/series_mode.hpp"
+
+namespace pindrive {
+
+/// A quantity of a motion over time.
+enum class Quantity : signed char { position, velocity, acceleration };
+
+/// A quantity along a segment, by its name.
+template <class Trajectory>
+std::decay_t<decltype(std::declval<Trajectory>().position())> quantity_of(const Trajectory& t,
+                                                                          Quantity quantity) {
+  if (quantity == Quantity::position) return t.position();
+  return quantity == Quantity::velocity ? t.velocity() : t.acceleration();
+}
+
+/// A segment in closed form. It refers to the segment.
+template <class T>
+class ClosedForm {
+ public:
+  explicit ClosedForm(const Segment<T>& segment) : segment_(segment) {}
+
+  const Path<T>& position() const { return segment_.flow.position; }
+  const Path<T>& velocity() const { return segment_.flow.velocity; }
+  Path<T> acceleration() const { return segment_.flow.acceleration(); }
+  const Path<T>& plate_force() const { return segment_.plate_force; }
+  const Path<T>& finger_force() const { return segment_.finger_force; }
+  Path<T> line(const Line<T>& line) const { return line; }
+  Path<T> above(Path<T> path, T level) const {
+    path.start -= level;
+    return path;
+  }
+
+  const Oscillator<T>& oscillator() const { return segment_.flow.oscillator; }
+  T start(const Path<T>& path) const { return path.start; }
+  T at(const Path<T>& path, T tau) const { return path.at(segment_.after(tau)); }
+  /// An instant at which several quantities are evaluated.
+  using Moment = Propagator<T>;
+  Moment moment(T tau) const {
+    return waves() && tau > 0 ? oscillator().after(tau) : Moment::still(tau);
+  }
+  T at(const Path<T>& path, const Moment& now) const { return path.at(now); }
+  /// Whether anything oscillates.
+  bool waves() const {
+    return position().oscillates() || velocity().oscillates() || plate_force().oscillates() ||
+           finger_force().oscillates();
+  }
+  T change(const Path<T>& path, T tau) const { return path.change(segment_.after(tau)); }
+  Path<T> derivative(const Path<T>& path) const { return path.derivative(oscillator()); }
+  bool constant(const Path<T>& path) const { return path.constant(); }
+  /// A bound of its terms until τ.
+  T terms(const Path<T>& path, T tau) const {
+    using std::abs;
+    return abs(path.start) + abs(path.value) + abs(path.drift) * tau;
+  }
+  /// Of the rate of the oscillation, 1/s².
+  T hurry_squared() const { return oscillator().hurry_squared(); }
+
+  int side_after_start(const Path<T>& path) const {
+    return pindrive::side_after_start(oscillator(), path);
+  }
+  /// Calls visit(τ) at each sign change in (0, horizon], until it returns false.
+  template <class Visitor>
+  void each_root(const Path<T>& path, int side, T horizon, Visitor&& visit) const {
+    pindrive::each_root(oscillator(), path, side, horizon, visit);
+  }
+  T product_integral(const Path<T>& p, const Path<T>& q, T from, T to) const {
+    return pindrive::product_integral(oscillator(), p, q, from, to);
+  }
+
+ private:
+  const Segment<T>& segment_;
+};
+
+/// A segment that is a step of a series.
+template <class T>
+class BySeries {
+ public:
+  /// Expands it anew from where it begins: nothing but its beginning is stored.
+  BySeries(const Drive<T>& drive, const Segment<T>& segment, const InputLines<T>& lines)
+      : step_(expand(drive, segment, lines)) {
+    const bool at_stop = held_by_stop(drive, segment.mode);
+    const bool held = segment.mode.stuck() && !at_stop;
+    plate_force_ = step_.plate_force;
+    if (segment.mode.plate == ContactState::stick && !at_stop) plate_force_ = step_.stick_force;
+    finger_force_.span = step_.span();
+    if (segment.mode.finger == ContactState::elastic_stick)
+      finger_force_ = T(-1) * step_.skin;
+    else if (held && segment.mode.finger == ContactState::stick && !segment.mode.both_stuck())
+      finger_force_ = step_.stick_force;
+    else if (slips(segment.mode.finger))
+      finger_force_ = of_finger(drive, segment.mode, lines.finger_load);
+  }
+
+  const Polynomial<T>& position() const { return step_.position; }
+  const Polynomial<T>& velocity() const { return step_.velocity; }
+  Polynomial<T> acceleration() const { return step_.velocity.derivative(); }
+  const Polynomial<T>& plate_force() const { return plate_force_; }
+  const Polynomial<T>& finger_force() const { return finger_force_; }
+  const Polynomial<T>& sliding_speed() const { return step_.speed; }  ///< on the plate, across too
+  Polynomial<T> line(const Line<T>& line) const {
+    Polynomial<T> p;
+    p.span = step_.span();
+    return p += line;
+  }
+
+  Polynomial<T> above(Polynomial<T> p, T level) const {
+    p.c[0] -= level;
+    return p;
+  }
+
+  T start(const Polynomial<T>& p) const { return p.c[0]; }
+  T at(const Polynomial<T>& p, T tau) const { return p.at(tau); }
+  struct Moment {
+    T tau;
+  };
+  Moment moment(T tau) const { return {tau}; }
+  T at(const Polynomial<T>& p, const Moment& now) const { return p.at(now.tau); }
+  T change(Polynomial<T> p, T tau) const {
+    p.c[0] = T(0);
+    return p.at(tau);
+  }
+  Polynomial<T> derivative(const Polynomial<T>& p) const { return p.derivative(); }
+  bool constant(const Polynomial<T>& p) const {
+    return std::all_of(p.c.begin() + 1, p.c.end(), [](T c) { return c == 0; });
+  }
+  T terms(const Polynomial<T>& p, T) const { return p.size(); }
+  T hurry_squared() const { return T(1) / (step_.span() * step_.span()); }
+
+  int side_after_start(const Polynomial<T>& p) const {
+    for (const T c : p.c)
+      if (c != 0) return c > 0 ? 1 : -1;
+    return 0;
+  }
+  template <class Visitor>
+  void each_root(const Polynomial<T>& p, int side, T horizon, Visitor&& visit) const {
+    sign_changes(p, side, [&](T tau) { return tau <= horizon && visit(tau); });
+  }
+  T product_integral(const Polynomial<T>& p, const Polynomial<T>& q, T from, T to) const {
+    return gauss<T>([&](T tau) { return p.at(tau) * q.at(tau); }, from, to);
+  }
+
+ private:
+  static SeriesStep<T> expand(const Drive<T>& drive, const Segment<T>& segment,
+                              const InputLines<T>& lines) {
+    const SeriesMode<T> mode(drive, segment.mode, lines);
+    const Path<T>& v = segment.flow.velocity;
+    const Path<T>& of_finger = segment.finger_force;
+    // The slider of a finger that lags is slower than the pin by what the skin stretches.
+    const T skin =
+        mode.lags() ? v.start + of_finger.drift / drive.finger.stiffness : -of_finger.start;
+    const SeriesState<T> start{segment.flow.position.start, v.start, skin, v.drift};
+    const T span = segment.end - segment.begin;
+    const SeriesEquation<T> e = mode.equation();
+    if (segment.without == FastPart::of_slider)
+      if (const SlowSliderFlow<T> slow(e, start, span, true); slow.holds()) return slow;
+    if (segment.without == FastPart::of_friction)
+      for (const bool within_step : {true, false})
+        if (const CreepFlow<T> creep(e, start, span, within_step); creep.holds()) return creep;
+    return SeriesFlow<T>(e, start, span, true);
+  }
+  /// Of a rigid finger, or skin, that slips.
+  Polynomial<T> of_finger(const Drive<T>& drive, const Mode& mode, const Line<T>& load) const {
+    const Branch<T> branch = drive.finger.branch(mode.finger_branch);
+    const bool lags = SeriesMode<T>(drive, mode, {}).lags();
+    Polynomial<T> force = Line<T>{-branch.slope * load.value, -branch.slope * load.rate} *
+                          (lags ? step_.skin : step_.velocity);
+    const T at_rest = -along(mode.finger, branch.force - branch.slope * branch.from);
+    force += Line<T>{at_rest * load.value, at_rest * load.rate};
+    return force;
+  }
+
+  SeriesStep<T> step_;
+  Polynomial<T> plate_force_, finger_force_;
+};
+
+}  // namespace pindrive

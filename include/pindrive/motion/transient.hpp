@@ -1,0 +1,414 @@
+/// The numbers asked of a motion (docs/theory.md, 6), from its segments, exactly; never from samples.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+#include "pindrive/flow/roots.hpp"
+#include "pindrive/motion/contact_use.hpp"
+#include "pindrive/motion/extrema.hpp"
+#include "pindrive/motion/motion.hpp"
+#include "pindrive/motion/settling.hpp"
+#include "pindrive/motion/steady_numbers.hpp"
+#include "pindrive/motion/steady_since.hpp"
+#include "pindrive/numbers/named_number.hpp"
+
+namespace pindrive {
+
+/// Use of one contact after the transient: in each period of a steady motion, and in the mean.
+template <class T>
+struct Afterwards {
+  static constexpr T none = std::numeric_limits<T>::quiet_NaN();
+
+  T reversals{none}, time_stuck{none}, distance_slid{none}, dissipated{none};  ///< in one period
+  T power{none};  ///< mean power of the friction of a steady motion or under a pin at rest, W
+
+  void add(const ContactUse<T>& period, T time) {
+    reversals = period.reversals;
+    time_stuck = period.time_stuck;
+    distance_slid = period.distance_slid;
+    dissipated = period.dissipated;
+    power = period.dissipated / time;
+  }
+};
+
+template <class T>
+struct Transient {
+  static constexpr T none = std::numeric_limits<T>::quiet_NaN();
+
+  T peak_displacement{none}, peak_time{none};  ///< x_m,a at t_a: m, s
+  T trough_displacement{none},
+      trough_time{none};  ///< x_m,c at t_c; t_c infinite if only approached
+  T swing{none};          ///< (17), m
+  T return_velocity{none}, return_velocity_time{none};  ///< v_m,b at t_b: m/s, s
+  T first_reversal_time{none};                          ///< t_1, s
+  T settling_time{none};                                ///< from then on within the band, s
+  T rest_time{none};  ///< from then on at rest, s; infinite if it never comes to rest
+  T last_event_time{
+      none};             ///< of the last change at a contact, s; 0 without any after the release,
+                         ///< infinite where they go on for ever
+  T steady_since{none};  ///< when a steady oscillation began, s
+  T peak_stretch{none}, peak_stretch_rate{none};  ///< largest of a compliant finger's: m, m/s
+  T end_position{none};  ///< x_end: where it rests, or the middle of the final oscillation, m
+  T end_time{none};      ///< t*: end of the transient, s
+  ContactUse<T> plate, finger;  ///< in the transient; peak forces of the whole motion
+
+  SteadyNumbers<T> steady;  ///< of the final oscillation
+  T decay_energy{none};     ///< that a final decay has left to dissipate, J
+  Afterwards<T> plate_afterwards, finger_afterwards;
+};
+
+/// Its numbers, by their names in the table of quantities.
+template <class T>
+inline constexpr NamedNumber<T, Transient<T>> transient_numbers[] = {
+    {"transient.peak_displacement", [](const Transient<T>& t) { return t.peak_displacement; }},
+    {"transient.peak_time", [](const Transient<T>& t) { return t.peak_time; }},
+    {"transient.trough_displacement", [](const Transient<T>& t) { return t.trough_displacement; }},
+    {"transient.trough_time", [](const Transient<T>& t) { return t.trough_time; }},
+    {"transient.swing", [](const Transient<T>& t) { return t.swing; }},
+    {"transient.return_velocity", [](const Transient<T>& t) { return t.return_velocity; }},
+    {"transient.return_velocity_time",
+     [](const Transient<T>& t) { return t.return_velocity_time; }},
+    {"transient.first_reversal_time", [](const Transient<T>& t) { return t.first_reversal_time; }},
+    {"transient.settling_time", [](const Transient<T>& t) { return t.settling_time; }},
+    {"transient.rest_time", [](const Transient<T>& t) { return t.rest_time; }},
+    {"transient.last_event_time", [](const Transient<T>& t) { return t.last_event_time; }},
+    {"transient.peak_stretch", [](const Transient<T>& t) { return t.peak_stretch; }},
+    {"transient.peak_stretch_rate", [](const Transient<T>& t) { return t.peak_stretch_rate; }},
+    {"transient.end_time", [](const Transient<T>& t) { return t.end_time; }},
+    {"transient.plate.reversals", [](const Transient<T>& t) { return t.plate.reversals; }},
+    {"transient.plate.time_stuck", [](const Transient<T>& t) { return t.plate.time_stuck; }},
+    {"transient.plate.distance_slid", [](const Transient<T>& t) { return t.plate.distance_slid; }},
+    {"transient.plate.dissipated", [](const Transient<T>& t) { return t.plate.dissipated; }},
+    {"transient.plate.peak_force", [](const Transient<T>& t) { return t.plate.peak_force; }},
+    {"transient.finger.reversals", [](const Transient<T>& t) { return t.finger.reversals; }},
+    {"transient.finger.time_stuck", [](const Transient<T>& t) { return t.finger.time_stuck; }},
+    {"transient.finger.distance_slid",
+     [](const Transient<T>& t) { return t.finger.distance_slid; }},
+    {"transient.finger.dissipated", [](const Transient<T>& t) { return t.finger.dissipated; }},
+    {"transient.finger.peak_force", [](const Transient<T>& t) { return t.finger.peak_force; }},
+    {"ending.position", [](const Transient<T>& t) { return t.end_position; }},
+    {"ending.steady_since", [](const Transient<T>& t) { return t.steady_since; }},
+    {"ending.amplitude", [](const Transient<T>& t) { return t.steady.amplitude; }},
+    {"ending.period", [](const Transient<T>& t) { return t.steady.period; }},
+    {"ending.least_amplitude", [](const Transient<T>& t) { return t.steady.least_amplitude; }},
+    {"ending.peak_velocity", [](const Transient<T>& t) { return t.steady.peak_velocity; }},
+    {"ending.rounds", [](const Transient<T>& t) { return t.steady.rounds; }},
+    {"ending.decay_energy", [](const Transient<T>& t) { return t.decay_energy; }},
+    {"ending.plate.reversals", [](const Transient<T>& t) { return t.plate_afterwards.reversals; }},
+    {"ending.plate.time_stuck",
+     [](const Transient<T>& t) { return t.plate_afterwards.time_stuck; }},
+    {"ending.plate.distance_slid",
+     [](const Transient<T>& t) { return t.plate_afterwards.distance_slid; }},
+    {"ending.plate.dissipated",
+     [](const Transient<T>& t) { return t.plate_afterwards.dissipated; }},
+    {"ending.plate.power", [](const Transient<T>& t) { return t.plate_afterwards.power; }},
+    {"ending.finger.reversals",
+     [](const Transient<T>& t) { return t.finger_afterwards.reversals; }},
+    {"ending.finger.time_stuck",
+     [](const Transient<T>& t) { return t.finger_afterwards.time_stuck; }},
+    {"ending.finger.distance_slid",
+     [](const Transient<T>& t) { return t.finger_afterwards.distance_slid; }},
+    {"ending.finger.dissipated",
+     [](const Transient<T>& t) { return t.finger_afterwards.dissipated; }},
+    {"ending.finger.power", [](const Transient<T>& t) { return t.finger_afterwards.power; }},
+};
+
+/// Measures a motion, which outlives it, over [0, duration]; what happens later, or never, is NaN.
+template <class T, class GoOn = Unattended>
+class Measurement {
+ public:
+  Measurement(const Motion<T>& motion, T duration, GoOn go_on = {})
+      : motion_(motion), duration_(duration), go_on_(go_on) {}
+
+  Transient<T> transient(T band) const {
+    Transient<T> result;
+    swing(result);
+    first_reversal(result);
+    ending(result);
+    settle(result, band);
+    rest_and_events(result);
+    contacts(result);
+    afterwards(result);
+    return result;
+  }
+
+  /// Earliest time after which |x − x_end| stays within the band, a part of |x(0) − x_end|; for a
+  /// steady oscillation, when that begins.
+  T settling_time(T band) const {
+    Transient<T> result;
+    ending(result);
+    settle(result, band);
+    return result.settling_time;
+  }
+
+  /// Until a motion that decays stays within a thousandth of the size of the oscillation that it
+  /// began with, or until its last event.
+  T decayed() const {
+    using std::abs;
+    using std::sqrt;
+    Transient<T> result;
+    ending(result);
+    const Drive<T>& drive = motion_.drive();
+    const Path<T>& x = motion_.begin()->flow.position;
+    const T speed = motion_.begin()->flow.velocity.start;
+    const T size =
+        abs(x.start - result.end_position) + abs(speed) / sqrt(drive.stiffness / drive.mass);
+    return std::max(settling().last_outside(result.end_position, size / 1000),
+                    std::prev(motion_.end())->begin);
+  }
+
+ private:
+  static constexpr T never = std::numeric_limits<T>::infinity();
+
+  void settle(Transient<T>& result, T band) const {
+    const Outcome<T>& outcome = motion_.outcome();
+    if (outcome.steady())
+      result.settling_time = result.steady_since <= duration_ ? result.steady_since : result.none;
+    else if (outcome.end == End::resting || outcome.end == End::decaying)
+      result.settling_time = settling().within(result.end_position, band);
+  }
+
+  Settling<T, GoOn> settling() const { return {motion_, duration_, go_on_}; }
+
+  T length(const Segment<T>& segment) const {
+    return std::min(segment.end, duration_) - segment.begin;
+  }
+
+  static int sign_of(T value) { return value > 0 ? 1 : value < 0 ? -1 : 0; }
+
+  /// The direction in which the pin moves just after a segment begins; 0 at rest.
+  int heading(const Segment<T>& segment) const {
+    return motion_.along(
+        segment, [](const auto& along) { return along.side_after_start(along.velocity()); });
+  }
+
+  /// Calls visit(time, position) at each turning point in order until it returns false.
+  template <class Visitor>
+  void turning_points(Visitor&& visit) const {
+    int direction = 0;
+    bool more = true;
+    for (const Segment<T>& segment : motion_) {
+      if (segment.begin > duration_ || !go_on_()) return;
+      const int start = heading(segment);
+      if (direction * start < 0 || (direction != 0 && start == 0))
+        if (!visit(segment.begin, segment.flow.position.start)) return;
+      direction = start;
+      if (direction == 0 || !may_turn(segment)) continue;
+      // A velocity of zero that ends the segment belongs to the next one.
+      const Segment<T>* following = &segment + 1;
+      const bool turns_at_end = following != motion_.end() && following->flow.velocity.start == 0;
+      const T inside = turns_at_end ? length(segment) * (1 - T(1e-9)) : length(segment);
+      motion_.along(segment, [&](const auto& along) {
+        along.each_root(along.velocity(), direction, inside, [&](T tau) {
+          direction = -direction;
+          const T x = along.at(along.position(), tau);
+          more = visit(segment.begin + tau, motion_.drive().stops.within(x));
+          return more;
+        });
+      });
+      if (!more) return;
+    }
+  }
+
+  /// Peak, trough, swing and the extreme velocity between them.
+  void swing(Transient<T>& result) const {
+    using std::isnan;
+    const Inputs<T>& inputs = motion_.inputs();
+    int outward = sign_of(inputs.displacement);
+    if (outward == 0) outward = sign_of(inputs.velocity);
+    if (outward == 0) outward = sign_of(inputs.mouse_velocity.from(T(0)).value);
+    if (heading(*motion_.begin()) != outward) {
+      result.peak_time = T(0);
+      result.peak_displacement = inputs.displacement;
+    }
+    turning_points([&](T time, T position) {
+      if (isnan(result.peak_time)) {
+        result.peak_time = time;
+        result.peak_displacement = position;
+        return true;
+      }
+      result.trough_time = time;
+      result.trough_displacement = position;
+      return false;
+    });
+    if (isnan(result.peak_time)) return;
+    if (isnan(result.trough_time) && motion_.outcome().end == End::decaying) {
+      result.trough_time = never;
+      result.trough_displacement = std::prev(motion_.end())->flow.position.centre();
+    }
+    const int sign = outward == 0 ? 1 : outward;
+    result.swing = (result.peak_displacement - result.trough_displacement) * sign;
+    return_velocity(result, sign);
+  }
+
+  void return_velocity(Transient<T>& result, int outward) const {
+    using std::isnan;
+    const T until = std::min(isnan(result.trough_time) ? duration_ : result.trough_time, duration_);
+    for (const Segment<T>& segment : motion_) {
+      if (segment.begin > until || !go_on_()) break;
+      const T from = std::max(result.peak_time - segment.begin, T(0));
+      const T to = std::min(segment.end, until) - segment.begin;
+      if (from > to || (from > 0 && from == to)) continue;
+      // Where it ends the next mode begins, with the velocity that the event has set exactly.
+      const bool ends = segment.end <= until && &segment + 1 != motion_.end();
+      const auto compare = [&](T tau, T velocity) {
+        if (-outward * velocity <= 0 || (ends && tau == to && !stops(segment.event.stop))) return;
+        if (outward * velocity >= outward * result.return_velocity) return;
+        result.return_velocity = velocity;
+        result.return_velocity_time = segment.begin + tau;
+      };
+      motion_.along(segment, [&](const auto& along) {
+        highest_and_lowest(along, along.velocity(), from, to, compare);
+      });
+    }
+  }
+
+  void first_reversal(Transient<T>& result) const {
+    for (const Segment<T>& segment : motion_) {
+      if (segment.end > duration_) return;
+      if (!stops(segment.event.plate)) continue;
+      result.first_reversal_time = segment.end;
+      return;
+    }
+  }
+
+  void ending(Transient<T>& result) const {
+    const Outcome<T>& outcome = motion_.outcome();
+    const Path<T>& last = std::prev(motion_.end())->flow.position;
+    result.steady_since = steady_since(motion_);
+    result.steady = steady_numbers(motion_, go_on_);
+    result.end_position = outcome.end == End::resting    ? last.start
+                          : outcome.end == End::decaying ? last.centre()
+                                                         : result.steady.centre;
+  }
+
+  /// The three ends of a motion that are no settling: at rest, steady, without further events.
+  void rest_and_events(Transient<T>& result) const {
+    const Outcome<T>& outcome = motion_.outcome();
+    if (outcome.end == End::moving) return;
+    result.rest_time = outcome.end == End::resting ? rest_begin() : never;
+    result.last_event_time = T(0);
+    const Segment<T>* segment = motion_.end();
+    while (segment != motion_.begin() && go_on_()) {
+      --segment;
+      if (!segment->event.any()) continue;
+      const bool repeats = (outcome.cycles() || outcome.end == End::irregular) &&
+                           !(segment->begin < outcome.cycle_begin);
+      result.last_event_time = repeats ? never : segment->end;
+      return;
+    }
+  }
+
+  /// Use of the contacts in the transient, and their peaks in the whole motion.
+  void contacts(Transient<T>& result) const {
+    const Outcome<T>& outcome = motion_.outcome();
+    T end = duration_;
+    if (outcome.end == End::resting) end = result.rest_time;
+    if (outcome.end == End::decaying) end = result.last_event_time;
+    if (outcome.steady()) end = result.steady_since;
+    result.end_time = std::min({end, duration_, motion_.known_until()});
+    const ContactMeasurement<T, GoOn> measurement(motion_, go_on_);
+    const ContactsUse<T> used = measurement.measure(T(0), result.end_time);
+    result.plate = used.plate;
+    result.finger = used.finger;
+    result.peak_stretch = used.peak_stretch;
+    result.peak_stretch_rate = used.peak_stretch_rate;
+    // The peaks of a steady motion are in its first period, those of a decay soon after it begins.
+    if (result.end_time < duration_) peaks(result, measurement.measure(result.end_time, duration_));
+  }
+  static void peaks(Transient<T>& result, const ContactsUse<T>& used) {
+    result.plate.peak_force = std::max(result.plate.peak_force, used.plate.peak_force);
+    result.finger.peak_force = std::max(result.finger.peak_force, used.finger.peak_force);
+    result.peak_stretch = std::max(result.peak_stretch, used.peak_stretch);
+    result.peak_stretch_rate = std::max(result.peak_stretch_rate, used.peak_stretch_rate);
+  }
+
+  /// Numbers of what goes on after the transient, if that is over within the duration.
+  void afterwards(Transient<T>& result) const {
+    const Outcome<T>& outcome = motion_.outcome();
+    const Drive<T>& drive = motion_.drive();
+    const Segment<T>& last = *std::prev(motion_.end());
+    if (outcome.steady()) {
+      const ContactMeasurement<T, GoOn> measurement(motion_, go_on_);
+      const T begin = outcome.cycles() ? outcome.cycle_begin : last.begin;
+      const ContactsUse<T> period = measurement.measure(begin, begin + outcome.period);
+      result.plate_afterwards.add(period.plate, outcome.period);
+      result.finger_afterwards.add(period.finger, outcome.period);
+    } else if (outcome.end == End::resting) {
+      // The plate continues to slide under the pin, at constant speed and friction.
+      const auto lines = InputLines<T>::of(drive, motion_.inputs(), last);
+      using detail::hypot;
+      const T speed = hypot(lines.plate_velocity.value, lines.across_velocity.value);
+      const T friction = drive.plate.friction_at(speed) * lines.plate_load.value;
+      result.plate_afterwards.power = speed > 0 ? friction * speed : T(0);
+      result.finger_afterwards.power = T(0);
+    } else if (outcome.end == End::decaying) {
+      T stiffness = drive.stiffness;
+      if (last.mode.finger == ContactState::elastic_stick) stiffness += drive.finger.stiffness;
+      if (touches(last.mode.stop)) stiffness += drive.stops.stiffness;
+      const T x = last.flow.position.value, v = last.flow.velocity.start;
+      result.decay_energy = (stiffness * x * x + drive.mass * v * v) / 2;
+    }
+    // The first extrema of a motion that is steady already are those of the steady motion.
+    if (!outcome.steady()) return;
+    if (result.peak_time > result.steady_since)
+      result.peak_time = result.peak_displacement = result.none;
+    if (!(result.peak_time <= result.steady_since) || result.trough_time > result.steady_since) {
+      result.trough_time = result.trough_displacement = result.swing = result.none;
+      result.return_velocity = result.return_velocity_time = result.none;
+    }
+  }
+
+  /// Rest is one, however many segments the rows of inputs make of it.
+  T rest_begin() const {
+    const Segment<T>* segment = std::prev(motion_.end());
+    const auto still = [](const Segment<T>& before) {
+      return before.flow.position.constant() || !(before.end > before.begin);
+    };
+    while (segment != motion_.begin() && still(*std::prev(segment))) --segment;
+    return segment->begin;
+  }
+
+  const Motion<T>& motion_;
+  T duration_;
+  GoOn go_on_;
+};
+
+/// The duration that was asked for or, without one, long enough to see the ending: a decay to a
+/// thousandth and until settled within the band or the usual one, or a few periods of what lasts.
+template <class T, class GoOn = Unattended>
+T duration_of(const Motion<T>& motion, T band, GoOn go_on = {}) {
+  using std::isfinite;
+  using std::sqrt;
+  if (isfinite(motion.inputs().duration)) return motion.inputs().duration;
+  constexpr T never = std::numeric_limits<T>::infinity();
+  const Outcome<T>& outcome = motion.outcome();
+  const T period = T(6.283185307179586) / sqrt(motion.drive().stiffness / motion.drive().mass);
+  const T last_begin = std::prev(motion.end())->begin;
+  switch (outcome.end) {
+    case End::resting:
+      return std::max(last_begin * T(1.25), period);
+    case End::decaying: {
+      const Measurement<T, GoOn> measured(motion, never, go_on);
+      const T settled = measured.settling_time(std::min(band, T(settling_band)));
+      const T decayed = measured.decayed() + period;  // infinite where there is nothing to decay
+      if (!(decayed < never)) return last_begin + period;
+      return settled * T(1.25) > decayed ? settled * T(1.25) : decayed;
+    }
+    case End::free:
+    case End::grazing:
+      return last_begin + 3 * outcome.period;
+    case End::stick_slip:
+    case End::limit_cycle:
+      return outcome.until + 3 * outcome.period;
+    case End::irregular:
+    case End::moving:
+      break;
+  }
+  return outcome.until;
+}
+
+}  // namespace pindrive

@@ -1,0 +1,296 @@
+/// Creep: the motion of a pin that a plate takes along while it also slides across beneath it.
+///
+/// With a velocity w across, friction λ(F u/ρ + S u), ρ = √(u² + w²), pulls the velocity within a time
+/// ε = m ρ³/(λ F w²) onto the one that carries the force needed. Where ε is short, a Taylor series of the
+/// whole motion would have steps of a few ε. The motion without its fast part is the solution of
+///
+///     λ (F t/√(1 + t²) + S w t) + m a + b v + k x + f y = force,   v = x' = v_p + w t,   a = v',
+///
+/// which is the reduced creep equation where a is left out, and holds through w = 0, where v = v_p. Here a
+/// comes from the series of the round before, and what is still missing is bounded.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "pindrive/series/series.hpp"
+#include "pindrive/series/slow_slider.hpp"
+
+namespace pindrive {
+
+/// A step of creep, if the pin creeps: if its velocity and the series are those of creep to rounding.
+template <class T>
+class CreepFlow : public SeriesStep<T> {
+ public:
+  using typename SeriesStep<T>::Real;
+  using SeriesStep<T>::position, SeriesStep<T>::velocity, SeriesStep<T>::skin, SeriesStep<T>::speed;
+  using SeriesStep<T>::plate_force, SeriesStep<T>::span;
+  using SeriesStep<T>::x_bound, SeriesStep<T>::v_bound, SeriesStep<T>::skin_bound;
+  using SeriesStep<T>::speed_bound;
+
+  /// Expands it at a state, no farther than the limit (s; may be infinite), nor than where w is zero; or as
+  /// far, where that is known to be within a step.
+  CreepFlow(SeriesEquation<T> e, const SeriesState<T>& start, T limit, bool within_step = false) {
+    using std::abs;
+    this->without = FastPart::of_friction;
+    if (e.across.value < 0 || (e.across.value == 0 && e.across.rate < 0))
+      e.across = {-e.across.value, -e.across.rate};  // only its size counts: w >= 0
+    acceleration_[0] = e.plate_velocity.rate;  // the first guess is that it moves as the plate
+    if (e.held || e.side != 0 || !(e.load.value * e.plate_force > 0) || !balance(e, start)) return;
+    Real farthest = plain(limit);
+    if (e.across.rate < 0)
+      farthest = std::min(farthest, -plain(e.across.value) / plain(e.across.rate));
+    const Real step = std::min(trial_step(e, start), farthest);
+    if (!(step > 0)) return;
+    this->begin(step);
+    Real before{0}, last{0};  // of the round before: the velocity of creep at the start, the change
+    // What the rounds came nearest to, where rounding keeps those of a known step from converging.
+    SeriesStep<T> nearest;
+    Real least = std::numeric_limits<Real>::infinity();
+    for (int round = 0; round < most_rounds && balance(e, start); ++round) {
+      // What the rounds still change is less than what they changed.
+      const Real v = plain(e.plate_velocity.value + e.across.value * t_), off = plain(start.v) - v;
+      if (!within_step && round > 0 &&
+          abs(off) > 4 * abs(v - before) + 64 * unit * (abs(v) + abs(off)) + unsure(e, start))
+        return;
+      before = v;
+      // The first one has as much of a as tells whether it is near, and its rate, which changes it next.
+      expand(e, start, step, round == 0 ? 2 : N);
+      if (round == 0) continue;
+      const Real left = farthest / step;
+      Real part = within_step ? left : std::min(this->suggested_part(), left);
+      const bool converged = converged_;
+      const Real changed = change(part);
+      converged_ = changed <= unit * this->size_of(plate_force, part) / plain(e.mass);
+      if (!within_step && round > 2 && !converged_ && changed > last / 2) return;  // nor would it
+      last = changed;
+      if (within_step && changed < least) {
+        least = changed;
+        nearest = *this;
+      }
+      // The derivatives of a dual number converge one round later.
+      const bool ends = within_step && round + 1 == most_rounds;
+      if (!converged && !ends) continue;
+      if (!converged) static_cast<SeriesStep<T>&>(*this) = nearest;
+      if (!within_step && !starts_from(e, start)) return;
+      this->rescale(part);
+      holds_ = within_step || bound(e, plain(e.mass) * change(part));
+      for (int tries = 0; !holds_ && tries < most_tries; ++tries) {
+        part *= shorter;
+        this->rescale(shorter);
+        holds_ = bound(e, plain(e.mass) * change(part));
+      }
+      break;
+    }
+    if (holds_) this->trim();
+  }
+
+  /// Whether the pin creeps, so that the step may be taken.
+  bool holds() const { return holds_; }
+
+ private:
+  using SeriesStep<T>::N, SeriesStep<T>::unit, SeriesStep<T>::beyond, SeriesStep<T>::sums_of;
+  using typename SeriesStep<T>::Sums;
+  static constexpr int most_rounds = 16, most_tries = 40;
+  static constexpr Real shorter = 0.75;
+  /// Where the force needed is so near the most that friction gives, the layer is never thin.
+  static constexpr Real steepest = 1e4;
+
+  Polynomial<T>& inner(int i) { return this->inner_[i]; }  // t, √(1 + t²), t/√(1 + t²)
+
+  /// Finds t at the start: whether friction can balance the force needed.
+  bool balance(const SeriesEquation<T>& e, const SeriesState<T>& s) {
+    using std::abs;
+    using std::sqrt;
+    const T needed =
+        (e.force.value - e.mass * acceleration_[0] - e.damping * e.plate_velocity.value -
+         e.stiffness * s.x - e.skin_factor.value * s.skin) /
+        e.load.value;
+    const T linear = (e.plate_slope + e.damping / e.load.value) * e.across.value;
+    T t = t_;
+    for (int tries = 0; tries < 60; ++tries) {
+      const T root = sqrt(1 + t * t), direct = e.plate_force * t / root;
+      const T slope = e.plate_force / (root * root * root) + linear;
+      const T missing = needed - direct - linear * t, move = missing / slope;
+      const bool balanced =
+          abs(missing) <= 4 * unit * (abs(needed) + abs(direct) + abs(linear * t));
+      const T most = 1 + abs(t);  // a longer move overshoots where friction is nearly all used
+      t += move > most ? most : move < -most ? -most : move;
+      if (!(slope > 0 && abs(t) < steepest)) return false;  // falling friction balances nothing
+      if (!balanced) continue;
+      t_ = t;
+      return true;
+    }
+    return false;
+  }
+
+  /// About the time in which creep changes.
+  Real trial_step(const SeriesEquation<T>& e, const SeriesState<T>& s) const {
+    using std::abs;
+    using std::sqrt;
+    const Real t = plain(t_), load = plain(e.load.value), F = plain(e.plate_force);
+    const Real w = plain(e.across.value), v = plain(e.plate_velocity.value) + w * t;
+    const Real root = sqrt(1 + t * t), k = plain(e.stiffness);
+    const Real changes = k * abs(v) + abs(plain(e.force.rate)) + abs(plain(e.load.rate)) * F +
+                         abs(plain(e.skin_stiffness) * v) +
+                         abs(plain(e.skin_decay) * plain(s.skin)) + abs(plain(e.skin_drift)) +
+                         abs(plain(e.damping_rate) * v);
+    const Real f = plain(e.skin_factor.value);
+    const Real left = load * F * (1 - abs(t) / root);
+    return 1 / (changes / left + k * w * root * root * root / (load * F) +
+                (f != 0 ? abs(plain(e.skin_decay) / f) : Real(0)) +
+                abs(plain(e.across.rate)) * k / (load * F) + sqrt(k / plain(e.mass)) / 64);
+  }
+
+  /// One round, in the time σ = τ/step: the series of t from that of a, and from it a new a below an order.
+  void expand(const SeriesEquation<T>& e, const SeriesState<T>& start, Real step, int order) {
+    using std::sqrt;
+    auto &x = position.c, &v = velocity.c, &y = skin.c;
+    auto &t = inner(0).c, &s = inner(1).c, &d = inner(2).c;
+    const auto line = [&](const Line<T>& given, int n) {
+      return n == 0 ? given.value : n == 1 ? given.rate * step : T(0);
+    };
+    const T w = e.across.value, w_rate = e.across.rate * step, load_rate = e.load.rate * step;
+    x[0] = start.x;
+    y[0] = start.skin;
+    T before{0};  // F d + S u, of the order before
+    for (int n = 0;; ++n) {
+      // What does not depend on t of this order; then t, and what it adds.
+      T square{0}, product{0};
+      for (int i = 1; i < n; ++i) {
+        square += t[i] * t[n - i] - s[i] * s[n - i];
+        product += s[i] * d[n - i];
+      }
+      t[n] = n == 0 ? t_ : T(0);
+      s[n] = n == 0 ? sqrt(1 + t_ * t_) : square / (2 * s[0]);
+      d[n] = n == 0 ? t_ / s[0] : -(product + s[n] * d[0]) / s[0];
+      T u = w * t[n] + (n > 0 ? w_rate * t[n - 1] : T(0));
+      T friction = e.plate_force * d[n] + e.plate_slope * u;
+      const T v_p = line(e.plate_velocity, n);
+      T others = e.stiffness * x[n] + e.skin_factor.value * y[n] - line(e.force, n) +
+                 e.mass * acceleration_[n];
+      if (n > 0) others += step * (e.damping_rate * v[n - 1] + e.skin_factor.rate * y[n - 1]);
+      if (n > 0 && n < N) {
+        const T free = (1 - d[0] * d[0]) / s[0];
+        const T slope = e.plate_force * free + e.plate_slope * w;
+        const T missing =
+            e.load.value * friction + load_rate * before + e.damping * (v_p + u) + others;
+        t[n] = -missing / (e.load.value * slope + e.damping * w);
+        s[n] += d[0] * t[n];
+        d[n] += free * t[n];
+        u += w * t[n];
+        friction += slope * t[n];
+      }
+      v[n] = v_p + u;
+      speed.c[n] = w * s[n] + (n > 0 ? w_rate * s[n - 1] : T(0));
+      plate_force.c[n] = -(e.load.value * friction + load_rate * before);
+      before = friction;
+      x[n + 1] = T(step) / T(n + 1) * v[n];
+      e.follow(y, v, n, T(step));
+      if (n == order) break;
+    }
+    for (int n = 0; n < order; ++n) {
+      const T a = T(n + 1) / T(step) * v[n + 1];
+      changes_[n] = std::abs(plain(a - acceleration_[n]));
+      acceleration_[n] = a;
+    }
+  }
+
+  /// How much the last round has changed a, over a part of the step.
+  Real change(Real part) const {
+    Real sum{0}, power{1};
+    for (int n = 0; n < N; ++n, power *= part) sum += changes_[n] * power;
+    return sum;
+  }
+
+  /// Bounds what the series leave out. The error of the velocity falls where the slope γ of friction times it
+  /// is more than what is missed and what the errors of position and skin, h and g h times it, pull.
+  /// Whether it is rounding.
+  bool bound(const SeriesEquation<T>& e, Real missed) {
+    using detail::exp;
+    using std::abs;
+    using std::max;
+    using std::sqrt;
+    const Real h = span(), k = plain(e.stiffness), b = plain(e.damping);
+    const Real b_change = plain(e.damping_rate) * h, decay = plain(e.skin_decay);
+    const Real f = plain(e.skin_factor.value), f_change = plain(e.skin_factor.rate) * h;
+    const Real K = plain(e.skin_stiffness);
+    const Real F = plain(e.plate_force), S = plain(e.plate_slope);
+    const Real load = plain(e.load.value), load_change = plain(e.load.rate) * h;
+    const Real w = plain(e.across.value), w_end = w + plain(e.across.rate) * h;
+    const Real most_load = max(load, load + load_change), most_w = max(w, w_end);
+    const Real least_load = std::min(load, load + load_change);
+    const auto last = [](const Polynomial<T>& p, int n) { return abs(plain(p.c[n])); };
+    const Sums t = sums_of(inner(0).c), s = sums_of(inner(1).c), d = sums_of(inner(2).c);
+    const Sums v = sums_of(velocity.c);
+    const Real root = beyond(s, s) + beyond(t, t), direction = beyond(s, d) + d[0] * root;
+    missed += max(abs(b), abs(b + b_change)) * last(velocity, N) +
+              abs(b_change) * last(velocity, N - 1) +
+              k * (last(position, N) + last(position, N + 1)) +
+              max(abs(f), abs(f + f_change)) * last(skin, N) + abs(f_change) * last(skin, N - 1) +
+              most_load * (abs(S) * v[N] + F * (d[N] + direction)) +
+              abs(load_change) * (abs(S) * v[N - 1] + F * (d[N - 1] - d[N]));
+    const Real missed_skin =
+        K * last(velocity, N) + (abs(decay) + (N + 1) * abs(f_change) / h) * last(skin, N);
+    const Real steep = sqrt(1 + t[0] * t[0]);
+    const Real gamma = std::min(b, b + b_change) +
+                       least_load * F / (most_w * steep * steep * steep) +
+                       std::min(S * load, S * (load + load_change));
+    const Real grown = exp(max(Real(0), f < 0 ? -decay / f : Real(0)) * h) * h;
+    const Real left = gamma - k * h - K * grown;
+    if (!(left > 0)) return false;
+    v_bound = (missed + grown * missed_skin) / left;
+    x_bound = h * v_bound;
+    skin_bound = e.skin_error(h, grown * (K * v_bound + missed_skin), v_bound, missed_skin);
+    speed_bound = v_bound + most_w * root;
+    return v_bound <= rounding_of(v) && (K == 0 || skin_bound <= rounding_of(sums_of(skin.c)));
+  }
+  static Real rounding_of(const Sums& sums) { return 8 * unit * sums[0]; }
+
+  /// Whether the pin has the velocity of creep: what it is off by, less than rounding, fades at once.
+  bool starts_from(const SeriesEquation<T>& e, const SeriesState<T>& start) const {
+    using std::abs;
+    return abs(plain(start.v - velocity.c[0])) <=
+           16 * unit * sums_of(velocity.c)[0] + unsure(e, start);
+  }
+  /// What the rounding of the forces and that of the time make of that velocity: where friction is nearly all used
+  /// much more than where it is steepest, but no more is left out than a small part of the velocity.
+  Real unsure(const SeriesEquation<T>& e, const SeriesState<T>& start) const {
+    using std::abs;
+    const Real sizes = abs(plain(e.force.value)) + abs(plain(e.mass) * plain(acceleration_[0])) +
+                       abs(plain(e.damping) * plain(start.v)) +
+                       plain(e.stiffness) * abs(plain(start.x)) +
+                       abs(plain(e.skin_factor.value) * plain(start.skin));
+    const Real changes = abs(plain(e.plate_velocity.rate)) + abs(plain(e.across.rate * t_));
+    const Real root = detail::hypot(Real(1), plain(t_));
+    const Real by_forces =
+        16 * unit * sizes * plain(e.across.value) / (plain(e.load.value) * plain(e.plate_force));
+    const Real here = std::min(by_forces * root * root * root, 4096 * unit * abs(plain(start.v)));
+    return std::max(by_forces, here) + 4 * unit * plain(start.time) * changes;
+  }
+
+  T t_{0};                               // at the start
+  std::array<T, N + 1> acceleration_{};  // a, in the time σ, m/s²
+  std::array<Real, N> changes_{};        // of it in the last round
+  bool converged_{false}, holds_{false};
+};
+
+/// The step to take from a state: the Taylor series, but without its fast part where that is over: where the
+/// pin creeps, or on a slider of stiff skin.
+template <class T>
+SeriesStep<T> series_step(const SeriesEquation<T>& e, const SeriesState<T>& start, T limit) {
+  if (SlowSliderFlow<T>::stiff(e, start))
+    if (const SlowSliderFlow<T> slow(e, start, limit); slow.holds()) return slow;
+  if (e.held || e.side != 0) return SeriesFlow<T>(e, start, limit);
+  SeriesStep<T> step;
+  const bool slides = plain(start.v) != plain(e.plate_velocity.value) || plain(e.across.value) != 0;
+  if (slides) step = SeriesFlow<T>(e, start, limit);
+  if (slides && !(step.span() < plain(limit))) return step;
+  const CreepFlow<T> creep(e, start, limit);
+  if (creep.holds() && !(slides && creep.span() < step.span())) return creep;
+  return slides ? step : SeriesFlow<T>(e, start, limit);
+}
+
+}  // namespace pindrive

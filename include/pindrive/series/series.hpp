@@ -1,0 +1,305 @@
+/// The power series of the modes that have no closed form: a friction curve under a changing load, a
+/// friction curve on a compliant finger, a plate that also slides across the axis.
+///
+/// The Taylor coefficients of such a mode follow from its equation by recurrences. Order and length of a
+/// step follow from the series itself, with a proven bound of what it leaves out.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "pindrive/flow/polynomial.hpp"
+#include "pindrive/law/oblique.hpp"
+#include "pindrive/series/series_equation.hpp"
+#include "pindrive/series/series_step.hpp"
+
+namespace pindrive {
+
+/// The Taylor series of a mode at a state.
+template <class T>
+class SeriesFlow : public SeriesStep<T> {
+ public:
+  using typename SeriesStep<T>::Real;
+  using SeriesStep<T>::position, SeriesStep<T>::velocity, SeriesStep<T>::skin, SeriesStep<T>::speed;
+  using SeriesStep<T>::plate_force, SeriesStep<T>::stick_force, SeriesStep<T>::span;
+  using SeriesStep<T>::x_bound, SeriesStep<T>::v_bound, SeriesStep<T>::skin_bound;
+  using SeriesStep<T>::speed_bound;
+
+  /// Expands the mode at a state, no farther than the limit (s; may be infinite); or as far, where that is
+  /// known to be within a step.
+  SeriesFlow(const SeriesEquation<T>& equation, const SeriesState<T>& start, T limit,
+             bool within_step = false) {
+    const Real farthest = plain(limit), rate = linear_rate(equation);
+    Real step = std::min(1 / (rate + turning_rate(equation, start)), farthest);
+    expand(equation, start, step);
+    if (within_step) {
+      this->rescale(farthest / step);
+      bound(equation);
+      this->trim();
+      return;
+    }
+    step = std::min({this->suggested_part(), 1 / ((rate / longest + rising_rate(equation)) * step),
+                     farthest / step, farther});
+    for (int tries = 0; tries < most_tries; ++tries, step = Real(0.75)) {
+      this->rescale(step);
+      if (bound(equation)) break;
+    }
+    this->trim();
+  }
+
+ protected:
+  using SeriesStep<T>::N, SeriesStep<T>::unit, SeriesStep<T>::beyond, SeriesStep<T>::sums_of;
+  using typename SeriesStep<T>::Sums;
+
+ private:
+  /// So many times the time of the fastest rate at most, even where nothing changes: what rounding puts into
+  /// the start is then followed too, and remains rounding. And so often a step is made shorter.
+  static constexpr Real longest = 8;
+  static constexpr Real farther =
+      1024;  // than the step that was tried, whose powers must be numbers
+  static constexpr int most_tries = 200;
+
+  int begins_{0};  // the order at which u and w begin
+
+  Polynomial<T>& inner(int i) { return this->inner_[i]; }  // d, u
+
+  /// Of p/σ, where p begins at 0.
+  Sums from_rest(std::array<T, N + 2> c) const {
+    if (begins_ > 0) std::copy(c.begin() + 1, c.end(), c.begin());
+    return sums_of(c);
+  }
+
+  /// About the fastest rate of the equation without an across velocity, …
+  static Real linear_rate(const SeriesEquation<T>& e) {
+    using std::abs;
+    using std::sqrt;
+    const Real m = plain(e.mass), f = plain(e.skin_factor.value);
+    return (abs(plain(e.damping)) + abs(plain(e.load.value) * plain(e.plate_slope))) / m +
+           (f != 0 ? abs(plain(e.skin_decay) / f) : Real(0)) +
+           sqrt((plain(e.stiffness) + plain(e.skin_stiffness)) / m);
+  }
+  /// … the one at which the factor of skin has grown from zero: there every solution but one is singular, so
+  /// that a longer step would make the rounding of its start grow.
+  static Real rising_rate(const SeriesEquation<T>& e) {
+    const Real f = plain(e.skin_factor.value), rate = plain(e.skin_factor.rate);
+    return f * rate > 0 ? rate / f : Real(0);
+  }
+  /// Whether the plate begins to slide from here on: u and w are 0 but not their rates.
+  static bool sets_out(const SeriesEquation<T>& e, const SeriesState<T>& start) {
+    return e.side == 0 && e.across.value == 0 &&
+           plain(e.held ? e.surface.value : start.v) == plain(e.plate_velocity.value);
+  }
+
+ protected:
+  SeriesFlow() = default;
+
+  /// The rate at which the direction of sliding turns, 1/s.
+  static Real turning_rate(const SeriesEquation<T>& e, const SeriesState<T>& s) {
+    using detail::hypot;
+    using std::abs;
+    if (e.side != 0) return Real(0);
+    const Real m = plain(e.mass), friction = abs(plain(e.load.value) * plain(e.plate_force));
+    const Real w = plain(e.across.value), u = plain(s.v) - plain(e.plate_velocity.value);
+    const Real pull = plain(e.force.value) - plain(e.stiffness) * plain(s.x) -
+                      plain(e.damping) * plain(s.v) - plain(e.skin_factor.value) * plain(s.skin) -
+                      plain(e.load.value) * plain(e.plate_slope) * u;
+    const Real turns = abs(plain(e.plate_velocity.rate)) + abs(plain(e.across.rate));
+    if (sets_out(e, s))
+      return (e.held ? turns : (abs(pull) + friction) / m + turns) / turns * linear_rate(e);
+    const Real speed = hypot(u, w), along = u / speed, across = w / speed;
+    // What friction takes from the pull, and how fast it turns with the velocity.
+    // The plate accelerates too.
+    const Real apart = pull - m * plain(e.plate_velocity.rate);
+    const Real left = abs(apart - friction * along) + friction * across * across;
+    return (e.held ? turns : left / m + abs(plain(e.across.rate))) / speed;
+  }
+
+  /// What the truncated r and d differ from √(u² + w²) and u/√(u² + w²), and what d leaves out of the force, N.
+  struct Turning {
+    bool known{true};
+    Real root{0}, direction{0}, missed{0};
+  };
+  Turning bound_turning(const SeriesEquation<T>& e) const {
+    using std::abs;
+    using std::max;
+    const Real h = span(), F = abs(plain(e.plate_force)), load = abs(plain(e.load.value));
+    const Real load_end = abs(plain(e.load.value) + plain(e.load.rate) * h);
+    const Sums d = sums_of(this->inner_[0].c);
+    Turning found;
+    if (e.side == 0) {
+      const Sums r = from_rest(speed.c), p = from_rest(this->inner_[1].c);
+      const Real w_rate = plain(e.across.rate) * h;
+      const Real w = begins_ > 0 ? w_rate : plain(e.across.value);
+      const Real w_end = begins_ > 0 ? w_rate : w + w_rate;
+      const Real w_least = w * w_end > 0 ? std::min(abs(w), abs(w_end)) : Real(0);
+      const Real least = max({w_least, r[0] - 2 * r[1], p[0] - 2 * p[1]});
+      // The square of r is known to the rounding of its largest.
+      found.known = least > r[0] / 16;
+      found.root = (beyond(r, r) + beyond(p, p)) / least;
+      found.direction = (beyond(r, d) + d[0] * found.root) / least;
+    }
+    found.missed = F * (max(load, load_end) * (d[N] + found.direction) +
+                        abs(plain(e.load.rate)) * h * (d[N - 1] - d[N]));
+    return found;
+  }
+
+  /// The recurrences, in the time σ = τ/step.
+  void expand(const SeriesEquation<T>& e, const SeriesState<T>& start, Real step) {
+    if (sets_out(e, start)) return expand_from_rest(e, start, step);
+    using std::isnan;
+    using std::sqrt;
+    this->begin(step);
+    auto &x = position.c, &v = velocity.c, &y = skin.c, &r = speed.c;
+    auto &d = inner(0).c, &u_ = inner(1).c;
+    x[0] = start.x;
+    v[0] = e.held ? e.surface.value : start.v;
+    y[0] = start.skin;
+    const std::array<T, 2> force{e.force.value, e.force.rate * step};
+    const std::array<T, 2> v_p{e.plate_velocity.value, e.plate_velocity.rate * step};
+    const std::array<T, 2> w{e.across.value, e.across.rate * step};
+    const std::array<T, 3> w_squared{w[0] * w[0], 2 * w[0] * w[1], w[1] * w[1]};
+    const T load_rate = e.load.rate * step;
+    T before{0};  // F d + S u, of the order before
+    for (int n = 0;; ++n) {
+      e.follow(y, v, n, T(step));
+      const T u = u_[n] = n < 2 ? v[n] - v_p[n] : v[n];
+      if (e.side != 0) {
+        r[n] = T(e.side) * u;
+        d[n] = n == 0 ? T(e.side) : T(0);
+      } else {
+        T square = n < 3 ? w_squared[n] : T(0), product = u;
+        for (int i = 0; i <= n; ++i) square += u_[i] * u_[n - i];
+        for (int i = 1; i < n; ++i) square -= r[i] * r[n - i];
+        r[n] = n == 0 ? sqrt(square) : square / (2 * r[0]);
+        for (int i = 1; i <= n; ++i) product -= r[i] * d[n - i];
+        d[n] = product / r[0];
+      }
+      const T friction = e.plate_force * d[n] + e.plate_slope * u;
+      plate_force.c[n] = -(e.load.value * friction + load_rate * before);
+      before = friction;
+      const T part = T(step) / T(n + 1);
+      x[n + 1] = part * v[n];
+      T forces = plate_force.c[n] - e.damping * v[n] - e.stiffness * x[n] -
+                 e.skin_factor.value * y[n] + (n < 2 ? force[n] : T(0));
+      if (n > 0) forces -= step * (e.damping_rate * v[n - 1] + e.skin_factor.rate * y[n - 1]);
+      if (e.held) stick_force.c[n] = (n == 0 ? e.mass * e.surface.rate : T(0)) - forces;
+      if (n == N) return;
+      v[n + 1] = !e.held ? part * forces / e.mass : n == 0 ? e.surface.rate * step : T(0);
+      if (n == 0 && !e.held && !isnan(start.acceleration)) v[1] = start.acceleration * step;
+    }
+  }
+
+ private:
+  /// The same where u and w begin at 0: the direction is that of u/σ and w/σ, so that its order n needs the
+  /// velocity of the order n + 1, in which the equation is linear.
+  void expand_from_rest(const SeriesEquation<T>& e, const SeriesState<T>& start, Real step) {
+    using std::sqrt;
+    this->begin(step);
+    begins_ = 1;
+    auto &x = position.c, &v = velocity.c, &y = skin.c, &r = speed.c;
+    auto &d = inner(0).c, &u = inner(1).c;
+    x[0] = start.x;
+    v[0] = e.plate_velocity.value;
+    y[0] = start.skin;
+    const T w = e.across.rate * step, load_rate = e.load.rate * step;
+    const T strength = e.load.value * e.plate_force;
+    T slope{0}, before{0};  // of the direction by u/σ; F d + S u, of the order before
+    for (int n = 0;; ++n) {
+      const T part = T(step) / T(n + 1);
+      x[n + 1] = part * v[n];
+      e.follow(y, v, n, T(step));
+      // All forces of this order but the plate's.
+      T others = -e.damping * v[n] - e.stiffness * x[n] - e.skin_factor.value * y[n] +
+                 (n == 0   ? e.force.value
+                  : n == 1 ? e.force.rate * step
+                           : T(0));
+      if (n > 0) others -= step * (e.damping_rate * v[n - 1] + e.skin_factor.rate * y[n - 1]);
+      T product{0}, square{0};  // what d and ρ of this order are without u of the next
+      for (int i = 1; i < n; ++i) {
+        product -= r[i + 1] * d[n - i];
+        square -= r[i + 1] * r[n - i + 1];
+      }
+      for (int i = 1; i < n; ++i) square += u[i + 1] * u[n - i + 1];
+      const T known = e.plate_slope * u[n];
+      if (n == 0) {
+        const T rest = others - e.mass * e.plate_velocity.rate;
+        const T out = e.held ? e.surface.rate - e.plate_velocity.rate
+                             : setting_out(e.mass, strength, e.across.rate, rest);
+        u[1] = out * step;
+        r[1] = sqrt(u[1] * u[1] + w * w);
+        d[0] = u[1] / r[1];
+        slope = w * w / (r[1] * r[1] * r[1]);
+        v[1] = u[1] + e.plate_velocity.rate * step;
+      } else {
+        // d = slope û + …: with û 0 first, then what it adds.
+        r[n + 1] = square / (2 * r[1]);
+        d[n] = (product - r[n + 1] * d[0]) / r[1];
+        const T friction = e.plate_force * d[n] + known;
+        const T forces = others - e.load.value * friction - load_rate * before;
+        if (!e.held && n < N) {
+          u[n + 1] = forces / (e.mass / part + strength * slope);
+          r[n + 1] += d[0] * u[n + 1];
+          d[n] += slope * u[n + 1];
+          v[n + 1] = u[n + 1];
+        }
+      }
+      const T friction = e.plate_force * d[n] + known;
+      plate_force.c[n] = -(e.load.value * friction + load_rate * before);
+      before = friction;
+      if (e.held)
+        stick_force.c[n] = (n == 0 ? e.mass * e.surface.rate : T(0)) - others - plate_force.c[n];
+      if (n == N) return;
+    }
+  }
+
+  /// Bounds what the series leave out, from what they miss of the equation: the error e of a mode, with
+  /// 2 E² = m e_v² + k e_x² + (f e_y)²/K, grows by no more than the energy that this puts in, since
+  /// friction's own slope takes energy but where it falls. Whether the bound is rounding.
+  bool bound(const SeriesEquation<T>& e) {
+    using detail::exp;
+    using std::abs;
+    using std::max;
+    using std::sqrt;
+    const Real h = span(), m = plain(e.mass), k = plain(e.stiffness), b = plain(e.damping);
+    const Real b_change = plain(e.damping_rate) * h, decay = plain(e.skin_decay);
+    const Real f = plain(e.skin_factor.value), f_change = plain(e.skin_factor.rate) * h;
+    const Real K = plain(e.skin_stiffness), most_f = max(abs(f), abs(f + f_change));
+    const Real S = plain(e.plate_slope);
+    const Real load = plain(e.load.value), load_change = plain(e.load.rate) * h;
+    const Real most_load = max(abs(load), abs(load + load_change));
+    const auto last = [](const Polynomial<T>& p, int n) { return abs(plain(p.c[n])); };
+    const Sums u = sums_of(inner(1).c);
+    const Turning turning = bound_turning(e);
+    if (!turning.known) return false;
+    // What is left of the equation: the terms from the order N on.
+    const Real missed = e.held ? Real(0)
+                               : max(abs(b), abs(b + b_change)) * last(velocity, N) +
+                                     abs(b_change) * last(velocity, N - 1) +
+                                     k * (last(position, N) + last(position, N + 1)) +
+                                     most_f * last(skin, N) + abs(f_change) * last(skin, N - 1) +
+                                     most_load * abs(S) * (u[N]) +
+                                     abs(load_change) * abs(S) * (u[N - 1] - u[N]) + turning.missed;
+    const Real missed_skin =
+        K * last(velocity, N) + (abs(decay) + (N + 1) * abs(f_change) / h) * last(skin, N);
+    const Real falls =
+        std::min(b, b + b_change) + std::min({Real(0), S * load, S * (load + load_change)});
+    const Real growth = exp(max({Real(0), -falls / m, f < 0 ? -decay / f : Real(0)}) * h);
+    const Real error =
+        h * growth * (missed / sqrt(m) + (K > 0 ? missed_skin / sqrt(K) : Real(0)));  // sqrt(2 E²)
+    v_bound = e.held ? Real(0) : error / sqrt(m);
+    x_bound = std::min(h * v_bound, error / sqrt(k));
+    skin_bound = e.skin_error(h, sqrt(K) * error, v_bound, missed_skin);
+    speed_bound = v_bound + turning.root;
+    const auto rounding_of = [&](const Sums& sums) { return 2 * unit * sums[0]; };
+    // Of a slider beside a pin that hardly moves: what the rounding of the forces makes of its velocity.
+    const Real forces =
+        decay != 0 ? most_f * sums_of(skin.c)[0] + k * sums_of(position.c)[0] : Real(0);
+    return v_bound <= rounding_of(sums_of(velocity.c)) + 2 * unit * forces * h / m &&
+           (K == 0 || skin_bound <= rounding_of(sums_of(skin.c))) &&
+           speed_bound <= rounding_of(from_rest(speed.c)) + rounding_of(sums_of(velocity.c)) &&
+           !(e.held && turning.direction > 64 * unit);
+  }
+};
+
+}  // namespace pindrive

@@ -1,0 +1,135 @@
+/// One step of a series: the quantities of a mode as polynomials, what they leave out, and how long and of
+/// what order the step has to be.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "pindrive/flow/polynomial.hpp"
+#include "pindrive/model/model.hpp"
+#include "pindrive/series/series_equation.hpp"
+
+namespace pindrive {
+
+/// One step of a mode without a closed form, for as long as its series holds to rounding.
+template <class T>
+class SeriesStep {
+ public:
+  using Real = detail::Real<T>;
+
+  Polynomial<T> position, velocity, skin;
+  Polynomial<T> plate_force;  ///< R, N
+  Polynomial<T> stick_force;  ///< of the surface that holds the pin, N; else 0
+  Polynomial<T> speed;        ///< of sliding on the plate, across too: s u or √(u² + w²), m/s
+  /// Bounds of what is left out: |position|, |velocity|, |skin| and |speed| differ by no more over the step.
+  Real x_bound{0}, v_bound{0}, skin_bound{0}, speed_bound{0};
+  FastPart without{FastPart::none};  ///< what it leaves out
+
+  Real span() const { return velocity.span; }
+  SeriesState<T> at(T tau) const { return {position.at(tau), velocity.at(tau), skin.at(tau)}; }
+
+ protected:
+  static constexpr int N = series_order;
+  static constexpr Real unit = std::numeric_limits<Real>::epsilon();
+
+  /// Makes them series of the order N over a length of time.
+  void begin(Real step) {
+    each([&](Polynomial<T>& p) {
+      p.span = step;
+      p.degree = N;
+    });
+    position.degree = N + 1;
+  }
+
+  /// The part of the step at which the last terms are rounding of the first ones.
+  Real suggested_part() const {
+    using detail::exp;
+    using detail::log;
+    using std::abs;
+    Real least = std::numeric_limits<Real>::infinity();
+    for (const Polynomial<T>* p : {&velocity, &skin, &speed}) {
+      const auto size = [&](int n) { return abs(plain(p->c[n])); };
+      const Real largest = std::max({size(0), size(1), size(2)});
+      for (int n = N - 2; n <= N; ++n)
+        if (size(n) > 0 && largest > 0)
+          least = std::min(least, exp(log(unit / 4 * largest / size(n)) / n));
+    }
+    return least;
+  }
+
+  void rescale(Real part) {
+    each([&](Polynomial<T>& p) {
+      p.span *= part;
+      Real factor{1};
+      for (T& c : p.c) {
+        c *= factor;
+        factor *= part;
+      }
+    });
+  }
+
+  /// Sums of the sizes of coefficients, from each on to the last.
+  using Sums = std::array<Real, N + 2>;
+  static Sums sums_of(const std::array<T, N + 2>& c) {
+    Sums sums{};
+    for (int n = N; n >= 0; --n) sums[n] = sums[n + 1] + std::abs(plain(c[n]));
+    return sums;
+  }
+  /// The sum of the sizes of all over a part of the step.
+  static Real size_of(const Polynomial<T>& p, Real part) {
+    Real sum{0}, power{1};
+    for (int n = 0; n <= N; ++n, power *= part) sum += std::abs(plain(p.c[n])) * power;
+    return sum;
+  }
+  /// The most that a product of two series comes to beyond its order N.
+  static Real beyond(const Sums& p, const Sums& q) {
+    Real sum{0};
+    for (int i = 1; i <= N; ++i) sum += (p[i] - p[i + 1]) * q[N + 1 - i];
+    return sum;
+  }
+
+  /// Leaves out the last terms that are rounding of what they are added to, as a short step needs fewer: of
+  /// the velocity and of skin those that are rounding of their rates.
+  void trim() {
+    using std::abs;
+    int needed = 1;
+    Real dropped{0};
+    for (const Polynomial<T>* p : {&velocity, &skin, &speed, &plate_force, &stick_force}) {
+      const bool by_rate = p == &velocity || p == &skin;
+      const auto size = [&](int n) { return abs(plain(p->c[n])) * (by_rate ? n : 1); };
+      Real total{0}, tail{0};
+      for (int n = 0; n <= N; ++n) total += size(n);
+      int n = N;
+      while (n > needed && tail + size(n) <= unit / 8 * total) tail += size(n--);
+      needed = std::max(needed, n);
+    }
+    const auto drop = [&](Polynomial<T>& p, int degree, Real& bound) {
+      for (dropped = 0; p.degree > degree; --p.degree) {
+        dropped += abs(plain(p.c[p.degree]));
+        p.c[p.degree] = T(0);
+      }
+      bound += dropped;
+    };
+    Real unused{0};
+    drop(position, needed + 1, x_bound);
+    drop(velocity, needed, v_bound);
+    drop(skin, needed, skin_bound);
+    drop(speed, needed, speed_bound);
+    drop(plate_force, needed, unused);
+    drop(stick_force, needed, unused);
+  }
+
+  std::array<Polynomial<T>, 3> inner_;  // what the recurrences need beside these
+
+ private:
+  template <class Visitor>
+  void each(Visitor&& visit) {
+    for (Polynomial<T>* p : {&position, &velocity, &skin, &plate_force, &stick_force, &speed})
+      visit(*p);
+    for (Polynomial<T>& p : inner_) visit(p);
+  }
+};
+
+}  // namespace pindrive

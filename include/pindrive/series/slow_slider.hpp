@@ -1,0 +1,157 @@
+/// The slider of stiff skin without its fast part.
+///
+/// The velocity y of a slider comes within a time ε = φ/D to the one at which the skin stretches as it has to.
+/// Where ε is short, a Taylor series of the whole motion would have steps of a few ε. The motion without its fast
+/// part is the solution of
+///
+///     D y = K v − E − (φ y)',
+///
+/// in which (φ y)' comes from the series of the round before, and what is still missing is bounded.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "pindrive/model/model.hpp"
+#include "pindrive/series/series.hpp"
+
+namespace pindrive {
+
+/// A step of a pin on such a slider, if that has the velocity of the slow motion, to rounding.
+template <class T>
+class SlowSliderFlow : public SeriesFlow<T> {
+ public:
+  using typename SeriesStep<T>::Real;
+  using SeriesStep<T>::position, SeriesStep<T>::velocity, SeriesStep<T>::skin, SeriesStep<T>::speed;
+  using SeriesStep<T>::x_bound, SeriesStep<T>::v_bound, SeriesStep<T>::skin_bound;
+  using SeriesStep<T>::speed_bound, SeriesStep<T>::span;
+
+  /// Whether the fast part of an equation is so much faster than the rest that the rounds converge quickly.
+  static bool stiff(const SeriesEquation<T>& e, const SeriesState<T>& start) {
+    const Real decay = plain(e.skin_decay), f = plain(e.skin_factor.value);
+    return f > 0 && decay > 4 * N * std::abs(plain(e.skin_factor.rate)) &&
+           decay > 4 * N * f * slow_rate(e, start);
+  }
+
+  /// Expands it at a state, no farther than the limit (s; may be infinite); or as far, where that is known to be
+  /// within a step.
+  SlowSliderFlow(SeriesEquation<T> e, const SeriesState<T>& start, T limit,
+                 bool within_step = false) {
+    this->without = FastPart::of_slider;
+    if (!stiff(e, start)) return;
+    const Real step = 1 / slow_rate(e, start), left = plain(limit) / step;
+    e.stretching = stretching_.data();
+    Real part{1}, last{0};
+    bool converged = false;
+    for (int round = 0;; ++round) {
+      this->expand(e, start, step);
+      follow(e, step);
+      part = within_step ? left : std::min({this->suggested_part(), left, Real(longest)});
+      // The derivatives of a dual number converge one round later.
+      if (converged) break;
+      const Real changed = change(part);
+      converged = changed <= unit * plain(e.skin_decay) * this->size_of(skin, part);
+      if (round == most_rounds || (round > 2 && !converged && changed > last / 2)) return;
+      last = changed;
+    }
+    this->rescale(part);
+    if (!within_step && !starts_from(start)) return;
+    holds_ = within_step || bound(e, start.time, change(part));
+    for (int tries = 0; !holds_ && tries < most_tries; ++tries) {
+      part *= shorter;
+      this->rescale(shorter);
+      holds_ = bound(e, start.time, change(part));
+    }
+    if (holds_) this->trim();
+  }
+
+  /// Whether the slider moves so, so that the step may be taken.
+  bool holds() const { return holds_; }
+
+ private:
+  using SeriesStep<T>::N, SeriesStep<T>::unit, SeriesStep<T>::sums_of;
+  using typename SeriesStep<T>::Sums;
+  static constexpr int most_rounds = 16, most_tries = 40;
+  static constexpr Real longest = 8, shorter = 0.75;
+
+  /// About the fastest rate of the equation without its fast part: there the skin is a damper φ.
+  static Real slow_rate(const SeriesEquation<T>& e, const SeriesState<T>& start) {
+    using std::abs;
+    using std::sqrt;
+    const Real m = plain(e.mass), f = plain(e.skin_factor.value);
+    return (abs(plain(e.damping)) + abs(plain(e.load.value) * plain(e.plate_slope)) + f) / m +
+           sqrt((plain(e.stiffness) + abs(plain(e.skin_factor.rate)) + abs(plain(e.damping_rate)) +
+                 abs(plain(e.load.rate) * plain(e.plate_slope))) /
+                m) +
+           SeriesFlow<T>::turning_rate(e, start);
+  }
+
+  /// Takes (φ y)' from the series.
+  void follow(const SeriesEquation<T>& e, Real step) {
+    for (int n = 0; n <= N; ++n) {
+      const T grows = n < N ? e.skin_factor.value * skin.c[n + 1] / T(step) : T(0);
+      const T now = T(n + 1) * (grows + e.skin_factor.rate * skin.c[n]);
+      changes_[n] = std::abs(plain(now - stretching_[n]));
+      stretching_[n] = now;
+    }
+  }
+  /// How much the last round has changed that over a part of the step: what the series of y misses.
+  Real change(Real part) const {
+    Real sum{0}, power{1};
+    for (int n = 0; n <= N; ++n, power *= part) sum += changes_[n] * power;
+    return sum;
+  }
+
+  /// Bounds what the series leave out, from what they miss of the equation: the error of y is at most what pulls it
+  /// back after those of the velocity and of its own equation, and that of the velocity what they pull.
+  /// Whether it is rounding.
+  bool bound(const SeriesEquation<T>& e, T time, Real missed_skin) {
+    using std::abs;
+    using std::max;
+    using std::min;
+    const Real h = span(), m = plain(e.mass), k = plain(e.stiffness), b = plain(e.damping);
+    const Real b_change = plain(e.damping_rate) * h, f = plain(e.skin_factor.value);
+    const Real f_change = plain(e.skin_factor.rate) * h, most_f = max(f, f + f_change);
+    const Real S = plain(e.plate_slope), load = plain(e.load.value);
+    const Real load_change = plain(e.load.rate) * h, K = plain(e.skin_stiffness);
+    const auto last = [](const Polynomial<T>& p, int n) { return abs(plain(p.c[n])); };
+    const auto turning = this->bound_turning(e);
+    if (!turning.known || (e.held && turning.direction > 64 * unit)) return false;
+    const Real missed =
+        e.held
+            ? Real(0)
+            : (max(abs(b), abs(b + b_change)) + max(abs(load), abs(load + load_change)) * abs(S)) *
+                      last(velocity, N) +
+                  (abs(b_change) + abs(load_change * S)) * last(velocity, N - 1) +
+                  k * (last(position, N) + last(position, N + 1)) + most_f * last(skin, N) +
+                  abs(f_change) * last(skin, N - 1) + turning.missed;
+    const Real stays = plain(e.skin_decay) + plain(e.skin_factor.rate);
+    const Real falls = min(b, b + b_change) + min({Real(0), S * load, S * (load + load_change)});
+    const Real grown = h / m * (k * h + most_f * K / stays + max(Real(0), -falls));
+    // It may end where its load does, to the rounding of the time.
+    const Real ends = f + f_change + 4 * unit * (plain(time) + h) * abs(plain(e.skin_factor.rate));
+    if (!(ends >= 0) || (!e.held && grown > Real(0.5))) return false;
+    v_bound = e.held ? Real(0) : 2 * h / m * (missed + most_f * missed_skin / stays);
+    x_bound = h * v_bound;
+    skin_bound = (K * v_bound + missed_skin) / stays;
+    speed_bound = v_bound + turning.root;
+    return v_bound <= 4 * unit * sums_of(velocity.c)[0] &&
+           turning.root <= 4 * unit * sums_of(speed.c)[0] &&
+           skin_bound <= 8 * unit * sums_of(skin.c)[0];
+  }
+
+  /// Whether the slider has that velocity: what it is off by fades at once.
+  bool starts_from(const SeriesState<T>& start) const {
+    using std::abs;
+    const Real changes = abs(plain(velocity.c[1])) / span() + abs(plain(skin.c[1])) / span();
+    return abs(plain(start.skin - skin.c[0])) <=
+           16 * unit * sums_of(skin.c)[0] + 4 * unit * plain(start.time) * changes;
+  }
+
+  std::array<T, N + 1> stretching_{};  // (φ y)', in the time σ
+  std::array<Real, N + 1> changes_{};  // of it in the last round
+  bool holds_{false};
+};
+
+}  // namespace pindrive

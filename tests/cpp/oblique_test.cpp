@@ -1,0 +1,128 @@
+// The friction of a plate that slides across too: its changes against differences of the friction itself, how a
+// pin sets out from the plate and how it lands on it.
+#include "pindrive/law/oblique.hpp"
+
+#include <random>
+
+#include "check.hpp"
+#include "pindrive/law/friction.hpp"
+
+namespace pd = pindrive;
+using check::expect;
+using check::near;
+using pd::ContactState;
+using pd::detail::Bound, pd::detail::ObliqueSlip;
+using Line = pd::Line<double>;
+using Touch = pd::detail::Touch<double>;
+
+namespace {
+
+constexpr double inf = std::numeric_limits<double>::infinity();
+const pd::Branch<double> branch{0.01, 0.5, 0.03, -0.02, 0};
+
+/// −λ (F + S ρ) u/ρ, F at no speed.
+long double force(const ObliqueSlip<double>& slip, const Line& load, long double t) {
+  const long double u = slip.u.value + slip.u.rate * t, w = slip.w.value + slip.w.rate * t;
+  const long double r = std::sqrt(u * u + w * w);
+  const long double friction = branch.force + branch.slope * (r - branch.from);
+  return -(load.value + load.rate * t) * friction * u / r;
+}
+
+void changes() {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> draw(-0.1, 0.1);
+  bool rates = true, bends = true, steep = true, speeds = true;
+  for (int i = 0; i < 500; ++i) {
+    const ObliqueSlip<double> slip{{draw(random), draw(random)}, {draw(random), draw(random)}};
+    const Line load{1 + draw(random), 10 * draw(random)};
+    const double speed = std::hypot(slip.u.value, slip.w.value);
+    const long double h = 1e-4L * speed;  // of third order beside the speed's rates of change
+    const auto at = [&](int k) { return force(slip, load, k * h); };
+    const long double rate = (8 * (at(1) - at(-1)) - (at(2) - at(-2))) / (12 * h);
+    const long double bend = (16 * (at(1) + at(-1)) - (at(2) + at(-2)) - 30 * at(0)) / (12 * h * h);
+    const double size = 0.04 * (1 + 1 / speed);
+    rates = rates && std::abs(slip.force_rate(branch, load) - rate) < 1e-10 * size;
+    bends = bends && std::abs(slip.force_bend(branch, load) - bend) < 1e-6 * size / speed;
+    ObliqueSlip<double> faster = slip, slower = slip;
+    faster.u.value += 1e-6 * speed;
+    slower.u.value -= 1e-6 * speed;
+    const long double fall = force(slower, load, 0) - force(faster, load, 0);
+    const auto steepness = static_cast<double>(fall / (2e-6L * speed));
+    steep = steep && near(slip.steepness(branch, load) / steepness, 1, 1e-5);
+    const auto square = [&](long double t) {
+      const long double u = slip.u.value + slip.u.rate * t, w = slip.w.value + slip.w.rate * t;
+      return (u * u + w * w) / 2;
+    };
+    const auto closing = static_cast<double>((square(h) - square(-h)) / (2 * h));
+    const auto parting = static_cast<double>((square(h) + square(-h) - 2 * square(0)) / (h * h));
+    speeds = speeds && near(slip.closing(), closing, 1e-12) && near(slip.parting(0), parting, 1e-9);
+  }
+  expect(rates, "the rate of the force is its derivative along straight velocities");
+  expect(bends, "... and the bend its second one");
+  expect(steep, "it falls with the velocity along the axis as steeply as it says");
+  expect(speeds, "closing() and parting() are the derivatives of ρ²/2");
+}
+
+/// A plate of friction 0.03 N that moves at 0.1 m/s, and across.
+Touch plate(Line across, Line load = {1, 0}) {
+  static const pd::Contact<double> contact{0.03, 0.04};
+  Touch touch(contact);
+  touch.surface = {0.1, 0.5};
+  touch.across = across;
+  touch.load = load;
+  touch.does = Touch::slip(1, Bound::none, 0);
+  return touch;
+}
+
+void asks() {
+  Touch touch = plate({0.3, 0});
+  Bound at = Bound::lower;
+  expect(pd::detail::asks_across(touch, 0.4, at) && touch.oblique() && at == Bound::none,
+         "a plate that begins to slide across slips in the one way that is left");
+  expect(near(touch.direction, 0.8, 1e-15) && touch.friction == 0.03, "... along its velocity");
+  Touch unloaded = plate({0.3, 0}, {0, 0});
+  expect(!pd::detail::asks_across(unloaded, 0.4, at) && !unloaded.oblique(),
+         "what carries nothing is not asked");
+  touch.across = {0, 0};
+  touch.load = {1, 0};
+  expect(
+      !pd::detail::asks_across(touch, -0.4, at) && touch.does.state == ContactState::slip_backward,
+      "where it no longer slides across it slips along the axis");
+  Touch still = plate({0, 0.2});
+  expect(pd::detail::asks_across(still, 0.0, at) &&
+             near(still.direction, -0.5 / std::hypot(0.5, 0.2), 1e-15),
+         "from no velocity it sets out against that of its surface");
+}
+
+void sets_out_and_lands() {
+  Touch touch = plate({0, 0.2});
+  touch.friction = 0.03;
+  const double mass = 0.01, pull = 0.02;
+  const double p = pd::detail::set_out_across(mass, touch, pull), direction = touch.direction;
+  expect(near(p, 0.2 * direction / std::sqrt(1 - direction * direction), 1e-12) &&
+             near((mass * p + 0.03 * direction) / (pull - mass * 0.5), 1, 1e-12),
+         "a pin sets out in the direction in which the forces along the axis balance");
+  touch.does = {ContactState::slip_oblique, Bound::none, 0, 0.0};
+  touch.across = {0, 0};
+  pd::detail::State<double> state{1e-3, 0.1 * (1 + 4e-16)};
+  pd::detail::land_along_axis(state, touch, false, 0.0, mass, 1.0);
+  expect(state.v == 0.1, "a pin that has the plate's velocity to rounding has it exactly");
+  state.v = 0.101;
+  pd::detail::land_along_axis(state, touch, false, 1e-9, mass, 1.0);
+  expect(state.v == 0.101, "... one that slides does not");
+  state.v = 0.1 + 3e-9;
+  pd::detail::land_along_axis(state, touch, false, 1e-9, mass, 1.0);
+  expect(state.v == 0.1 + 3e-9, "... nor one that is faster along than its plate was across");
+  state.v = 0.1 + 5e-10;
+  pd::detail::land_along_axis(state, touch, true, 1e-9, mass, 1.0);
+  expect(touch.surface.value == state.v, "... and a pin on the finger keeps its own");
+}
+
+}  // namespace
+
+int main() {
+  changes();
+  asks();
+  sets_out_and_lands();
+  return check::status();
+}
