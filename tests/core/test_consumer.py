@@ -128,6 +128,13 @@ def test_each_header_has_a_test_file() -> None:
     assert headers <= tested, sorted(headers - tested)
 
 
+def test_a_build_is_optimised_unless_it_is_told_otherwise(tmp_path: Path) -> None:
+    for settings, kind in ((), "Release"), (("-DCMAKE_BUILD_TYPE=Debug",), "Debug"):
+        folder = tmp_path / kind
+        run("cmake", "-S", ROOT, "-B", folder, "-G", "Ninja", *settings)
+        assert f"CMAKE_BUILD_TYPE:STRING={kind}\n" in (folder / "CMakeCache.txt").read_text()
+
+
 @COMPILES
 def test_add_subdirectory(tmp_path: Path) -> None:
     build(CONSUMER, tmp_path / "build", f"-DPINDRIVE_SOURCE={ROOT.as_posix()}")
