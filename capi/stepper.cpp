@@ -52,14 +52,15 @@ void exchange(Bytes& bytes, Numbers& at, State& s) {
     number(contact->kinetic, contact->static_limit, contact->stiffness);
     rows(contact->curve);
   }
-  const auto option = [&](auto& o) { number(o.state, o.at, o.branch, o.sense); };
+  const auto option = [&](auto& o) { number(o.state, o.guard, o.branch, o.slip_sign); };
   const auto line = [&](auto& l) { number(l.value, l.rate); };
   const auto held = [&](auto& h) {
     number(h.since, h.ends);
     line(h.line);
   };
   number(s.now, s.since, s.since_error);
-  number(s.pin.x, s.pin.v, s.pin.skin, s.pin.x_size, s.pin.roundoff, s.pin.slide);
+  number(s.pin.x, s.pin.v, s.pin.skin, s.pin.position_scale, s.pin.force_error,
+         s.pin.slider_velocity);
   option(s.plate);
   option(s.finger);
   number(s.at_plate, s.at_finger, s.limit, s.stop, s.stop_released, s.stop_met, s.struck);

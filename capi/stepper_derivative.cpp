@@ -22,10 +22,10 @@ StateOfDual lifted(const State& s) {
     return lifted;
   };
   const auto option = [](const auto& o) {
-    return decltype(StateOfDual::plate){o.state, o.at, o.branch, o.sense};
+    return decltype(StateOfDual::plate){o.state, o.guard, o.branch, o.slip_sign};
   };
-  const pd::detail::State<Dual> pin{s.pin.x,      s.pin.v,        s.pin.skin,
-                                    s.pin.x_size, s.pin.roundoff, s.pin.slide};
+  const pd::detail::State<Dual> pin{
+      s.pin.x, s.pin.v, s.pin.skin, s.pin.position_scale, s.pin.force_error, s.pin.slider_velocity};
   return {s.now,
           s.since,
           s.since_error,

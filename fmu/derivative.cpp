@@ -102,7 +102,7 @@ pindrive_error Instance::derivative(std::size_t unknown, const unsigned* knowns,
   if (values_.initialised) {
     const Changing same(stepper_->at, pd::without_change(stepper_->at));
     const Number v(pin.v, now.plate_velocity.value.slope);  // beside a housing that jumps
-    const pd::detail::State<Number> state{pin.x, v, pin.skin, 0, 0, pin.slide};
+    const pd::detail::State<Number> state{pin.x, v, pin.skin, 0, 0, pin.slider_velocity};
     value = slope_of({same.drive, mode, now, state}, which);
     return PINDRIVE_OK;
   }

@@ -176,7 +176,7 @@ void bounds() {
     const double across = 1e-4 * (1 + i % 7), x = 1e-4 * i;
     auto state = follow(pulled(across), {x, 0.06, 0}, 0.003, true).state;
     const pd::CreepFlow<double> step(pulled(across), state, 0.002);
-    if (!step.holds()) continue;
+    if (!step.is_valid()) continue;
     ++held;
     const auto fine = follow(pulled(L(across)), {state.x, state.v, 0}, step.span(), false);
     const auto end = step.at(step.span());
@@ -188,8 +188,8 @@ void bounds() {
   }
   expect(held > 30, "creeps too seldom", held);
   // A pin that is off the velocity of creep, or cannot be held, does not creep.
-  expect(!pd::CreepFlow<double>(pulled(1e-3), {1e-3, 0.05, 0}, 0.01).holds(), "off", 0);
-  expect(!pd::CreepFlow<double>(pulled(1e-3), {8e-3, 0.06, 0}, 0.01).holds(), "not held", 0);
+  expect(!pd::CreepFlow<double>(pulled(1e-3), {1e-3, 0.05, 0}, 0.01).is_valid(), "off", 0);
+  expect(!pd::CreepFlow<double>(pulled(1e-3), {8e-3, 0.06, 0}, 0.01).is_valid(), "not held", 0);
 }
 
 /// Derivatives beside differences.

@@ -54,7 +54,7 @@ void free_of_stops() {
 }
 
 void stops() {
-  const auto held = [](const pd::Segment<double>& s) { return pd::touches(s.mode.stop); };
+  const auto held = [](const pd::Segment<double>& s) { return pd::in_contact(s.mode.stop); };
   Drive drive{0.01, 100, 0.4, {}, {}, {1e-3}};
   const pd::Inputs<double> pushed{pd::Profile<double>(0.0),
                                   0,

@@ -6,21 +6,21 @@
 namespace pd = pindrive;
 using check::expect;
 using check::near;
-using pd::detail::Bound;
+using pd::detail::ActiveGuard;
 
 namespace {
 
-using Touch = pd::detail::Touch<double>;
+using ContactPoint = pd::detail::ContactPoint<double>;
 using Guards = pd::detail::Guards<double>;
 
 constexpr double never = std::numeric_limits<double>::infinity();
 const pd::Contact<double> coulomb{0.1, 0.1};
 
-Touch slipping(double v, double surface, double rate = 0) {
-  Touch touch(coulomb);
+ContactPoint slipping(double v, double surface, double rate = 0) {
+  ContactPoint touch(coulomb);
   touch.surface = {surface, rate};
   pd::detail::State<double> state{0, v};
-  touch.begin(state, false);
+  touch.initialize(state, false);
   return touch;
 }
 
@@ -61,34 +61,35 @@ void nearest_surface() {
 void limits() {
   Guards guards;
   const pd::Oscillator<double> o(0.01, 0, 100);
-  guards.add({0.3, 0, 0, -0.6}, Bound::none, true, 1);
-  guards.add({0.3, 0, 0, 0.6}, Bound::none, true, -1);
+  guards.add({0.3, 0, 0, -0.6}, ActiveGuard::none, true, 1);
+  guards.add({0.3, 0, 0, 0.6}, ActiveGuard::none, true, -1);
   expect(count_of(guards) == 1, "what only grows is no guard");
   expect(guards.earliest(o, 0.0, 0.4, 0.0) == 0.4, "a row of an input before it comes first");
   expect(near(guards.earliest(o, 0.0, never, 0.0), 0.5, 1e-15), "a line comes to zero");
-  const auto put_off = [&](double row) {
-    return guards.put_off(0.5, row, [&](const auto& guard, double tau) {
+  const auto defer_grazing = [&](double row) {
+    return guards.defer_grazing(0.5, row, [&](const auto& guard, double tau) {
       return guards.stays(guard, o, tau, 1e-12);
     });
   };
-  expect(put_off(0.6) == 0.5, "what falls on comes to zero where it does");
-  expect(put_off(0.5 + 1e-14) == 0.5 + 1e-14, "what falls by rounding until a row does so there");
-  expect(put_off(never) == 0.5, "without a row there is nothing to wait for");
+  expect(defer_grazing(0.6) == 0.5, "what falls on comes to zero where it does");
+  expect(defer_grazing(0.5 + 1e-14) == 0.5 + 1e-14,
+         "what falls by rounding until a row does so there");
+  expect(defer_grazing(never) == 0.5, "without a row there is nothing to wait for");
 }
 
 void known() {
   Guards guards;
-  guards.add_known(0.5, Bound::none, true, 1, true);
-  guards.add_known(0.8, Bound::lower, false, 0, false);
+  guards.add_known(0.5, ActiveGuard::none, true, 1, true);
+  guards.add_known(0.8, ActiveGuard::lower, false, 0, false);
   expect(guards.earliest_known(0.4) == 0.4 && guards.earliest_known(never) == 0.5,
          "the earliest of known zeros, up to a limit");
-  const auto put_off = [&](bool stays) {
-    return guards.put_off(0.5, never, [&](const auto& guard, double tau) {
+  const auto defer_grazing = [&](bool stays) {
+    return guards.defer_grazing(0.5, never, [&](const auto& guard, double tau) {
       expect(guard.zero == 0.5 && tau == 0.8, "it is asked of what came to zero alone");
       return stays;
     });
   };
-  expect(put_off(true) == 0.8 && put_off(false) == 0.5,
+  expect(defer_grazing(true) == 0.8 && defer_grazing(false) == 0.5,
          "a stick force that stays at its limit waits for the next speed that comes to zero");
 }
 

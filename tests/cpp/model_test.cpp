@@ -39,7 +39,8 @@ void inputs() {
   expect(profile.from(0.0).value == 5 && profile.from(0.0).rate == 0, "constant before its rows");
   expect(profile.from(1.5).value == 6 && profile.from(1.5).rate == 2, "linear between them");
   expect(profile.from(2.0).value == 1, "after a step at the step");
-  expect(profile.next_row(1.0) == 2 && profile.next_row(4.0) == never, "rows are after a time");
+  expect(profile.next_breakpoint(1.0) == 2 && profile.next_breakpoint(4.0) == never,
+         "rows are after a time");
   expect(pd::Profile<double>(3).constant() && pd::Profile<double>(3).from(9.0).value == 3,
          "a number is a profile");
 }

@@ -11,9 +11,9 @@ namespace pd = pindrive;
 using check::expect;
 using check::near;
 using pd::ContactState;
-using pd::detail::Bound, pd::detail::ObliqueSlip;
+using pd::detail::ActiveGuard, pd::detail::ObliqueSlip;
 using Line = pd::Line<double>;
-using Touch = pd::detail::Touch<double>;
+using ContactPoint = pd::detail::ContactPoint<double>;
 
 namespace {
 
@@ -64,63 +64,87 @@ void changes() {
 }
 
 /// A plate of friction 0.03 N that moves at 0.1 m/s, and across.
-Touch plate(Line across, Line load = {1, 0}) {
+ContactPoint plate(Line across, Line load = {1, 0}) {
   static const pd::Contact<double> contact{0.03, 0.04};
-  Touch touch(contact);
+  ContactPoint touch(contact);
   touch.surface = {0.1, 0.5};
   touch.across = across;
   touch.load = load;
-  touch.does = Touch::slip(1, Bound::none, 0);
+  touch.mode = ContactPoint::slip(1, ActiveGuard::none, 0);
   return touch;
 }
 
 void asks() {
-  Touch touch = plate({0.3, 0});
-  Bound at = Bound::lower;
-  expect(pd::detail::asks_across(touch, 0.4, at) && touch.oblique() && at == Bound::none,
+  ContactPoint touch = plate({0.3, 0});
+  ActiveGuard at = ActiveGuard::lower;
+  expect(pd::detail::enumerate_oblique_options(touch, 0.4, at) && touch.oblique() &&
+             at == ActiveGuard::none,
          "a plate that begins to slide across slips in the one way that is left");
   expect(near(touch.direction, 0.8, 1e-15) && touch.friction == 0.03, "... along its velocity");
-  Touch unloaded = plate({0.3, 0}, {0, 0});
-  expect(!pd::detail::asks_across(unloaded, 0.4, at) && !unloaded.oblique(),
+  ContactPoint unloaded = plate({0.3, 0}, {0, 0});
+  expect(!pd::detail::enumerate_oblique_options(unloaded, 0.4, at) && !unloaded.oblique(),
          "what carries nothing is not asked");
   touch.across = {0, 0};
   touch.load = {1, 0};
-  expect(
-      !pd::detail::asks_across(touch, -0.4, at) && touch.does.state == ContactState::slip_backward,
-      "where it no longer slides across it slips along the axis");
-  Touch still = plate({0, 0.2});
-  expect(pd::detail::asks_across(still, 0.0, at) &&
+  expect(!pd::detail::enumerate_oblique_options(touch, -0.4, at) &&
+             touch.mode.state == ContactState::slip_backward,
+         "where it no longer slides across it slips along the axis");
+  ContactPoint still = plate({0, 0.2});
+  expect(pd::detail::enumerate_oblique_options(still, 0.0, at) &&
              near(still.direction, -0.5 / std::hypot(0.5, 0.2), 1e-15),
          "from no velocity it sets out against that of its surface");
 }
 
 void sets_out_and_lands() {
-  Touch touch = plate({0, 0.2});
+  ContactPoint touch = plate({0, 0.2});
   touch.friction = 0.03;
   const double mass = 0.01, pull = 0.02;
-  const double p = pd::detail::set_out_across(mass, touch, pull), direction = touch.direction;
+  const double p = pd::detail::oblique_departure(mass, touch, pull), direction = touch.direction;
   expect(near(p, 0.2 * direction / std::sqrt(1 - direction * direction), 1e-12) &&
              near((mass * p + 0.03 * direction) / (pull - mass * 0.5), 1, 1e-12),
          "a pin sets out in the direction in which the forces along the axis balance");
-  touch.does = {ContactState::slip_oblique, Bound::none, 0, 0.0};
+  touch.mode = {ContactState::slip_oblique, ActiveGuard::none, 0, 0.0};
   touch.across = {0, 0};
   pd::detail::State<double> state{1e-3, 0.1 * (1 + 4e-16)};
-  pd::detail::land_along_axis(state, touch, false, 0.0, mass, 1.0);
+  pd::detail::end_oblique_slip(state, touch, false, 0.0, mass, 1.0);
   expect(state.v == 0.1, "a pin that has the plate's velocity to rounding has it exactly");
   state.v = 0.101;
-  pd::detail::land_along_axis(state, touch, false, 1e-9, mass, 1.0);
+  pd::detail::end_oblique_slip(state, touch, false, 1e-9, mass, 1.0);
   expect(state.v == 0.101, "... one that slides does not");
   state.v = 0.1 + 3e-9;
-  pd::detail::land_along_axis(state, touch, false, 1e-9, mass, 1.0);
+  pd::detail::end_oblique_slip(state, touch, false, 1e-9, mass, 1.0);
   expect(state.v == 0.1 + 3e-9, "... nor one that is faster along than its plate was across");
   state.v = 0.1 + 5e-10;
-  pd::detail::land_along_axis(state, touch, true, 1e-9, mass, 1.0);
+  pd::detail::end_oblique_slip(state, touch, true, 1e-9, mass, 1.0);
   expect(touch.surface.value == state.v, "... and a pin on the finger keeps its own");
+}
+
+void departures() {
+  double worst = 0;
+  bool odd = true, grows = true;
+  for (const double mass : {1e-3, 1.0})
+    for (const double friction : {0.0, 1e-4, 1.0, 1e4})
+      for (const double across : {1e-3, -1.0, 1e3}) {
+        double before = 0;
+        for (const double pull : {1e-6, 1e-2, 1.0, 1e3}) {
+          const double p = pd::departure_acceleration(mass, friction, across, pull);
+          const double force = mass * p + friction * p / std::hypot(p, across);
+          worst = std::max(worst, std::abs(force - pull) / pull);
+          odd = odd && pd::departure_acceleration(mass, friction, across, -pull) == -p;
+          grows = grows && p > before;
+          before = p;
+        }
+      }
+  expect(worst < 1e-14, "the acceleration that sets out needs the force that pulls");
+  expect(odd, "... to either side alike");
+  expect(grows, "... and grows with the pull");
+  expect(pd::departure_acceleration(1.0, 0.5, 1.0, 0.0) == 0, "without a pull it is zero");
 }
 
 }  // namespace
 
 int main() {
+  departures();
   changes();
   asks();
   sets_out_and_lands();

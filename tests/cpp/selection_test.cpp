@@ -17,10 +17,10 @@ struct Carried : pd::detail::Selection<double> {
   using Base = pd::detail::Selection<double>;
   Carried(const Drive& drive, double x, pd::Line<double> plate, int at_limit = 0)
       : Base(drive, 0, x, plate.value) {
-    limit_ = at_limit;
+    stick_limit_side_ = at_limit;
     plate_.surface = plate;
-    plate_.begin(state_, false);
-    finger_.begin(state_, false);
+    plate_.initialize(state_, false);
+    finger_.initialize(state_, false);
     found = select();
   }
   using Base::acceleration_, Base::tangential_, Base::guards_, Base::stick_force_, Base::mode;
@@ -57,7 +57,7 @@ void sticks() {
          "two surfaces at rest hold it together");
 }
 
-void slips() {
+void is_slip() {
   const Drive d = drive(weak, absent);
   const Carried ahead(d, -x, {v, 0}), behind(d, x, {v, 0});
   expect(ahead.mode().plate == ContactState::slip_forward &&
@@ -92,7 +92,7 @@ void at_limit() {
 
 int main() {
   sticks();
-  slips();
+  is_slip();
   at_limit();
   return check::status();
 }

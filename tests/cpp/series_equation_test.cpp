@@ -1,5 +1,4 @@
-// The equation of a mode without a closed form at a later time, and how a pin sets out from a plate that
-// begins to slide across.
+// The equation of a mode without a closed form at a later time, and its start from a load of zero.
 #include "pindrive/series/series_equation.hpp"
 
 #include <array>
@@ -30,28 +29,6 @@ void later() {
          "... and the constants stay");
 }
 
-void sets_out() {
-  double worst = 0;
-  bool odd = true, grows = true;
-  for (const double mass : {1e-3, 1.0})
-    for (const double friction : {0.0, 1e-4, 1.0, 1e4})
-      for (const double across : {1e-3, -1.0, 1e3}) {
-        double before = 0;
-        for (const double pull : {1e-6, 1e-2, 1.0, 1e3}) {
-          const double p = pd::setting_out(mass, friction, across, pull);
-          const double force = mass * p + friction * p / std::hypot(p, across);
-          worst = std::max(worst, std::abs(force - pull) / pull);
-          odd = odd && pd::setting_out(mass, friction, across, -pull) == -p;
-          grows = grows && p > before;
-          before = p;
-        }
-      }
-  expect(worst < 1e-14, "the acceleration that sets out needs the force that pulls");
-  expect(odd, "... to either side alike");
-  expect(grows, "... and grows with the pull");
-  expect(pd::setting_out(1.0, 0.5, 1.0, 0.0) == 0, "without a pull it is zero");
-}
-
 /// (f y)' = K x' − D y − E with f = 2 τ, K = D = 7 and E = 3, of a pin of x' = 5 + 4 τ.
 void grows_from_nothing() {
   pd::SeriesEquation<double> e{0.01, 0.4, 100};
@@ -70,6 +47,5 @@ void grows_from_nothing() {
 int main() {
   later();
   grows_from_nothing();
-  sets_out();
   return check::status();
 }

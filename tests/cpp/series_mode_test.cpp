@@ -8,7 +8,7 @@ namespace pd = pindrive;
 using check::expect;
 using check::near;
 using pd::ContactState, pd::Mode;
-using pd::detail::Bound;
+using pd::detail::ActiveGuard;
 using Line = pd::Line<double>;
 
 namespace {
@@ -76,9 +76,12 @@ void equations() {
   const auto sticks = pd::SeriesMode<double>(soft, {forward, elastic, 1, 0}, inputs).equation();
   expect(sticks.skin_factor.value == 1 && sticks.skin_stiffness == 400 && sticks.skin_decay == 0,
          "skin that sticks pulls with its force");
-  const auto lags = pd::SeriesMode<double>(soft, {forward, forward, 1, 1}, inputs).equation();
-  expect(near(lags.skin_factor.value, 0.3, 1e-15) && near(lags.skin_factor.rate, -0.2, 1e-15) &&
-             lags.skin_decay == 400 && near(lags.skin_drift, -2 * finger, 1e-15),
+  const auto has_slider_state =
+      pd::SeriesMode<double>(soft, {forward, forward, 1, 1}, inputs).equation();
+  expect(near(has_slider_state.skin_factor.value, 0.3, 1e-15) &&
+             near(has_slider_state.skin_factor.rate, -0.2, 1e-15) &&
+             has_slider_state.skin_decay == 400 &&
+             near(has_slider_state.skin_drift, -2 * finger, 1e-15),
          "skin that slips on a slope pulls with what its slider's velocity makes of that");
   pd::Drive<double> stopped = rigid;
   stopped.stops = {1e-3, 5000, 2};
@@ -100,7 +103,7 @@ void guards() {
   const pd::SeriesMode<double> mode(d, {forward, ContactState::absent, 1, 0}, inputs);
   const auto step = pd::series_step(mode.equation(), {0, 0.06}, 0.01);
   const auto found = mode.guards(step, {});
-  expect(found.end() - found.begin() == 1 && found.begin()->bound == Bound::lower &&
+  expect(found.end() - found.begin() == 1 && found.begin()->bound == ActiveGuard::lower &&
              found.begin()->plate,
          "a slide on the last branch ends at its lower end");
   // m u' = −(1 + τ) (0.015 + 0.1 u): u + 0.15 falls as e^(−10 (τ + τ²/2)), from 0.21 to 0.2.

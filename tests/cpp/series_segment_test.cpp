@@ -10,8 +10,8 @@ namespace pd = pindrive;
 using check::expect;
 using check::near;
 using pd::ContactState;
-using pd::detail::Bound;
-using Touch = pd::detail::Touch<double>;
+using pd::detail::ActiveGuard;
+using ContactPoint = pd::detail::ContactPoint<double>;
 
 namespace {
 
@@ -30,13 +30,13 @@ struct Slide {
   explicit Slide(double span) {
     drive.plate.curve = curve;
     drive.plate.branches = 2;
-    Touch plate(drive.plate), finger(drive.finger);
+    ContactPoint plate(drive.plate), finger(drive.finger);
     plate.load = {1, 50};
-    plate.does = Touch::slip(1, Bound::none, 1);
+    plate.mode = ContactPoint::slip(1, ActiveGuard::none, 1);
     plate.friction = plate.branch().at(state.v);
-    finger.does = {};
+    finger.mode = {};
     acceleration = rate({state.x, state.v}, 0)[1];
-    segment.mode = {plate.does.state, finger.does.state, 1, 0};
+    segment.mode = {plate.mode.state, finger.mode.state, 1, 0};
     segment.begin = 2;
     series.begin(segment, guards, drive, plate, finger, {}, state, acceleration, 0, false, span);
     finger_ = finger;
@@ -63,7 +63,7 @@ struct Slide {
   }
 
  private:
-  Touch finger_{pd::Contact<double>{}};
+  ContactPoint finger_{pd::Contact<double>{}};
 };
 
 void follows() {
@@ -79,14 +79,14 @@ void follows() {
   slide.move(1.5e-3);
   expect(near(slide.state.x / expected[0], 1, 1e-12) && near(slide.state.v / expected[1], 1, 1e-12),
          "it moves as its differential equation says");
-  expect(slide.state.x_size == slide.state.x, "... and the largest position is known");
+  expect(slide.state.position_scale == slide.state.x, "... and the largest position is known");
 }
 
 void ends() {
   Slide slide(0.1);
   const double first = slide.series.earliest(2, 0.1);
   expect(slide.guards.end() - slide.guards.begin() == 1 &&
-             slide.guards.begin()->bound == Bound::lower && slide.guards.begin()->plate &&
+             slide.guards.begin()->bound == ActiveGuard::lower && slide.guards.begin()->plate &&
              slide.guards.begin()->zero == first,
          "what ends it is its speed, that comes to a breakpoint");
   expect(near(slide.after(first)[1], 0.05, 1e-12), "... at the time at which it does");

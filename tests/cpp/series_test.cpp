@@ -88,7 +88,7 @@ struct Stored {
   }
 
   Followed<T> follow() const {
-    using pd::detail::Bound;
+    using pd::detail::ActiveGuard;
     const pd::Branch<T> of_plate = branch(c.plate_branch), of_finger = branch(c.finger_branch);
     pd::Drive<T> drive{mass, stiffness, T(c.damping), {}, {}};
     drive.plate = {T(0), T(c.plate_static), std::numeric_limits<T>::infinity(), &of_plate, 1};
@@ -103,9 +103,9 @@ struct Stored {
     typename pd::SeriesMode<T>::Reached at;
     const double speed = abs(c.v - c.v_p[0]);  // does it begin at an end of its branch?
     if (abs(c.plate) == 1 && abs(speed - c.plate_branch[1]) < 1e-14 * speed)
-      at.plate = Bound::lower;
+      at.plate = ActiveGuard::lower;
     if (abs(c.plate) == 1 && abs(speed - c.plate_branch[2]) < 1e-14 * speed)
-      at.plate = Bound::upper;
+      at.plate = ActiveGuard::upper;
 
     pd::SeriesState<T> state{x, v, T(c.skin)};
     Followed<T> found{T(0), x, v, T(0)};
@@ -136,8 +136,9 @@ struct Stored {
   /// As the oracle numbers them.
   template <class Guard>
   static int number(const Guard& guard, const pd::Mode& mode) {
-    using pd::detail::Bound;
-    if (guard.bound != Bound::none) return (guard.plate ? 1 : 3) + (guard.bound == Bound::upper);
+    using pd::detail::ActiveGuard;
+    if (guard.bound != ActiveGuard::none)
+      return (guard.plate ? 1 : 3) + (guard.bound == ActiveGuard::upper);
     const bool skin = mode.finger == pd::ContactState::elastic_stick;
     return (skin ? 5 : 7) + (guard.side < 0);
   }

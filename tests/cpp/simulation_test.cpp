@@ -141,7 +141,7 @@ void hard_drives() {
   const Segments turns = hard("skin-turns-at-its-limit-by-rounding");
   expect(turns.size() > 10 && std::none_of(turns.begin() + 1, turns.end(),
                                            [](const auto& s) {
-                                             return slips(s.mode.finger) &&
+                                             return is_slip(s.mode.finger) &&
                                                     s.end - s.begin < 1e-6 && s.begin > 1.5;
                                            }),
          "skin whose vibration reaches its limit by rounding turns there");

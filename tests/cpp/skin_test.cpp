@@ -11,11 +11,11 @@ namespace pd = pindrive;
 using check::expect;
 using check::near;
 using pd::ContactState;
-using pd::detail::Bound;
+using pd::detail::ActiveGuard;
 
 namespace {
 
-using Touch = pd::detail::Touch<double>;
+using ContactPoint = pd::detail::ContactPoint<double>;
 using State = pd::detail::State<double>;
 
 constexpr double never = std::numeric_limits<double>::infinity();
@@ -32,152 +32,155 @@ const pd::Branch<double> peak[] = {
 
 State at(double v, double force) { return {1e-3, v, force, 1e-3, 1e-16}; }
 
-Touch gripping(const pd::Contact<double>& contact, double load = 1) {
-  Touch touch(contact);
+ContactPoint sticking(const pd::Contact<double>& contact, double load = 1) {
+  ContactPoint touch(contact);
   touch.load = {load, 0};
-  touch.does = {ContactState::elastic_stick, Bound::none, 0, 0};
+  touch.mode = {ContactState::elastic_stick, ActiveGuard::none, 0, 0};
   return touch;
 }
 
-void grips() {
-  Touch touch = gripping(skin);
-  touch.ask(at(0.1, -0.25));
+void sticks() {
+  ContactPoint touch = sticking(skin);
+  touch.enumerate_options(at(0.1, -0.25));
   expect(touch.count == 1 && touch.option(0).state == ContactState::elastic_stick,
          "within its limit skin grips");
   expect(near(touch.force(at(0.1, -0.25)), 0.25, 1e-15), "with the force that it has");
-  touch.ask(at(-0.1, -0.3));
+  touch.enumerate_options(at(-0.1, -0.3));
   expect(touch.count == 2 && touch.option(1).state == ContactState::slip_backward,
          "at its limit, stretched further, it may slip");
-  Touch falling_load = gripping(skin);
+  ContactPoint falling_load = sticking(skin);
   falling_load.load.rate = -7;
-  falling_load.ask(at(0, -0.3));
+  falling_load.enumerate_options(at(0, -0.3));
   const double level = 7 * 0.3 / 1000, rounded = std::nextafter(level, 1);
-  expect(falling_load.off_level(rounded) == 0 && falling_load.off_level(1.001 * level) > 0,
-         "released just as fast as its limit falls, to rounding, it stays there");
-  Touch light = gripping(skin, 0.5);
-  light.ask(at(-0.1, -0.25));
+  expect(
+      falling_load.excess_velocity(rounded) == 0 && falling_load.excess_velocity(1.001 * level) > 0,
+      "released just as fast as its limit falls, to rounding, it stays there");
+  ContactPoint light = sticking(skin, 0.5);
+  light.enumerate_options(at(-0.1, -0.25));
   expect(light.count == 1 && light.option(0).state == ContactState::slip_backward,
          "where its load has jumped to half it cannot but slip");
-  light.does = light.option(0);
+  light.mode = light.option(0);
   State state = at(-0.1, -0.25);
-  light.land(state);
-  expect(light.drops() && near(state.skin, -0.1, 1e-15), "and is as short as its friction at once");
+  light.apply_jump(state);
+  expect(light.shortens_skin() && near(state.skin, -0.1, 1e-15),
+         "and is as short as its friction at once");
 }
 
-void slips() {
-  Touch touch = gripping(lagging);
-  touch.does = Touch::slip(1, Bound::none);
+void is_slip() {
+  ContactPoint touch = sticking(lagging);
+  touch.mode = ContactPoint::slip(1, ActiveGuard::none);
   State state = at(0.08, 0.25);
-  state.slide = 0.05;
-  touch.ask(state);
-  expect(touch.lags() && near(touch.slide(), 0.05, 1e-15) && near(touch.gap(0.08), 0.03, 1e-15),
+  state.slider_velocity = 0.05;
+  touch.enumerate_options(state);
+  expect(touch.has_slider_state() && near(touch.slider_speed(), 0.05, 1e-15) &&
+             near(touch.relative_speed(0.08), 0.03, 1e-15),
          "on a rising curve its slider has a speed of its own");
   expect(near(touch.skin_force(state, 2), 0.5, 1e-15), "its skin carries the friction of that");
   touch.load = {0.5, 0};
   State before = state;
-  touch.keeps_force(before, 0.50001);
+  touch.keep_force(before, 0.50001);
   expect(near(touch.skin_force(before, 0.5), touch.skin_force(state, 0.50001), 1e-12),
          "within the rounding of a time it keeps its force as the load changes");
-  Touch even = gripping(skin);
-  even.does = Touch::slip(1, Bound::none);
-  expect(!even.lags(), "under Coulomb friction it slides with the pin");
+  ContactPoint even = sticking(skin);
+  even.mode = ContactPoint::slip(1, ActiveGuard::none);
+  expect(!even.has_slider_state(), "under Coulomb friction it slides with the pin");
   even.load = {1, 2};
-  expect(near(even.stretching(0.2), 4e-4, 1e-15), "less what it stretches as its load grows");
+  expect(near(even.stretch_rate(0.2), 4e-4, 1e-15), "less what it stretches as its load grows");
 }
 
 void runs_away_at_rest() {
-  Touch touch(pd::Contact<double>{0, 0, 1000, peak, 3});
+  ContactPoint touch(pd::Contact<double>{0, 0, 1000, peak, 3});
   touch.load = {1, 0};
-  touch.does = Touch::slip(1, Bound::none);
-  touch.reached = Bound::upper;
+  touch.mode = ContactPoint::slip(1, ActiveGuard::none);
+  touch.reached_guard = ActiveGuard::upper;
   State state = at(0, 0.02);
-  state.slide = 0.01;
-  touch.ask(state);
+  state.slider_velocity = 0.01;
+  touch.enumerate_options(state);
   expect(touch.count == 4 && touch.option(1).state == ContactState::elastic_stick &&
              touch.option(2).state == ContactState::slip_forward &&
              touch.option(3).state == ContactState::slip_backward,
          "skin that has lost its force beside a pin at rest may set out either way");
   const auto holds = [&](int option, double acceleration) {
-    touch.does = touch.option(option);
-    return touch.goes_inside(state, acceleration);
+    touch.mode = touch.option(option);
+    return touch.is_admissible(state, acceleration);
   };
   expect(holds(1, 0) && !holds(1, 1), "it rests with a pin that rests");
   expect(holds(2, 1) && !holds(2, -1) && holds(3, -1) && !holds(3, 1),
          "and follows one that does not");
-  touch.does = touch.option(2);
-  touch.land(state);
-  expect(state.skin == 0 && state.slide == 0, "without force");
+  touch.mode = touch.option(2);
+  touch.apply_jump(state);
+  expect(state.skin == 0 && state.slider_velocity == 0, "without force");
 
-  Touch lifted = gripping({0, 0, 1000, peak, 3});
+  ContactPoint lifted = sticking({0, 0, 1000, peak, 3});
   lifted.load = {0, 5};
   State pressed = at(0, -0.1);
-  lifted.ask(pressed);
+  lifted.enumerate_options(pressed);
   expect(lifted.count == 3 && lifted.option(0).state == ContactState::elastic_stick &&
              lifted.option(1).state == ContactState::slip_forward &&
              lifted.option(2).state == ContactState::slip_backward,
          "as it may where its load has jumped to none and grows");
-  lifted.does = lifted.option(2);
-  lifted.land(pressed);
-  expect(pressed.skin == 0 && pressed.slide == 0, "from where it has no force either");
+  lifted.mode = lifted.option(2);
+  lifted.apply_jump(pressed);
+  expect(pressed.skin == 0 && pressed.slider_velocity == 0, "from where it has no force either");
 
-  Touch turned(pd::Contact<double>{0, 0, 1000, peak, 3});
+  ContactPoint turned(pd::Contact<double>{0, 0, 1000, peak, 3});
   turned.load = {1, 0};
-  turned.does = Touch::slip(1, Bound::none);
+  turned.mode = ContactPoint::slip(1, ActiveGuard::none);
   State back = at(-0.01, 0);
-  back.slide = 0.005;
-  turned.ask(back);
+  back.slider_velocity = 0.005;
+  turned.enumerate_options(back);
   expect(
       turned.option(0).state == ContactState::slip_backward,
       "where a load jumps from none under a slider ahead of a pin that turned, it follows the pin");
 }
 
 void lifts() {
-  Touch touch = gripping(skin);
+  ContactPoint touch = sticking(skin);
   touch.load = {0, 5};
   State state = at(0.01, 0);
-  touch.ask(state);
-  expect(touch.keeps_off_zero(state, 1, 2) == 2 && touch.load.rate == 5,
+  touch.enumerate_options(state);
+  expect(touch.defer_first_grip(state, 1, 2) == 2 && touch.load.rate == 5,
          "a load that grows from zero is followed by skin without a curve");
-  Touch falls(pd::Contact<double>{0.2, 0.3, 1000, falling, 2});
+  ContactPoint falls(pd::Contact<double>{0.2, 0.3, 1000, falling, 2});
   falls.load = {0, 5};  // its limit grows as fast as a pin of 1.5 mm/s stretches it
   State slow = at(1.4e-3, 0), just = at(1.5e-3, 0);
-  expect(falls.keeps_off_zero(slow, 1, 2) == 2 && falls.load.rate == 5,
+  expect(falls.defer_first_grip(slow, 1, 2) == 2 && falls.load.rate == 5,
          "by one that it can grip under, too");
-  const double asked = falls.keeps_off_zero(just, 1, 2);
+  const double asked = falls.defer_first_grip(just, 1, 2);
   expect(asked > 1 && asked < 1 + 1e-9 && falls.load.rate == 0,
          "where it could grip at its limit only, it waits until its rounds have times");
   // 0 N up to 1 mm/s, from there 1 N for each 10 mm/s.
   const pd::Branch<double> rising[] = {{0, 1e-3, 0, 0, 0}, {1e-3, never, 0, 100, 0}};
-  Touch rises(pd::Contact<double>{0, 0, 1000, rising, 2});
+  ContactPoint rises(pd::Contact<double>{0, 0, 1000, rising, 2});
   rises.load = {0, 5};
   State level = at(1e-3, 0);
-  const double rising_from = rises.keeps_off_zero(level, 1, 2);
+  const double rising_from = rises.defer_first_grip(level, 1, 2);
   expect(rising_from > 1 && rising_from < 1 + 1e-9 && rises.load.rate == 0,
          "at the speed at which a curve begins to rise it waits no longer than it carries nothing");
   const pd::Branch<double> flat[] = {{0, never, 1.4e-6, 0, 0}};
-  Touch even(pd::Contact<double>{1.4e-6, 1.4e-6, 11.200000000000001, flat, 1});
+  ContactPoint even(pd::Contact<double>{1.4e-6, 1.4e-6, 11.200000000000001, flat, 1});
   even.load = {0, 800};  // its limit grows as fast as a pin of 0.1 mm/s stretches it, to rounding
   State as_fast = at(-1e-4, 0);
-  even.ask(as_fast);
+  even.enumerate_options(as_fast);
   expect(even.option(0).state == ContactState::elastic_stick,
          "where it can just grip at its limit, to rounding, it may");
   touch.load = {1, -1};
-  expect(touch.keeps_off_zero(state, 1, 2) == 2 && touch.load.value == 1,
+  expect(touch.defer_first_grip(state, 1, 2) == 2 && touch.load.value == 1,
          "one far from zero is followed until its row");
   touch.load = {1e-20, -1e-6};
-  touch.keeps_off_zero(state, 1, 1 + 1e-14);
+  touch.defer_first_grip(state, 1, 1 + 1e-14);
   expect(touch.load.value == 0 && touch.load.rate == 0, "the last of one that ends is none");
-  Touch rigid(pd::Contact<double>{0.2, 0.3});
+  ContactPoint rigid(pd::Contact<double>{0.2, 0.3});
   rigid.load = {1e-20, -1e-6};
-  expect(rigid.keeps_off_zero(state, 1, 1 + 1e-14) == 1 + 1e-14 && rigid.load.rate == -1e-6,
+  expect(rigid.defer_first_grip(state, 1, 1 + 1e-14) == 1 + 1e-14 && rigid.load.rate == -1e-6,
          "a rigid contact needs none of this");
 }
 
 }  // namespace
 
 int main() {
-  grips();
-  slips();
+  sticks();
+  is_slip();
   runs_away_at_rest();
   lifts();
   return check::status();

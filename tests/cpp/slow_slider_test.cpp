@@ -117,7 +117,8 @@ void up_to_no_load() {
   auto before = follow(e.from(1e-4), begins, 0.0199 - 1e-4, true).state;
   before.time = 0.1;
   const pd::SlowSliderFlow<double> step(last, before, 1e-4);
-  expect(step.holds() && step.span() == 1e-4, "to where rounding has it below zero", step.span());
+  expect(step.is_valid() && step.span() == 1e-4, "to where rounding has it below zero",
+         step.span());
 }
 
 /// It holds also up to a row that comes much sooner than anything changes.
@@ -126,15 +127,15 @@ void shortly_before_a_row() {
   const double row = 1e-10;
   auto begins = follow(e, {1e-3, 1e-3, 1e-3}, 1e-6, false).state;
   e = e.from(1e-6);
-  expect(pd::SlowSliderFlow<double>(e, begins, row).holds(), "up to a row", 0);
+  expect(pd::SlowSliderFlow<double>(e, begins, row).is_valid(), "up to a row", 0);
   begins.skin *= 1 + 1e-13;
-  expect(!pd::SlowSliderFlow<double>(e, begins, row).holds(), "off by more than rounding", 0);
+  expect(!pd::SlowSliderFlow<double>(e, begins, row).is_valid(), "off by more than rounding", 0);
 }
 
 /// A slider that is off that velocity is followed through its fast part, and soft skin all the way.
 void refuses() {
   const auto e = held_back(1e6, 5.0);
-  expect(!pd::SlowSliderFlow<double>(e, {1e-3, 0.05, 0.06}, 0.01).holds(), "off", 0);
+  expect(!pd::SlowSliderFlow<double>(e, {1e-3, 0.05, 0.06}, 0.01).is_valid(), "off", 0);
   expect(!pd::SlowSliderFlow<double>::stiff(held_back(3e3, 5.0), {1e-3, 0.05, 0.05}), "soft", 0);
   expect(!pd::SlowSliderFlow<double>::stiff(held_back(1e6, -1e5), {1e-3, 0.05, 0.05}),
          "a load that falls quickly", 0);

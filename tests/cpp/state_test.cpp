@@ -4,13 +4,13 @@
 #include "check.hpp"
 
 using check::expect;
-using pindrive::detail::stays_at_bound, pindrive::detail::touches;
+using pindrive::detail::stays_at_bound, pindrive::detail::grazes;
 
 int main() {
   // A parabola of slope r and curvature c dips by r²/2c.
-  expect(touches(-1e-3, 1.0, 1e-6) && !touches(-2e-3, 1.0, 1e-6),
+  expect(grazes(-1e-3, 1.0, 1e-6) && !grazes(-2e-3, 1.0, 1e-6),
          "a guard touches zero if it dips by no more than its roundoff");
-  expect(!touches(1e-9, 1.0, 1e-6) && !touches(0.0, 1.0, 1e-6) && !touches(-1e-9, -1.0, 1e-6),
+  expect(!grazes(1e-9, 1.0, 1e-6) && !grazes(0.0, 1.0, 1e-6) && !grazes(-1e-9, -1.0, 1e-6),
          "one that rises, stands or bends down does not touch");
   expect(stays_at_bound(-2e-9, -1e-9, 1e-9) && stays_at_bound(1e-9, 0.0, 1e-9),
          "what falls by rounding stays");

@@ -8,6 +8,7 @@
 #include "check.hpp"
 #include "pindrive/events/recurrence.hpp"
 #include "pindrive/events/simulate.hpp"
+#include "pindrive/motion/steady_since.hpp"
 
 namespace pd = pindrive;
 using check::expect;

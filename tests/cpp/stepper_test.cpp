@@ -405,11 +405,12 @@ std::array<Dual, 7> numbers_of(const pd::Stepper<Dual>& stepper) {
 
 struct Instants {
   double worst{0};
-  int held{0}, by_both{0}, at_stop{0}, oblique{0}, setting_out{0}, lagging{0}, slow{0};
+  int held{0}, by_both{0}, at_stop{0}, oblique{0}, departure_acceleration{0}, lagging{0}, slow{0};
 
   void compare(const pd::Instant<Dual>& now, const pd::Stepper<Dual>& known) {
-    if (known.segment().without !=
-        pd::FastPart::none) {  // its derivatives are those of the motion without its fast part
+    if (known.segment().eliminated !=
+        pd::EliminatedPart::
+            none) {  // its derivatives are those of the motion without its fast part
       ++slow;
       return;
     }
@@ -417,14 +418,14 @@ struct Instants {
     const auto one = numbers_of(now, rigid), other = numbers_of(known);
     const pd::Mode mode = known.mode();
     const auto lines = known.lines();
-    const bool across = pd::slips(mode.plate) && lines.oblique();
+    const bool across = pd::is_slip(mode.plate) && lines.oblique();
     held += mode.stuck();
     by_both += mode.both_stuck();
-    at_stop += pd::touches(mode.stop);
+    at_stop += pd::in_contact(mode.stop);
     oblique += across;
-    setting_out +=
+    departure_acceleration +=
         across && lines.across_velocity.value == 0 && one[1] == lines.plate_velocity.value;
-    lagging += pd::SeriesMode<Dual>(known.drive(), mode, lines).lags();
+    lagging += pd::SeriesMode<Dual>(known.drive(), mode, lines).has_slider_state();
     for (std::size_t i = 0; i < one.size(); ++i) {
       const double value = std::abs(one[i].value - other[i].value);
       const double slope = std::abs(one[i].slope - other[i].slope);
@@ -547,20 +548,21 @@ void at_an_instant() {
                       one.finger_branch == other.finger_branch && one.stop == other.stop;
     if (!same || now.plate_load.value == 0) continue;
     const pd::detail::State<double> pin = stepper.pin();
-    instants.compare({still.drive,
-                      one,
-                      next,
-                      {pin.x, {pin.v, next.plate_velocity.value.slope}, pin.skin, 0, 0, pin.slide}},
-                     later);
+    instants.compare(
+        {still.drive,
+         one,
+         next,
+         {pin.x, {pin.v, next.plate_velocity.value.slope}, pin.skin, 0, 0, pin.slider_velocity}},
+        later);
   }
   std::printf(
       "# instants within %.1e: %d held, %d by both, %d at a stop, %d across, %d of them from the "
       "plate's velocity, %d with a slider that lags; %d without their fast part left out\n",
       instants.worst, instants.held, instants.by_both, instants.at_stop, instants.oblique,
-      instants.setting_out, instants.lagging, instants.slow);
+      instants.departure_acceleration, instants.lagging, instants.slow);
   expect(instants.worst < 1e-12, "an instant has the derivatives of the event loop");
   expect(std::min({instants.held, instants.by_both, instants.at_stop, instants.oblique,
-                   instants.setting_out, instants.lagging}) > cases(20),
+                   instants.departure_acceleration, instants.lagging}) > cases(20),
          "in every kind of mode");
 }
 

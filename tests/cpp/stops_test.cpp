@@ -18,7 +18,7 @@ using Stops = pd::detail::EndStops<double>;
 
 State at(double x, double v) {
   State s{x, v};
-  s.x_size = 1e-3;
+  s.position_scale = 1e-3;
   return s;
 }
 
@@ -27,39 +27,41 @@ State at(double x, double v) {
 int main() {
   Stops rigid(pd::Stops<double>{1e-3});
   State s = at(-1e-3, -0.2);
-  rigid.begin(s);
+  rigid.initialize(s);
   expect(s.v == 0, "a rigid stop takes the velocity of a pin released towards it");
-  rigid.ask(s);
+  rigid.enumerate_options(s);
   expect(rigid.count() == 2 && rigid.at_edge(), "there it holds the pin or lets it go");
-  rigid.take(0);
-  expect(rigid.holds() && rigid.does == StopState::lower && rigid.force(s) == 0, "it holds it");
-  rigid.take(1);
-  expect(rigid.allows(0, 1, {}) && !rigid.allows(0, -1, {}) && rigid.allows(0, 0, {1, -1}) &&
-             rigid.allows(0, 0, {0, 1}) && !rigid.allows(0, 0, {0, -1}),
+  rigid.choose(0);
+  expect(rigid.is_holding() && rigid.state == StopState::lower && rigid.force(s) == 0,
+         "it holds it");
+  rigid.choose(1);
+  expect(rigid.is_consistent(0, 1, {}) && !rigid.is_consistent(0, -1, {}) &&
+             rigid.is_consistent(0, 0, {1, -1}) && rigid.is_consistent(0, 0, {0, 1}) &&
+             !rigid.is_consistent(0, 0, {0, -1}),
          "it lets go what moves inwards, by the first derivative that is not zero");
 
   Stops elastic(pd::Stops<double>{1e-3, 1e4, 2});
   s = at(1.1e-3, -0.1);
-  elastic.begin(s);
-  expect(elastic.does == StopState::upper && near(elastic.force(s), -0.8, 1e-12),
+  elastic.initialize(s);
+  expect(elastic.state == StopState::upper && near(elastic.force(s), -0.8, 1e-12),
          "an elastic one pushes by its depth and its damping");
   s = at(1.1e-3, -0.6);
   Stops slow(pd::Stops<double>{1e-3, 1e4, 2});
-  slow.begin(s);
-  expect(slow.does == StopState::beyond_upper && slow.force(s) == 0, "it never pulls");
+  slow.initialize(s);
+  expect(slow.state == StopState::beyond_upper && slow.force(s) == 0, "it never pulls");
   elastic.released = true;
   s = at(1.1e-3, -0.5);
-  elastic.ask(s);
-  elastic.take(1);
-  expect(elastic.does == StopState::beyond_upper && elastic.allows(-0.5, -1, {}) &&
-             !elastic.allows(-0.5, 3000, {}),
+  elastic.enumerate_options(s);
+  elastic.choose(1);
+  expect(elastic.state == StopState::beyond_upper && elastic.is_consistent(-0.5, -1, {}) &&
+             !elastic.is_consistent(-0.5, 3000, {}),
          "a push that has come to zero ends unless the pin is slowed down enough");
   State met = at(-1.0000001e-3, -0.1);
   Stops below(pd::Stops<double>{1e-3, 1e4, 2});
-  expect(!below.settles(met) && met.x == -1e-3, "a pin that has come to its end is exactly there");
-  below.ask(met);
-  below.take(0);
-  expect(below.pushes() && below.jumped(), "and meets a force at once, by the damping");
+  expect(!below.snap(met) && met.x == -1e-3, "a pin that has come to its end is exactly there");
+  below.enumerate_options(met);
+  below.choose(0);
+  expect(below.is_pushing() && below.force_jumped(), "and meets a force at once, by the damping");
 
   using pd::detail::change;
   expect(change(StopState::apart, StopState::upper, false) == pd::Transition::stick &&

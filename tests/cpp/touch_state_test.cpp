@@ -8,27 +8,28 @@
 namespace pd = pindrive;
 using check::expect;
 using pd::ContactState;
-using pd::detail::Bound;
-using TouchState = pd::detail::TouchState<double>;
+using pd::detail::ActiveGuard;
+using ContactPointState = pd::detail::ContactPointState<double>;
 
 int main() {
-  const auto forward = TouchState::slip(1, Bound::upper, 2), backward = TouchState::slip(-1, {});
-  expect(forward.state == ContactState::slip_forward && forward.sense == 1 &&
-             forward.at == Bound::upper && forward.branch == 2,
+  const auto forward = ContactPointState::slip(1, ActiveGuard::upper, 2),
+             backward = ContactPointState::slip(-1, {});
+  expect(forward.state == ContactState::slip_forward && forward.slip_sign == 1 &&
+             forward.guard == ActiveGuard::upper && forward.branch == 2,
          "a slip with a sense of 1 is forward, at an end of its branch");
   expect(backward.state == ContactState::slip_backward && backward.branch == 0,
          "one with −1 backward, on the first");
 
   constexpr double never = std::numeric_limits<double>::infinity();
   const pd::Branch<double> curve[] = {{0, 0.1, 0.3, -1, 0}, {0.1, never, 0.2, 2, 0}};
-  TouchState touch(pd::Contact<double>{0.3, 0.4, never, curve, 2});
+  ContactPointState touch(pd::Contact<double>{0.3, 0.4, never, curve, 2});
   expect(!touch.sliding() && !touch.elastic() && touch.stick_limit() == 0.4,
          "it begins absent, under its own load");
   touch.load = {0.5, 3};
-  touch.does = TouchState::slip(-1, Bound::none, 1);
+  touch.mode = ContactPointState::slip(-1, ActiveGuard::none, 1);
   expect(touch.sliding() && touch.branch().slope == 2 && touch.stick_limit() == 0.2,
          "it slips on a branch, and half the load sticks half as well");
-  touch.does = {ContactState::elastic_stick, Bound::none, 0, 0};
+  touch.mode = {ContactState::elastic_stick, ActiveGuard::none, 0, 0};
   expect(touch.elastic() && !touch.sliding(), "skin that grips does not slide");
   return check::status();
 }

@@ -116,7 +116,7 @@ inline bool mirrored(const pd::Segment<double>& one, const pd::Segment<double>& 
          a.finger_branch == b.finger_branch &&
          static_cast<int>(a.stop) == -static_cast<int>(b.stop) &&
          one.event.plate == other.event.plate && one.event.finger == other.event.finger &&
-         one.event.stop == other.event.stop && one.without == other.without;
+         one.event.stop == other.event.stop && one.eliminated == other.eliminated;
 }
 
 /// How far the motion of the mirror image is from the mirror image of the motion; infinite where an event
@@ -194,7 +194,7 @@ struct Cut {
     // A release cannot say how fast skin slips on a curve, nor which way as its load changes.
     const bool known = whole.curve[1].at.size() == 1 &&
                        Given::profile(whole.finger_load).from(segment->begin).rate == 0;
-    possible = std::isinf(whole.skin) || known || !pd::slips(segment->mode.finger);
+    possible = std::isinf(whole.skin) || known || !pd::is_slip(segment->mode.finger);
     // Skin that has no first mode as its load grows from zero begins with one at a time that the rows tell.
     possible = possible && !begins_anyhow(whole);
     if (!possible) return;

@@ -48,8 +48,8 @@ MUTANTS = (
     Mutant(
         "a motion is steady from where its period was found on",
         "motion/steady_since.hpp",
-        "for (T since = known_; since > last_row_;) {",
-        "for (T since = known_; since > last_row_;) {\n      if (known_ > 0) return known_;",
+        "for (T since = known_; since > last_breakpoint_;) {",
+        "for (T since = known_; since > last_breakpoint_;) {\n      if (known_ > 0) return known_;",
     ),
     Mutant(
         "breaks away and crosses to the wrong side",
@@ -60,7 +60,7 @@ MUTANTS = (
     Mutant(
         "always sticks at a surface velocity",
         "law/selection.hpp",
-        "if (most.value - abs(force) < -state_.roundoff && (force < 0 ? -1 : 1) != at_limit)",
+        "if (most.value - abs(force) < -state_.force_error && (force < 0 ? -1 : 1) != at_limit)",
         "if (most.value > 1e99)",
     ),
     Mutant(
@@ -84,8 +84,8 @@ MUTANTS = (
     Mutant(
         "no inertial force",
         "law/selection.hpp",
-        "inertia_ = drive_.mass * plate_.surface.rate;",
-        "inertia_ = 0 * plate_.surface.rate;",
+        "applied_force_ = drive_.mass * plate_.surface.rate;",
+        "applied_force_ = 0 * plate_.surface.rate;",
     ),
     Mutant(
         "a changing load acts as if it were constant",
@@ -96,14 +96,14 @@ MUTANTS = (
     Mutant(
         "of two contacts the first is not asked whether it sticks",
         "law/selection.hpp",
-        "if (first.may_stick() && sticks(first, second, 0)) return true;",
+        "if (first.may_stick() && try_stick_beside(first, second, 0)) return true;",
         "",
     ),
     Mutant(
         "parting surfaces never throw the pin ahead of both",
         "law/selection.hpp",
-        "if (other.stuck() ? apart != 0 : !other.goes_inside(state_, apart)) return false;",
-        "if (other.stuck() ? false : !other.goes_inside(state_, apart)) return false;",
+        "if (other.stuck() ? apart != 0 : !other.is_admissible(state_, apart)) return false;",
+        "if (other.stuck() ? false : !other.is_admissible(state_, apart)) return false;",
     ),
     Mutant(
         "a guard at its zero is not asked by its derivatives",
@@ -120,8 +120,8 @@ MUTANTS = (
     Mutant(
         "the force at a breakpoint is that of the wrong branch",
         "law/friction.hpp",
-        "contact.branch(at_ == Bound::upper ? branch_ + 1 : branch_).force",
-        "contact.branch(at_ == Bound::upper ? branch_ : branch_ - 1).force",
+        "contact.branch(guard_ == ActiveGuard::upper ? branch_ + 1 : branch_).force",
+        "contact.branch(guard_ == ActiveGuard::upper ? branch_ : branch_ - 1).force",
     ),
     Mutant(
         "a breakpoint is passed without a change",
@@ -130,10 +130,10 @@ MUTANTS = (
         "branch_ + (faster ? 1 : 0),",
     ),
     Mutant(
-        "skin grips with a thousandth more stretch",
+        "skin sticks with a thousandth more stretch",
         "law/skin.hpp",
-        "if (drops()) s.skin = grip(s);",
-        "if (drops()) s.skin = grip(s);\n"
+        "if (shortens_skin()) s.skin = skin_tension(s);",
+        "if (shortens_skin()) s.skin = skin_tension(s);\n"
         "    if (elastic() && before != does.state) s.skin *= T(1.001);",
     ),
     Mutant(
@@ -146,8 +146,8 @@ MUTANTS = (
     Mutant(
         "skin slips at its limit though it turns back",
         "law/friction.hpp",
-        "if (faster == 0) return sense_ * decides >= 0;",
-        "if (faster == 0) return sense_ * decides > 0;",
+        "if (faster == 0) return slip_sign_ * decides >= 0;",
+        "if (faster == 0) return slip_sign_ * decides > 0;",
     ),
     Mutant(
         "the plate holds for ever",
@@ -156,10 +156,10 @@ MUTANTS = (
         "if (!plate_.stuck()) guards_.add_force(left,",
     ),
     Mutant(
-        "the rows of the load are overlooked",
+        "the breakpoints of the load are overlooked",
         "model/model.hpp",
-        "std::min({mouse_velocity.next_row(t), plate_load.next_row(t), finger_load.next_row(t),",
-        "std::min({mouse_velocity.next_row(t), finger_load.next_row(t),",
+        "mouse_velocity.next_breakpoint(t), plate_load.next_breakpoint(t),",
+        "mouse_velocity.next_breakpoint(t),",
     ),
     Mutant(
         "of two bounds the farther one is watched",
@@ -234,9 +234,9 @@ MUTANTS = (
         "{step.velocity.c[0], T(0), T(0), 0 * rate}",
     ),
     Mutant(
-        "skin without static friction carries nothing until the next row",
+        "skin without static friction carries nothing until the next breakpoint",
         "law/skin.hpp",
-        "const T round = stretching(carries_at_most(2 * u));",
+        "const T round = stretch_rate(largest_friction(2 * u));",
         "const T round = most;",
     ),
     Mutant(
@@ -252,10 +252,10 @@ MUTANTS = (
         "} else if (n > 0 && skin_factor.rate != 0) {",
     ),
     Mutant(
-        "skin without static friction grips a pin at rest as its load grows from none",
+        "skin without static friction sticks a pin at rest as its load grows from none",
         "law/skin.hpp",
-        "if (landing_.at == Bound::lower || (landing_.grips && u == 0))",
-        "if (landing_.at == Bound::lower)",
+        "if (jump_.guard == ActiveGuard::lower || (jump_.sticks && u == 0))",
+        "if (jump_.guard == ActiveGuard::lower)",
     ),
     Mutant(
         "a slider of stiff skin is slow whatever speed it begins at",
@@ -267,7 +267,7 @@ MUTANTS = (
     Mutant(
         "of the limits of skin, the upper one is looked at first",
         "law/guards.hpp",
-        "const int near = -sense(segment.finger_force);",
+        "const int near = -leading_sign(segment.finger_force);",
         "const int near = 1;",
     ),
     # … and these two where a motion is cut in two.
@@ -280,8 +280,8 @@ MUTANTS = (
     Mutant(
         "a pin beyond an elastic stop at the start is pushed, whether it comes back or not",
         "law/stops.hpp",
-        "does = at_end(end, push(s, end) > 0);",
-        "does = at_end(end, true);",
+        "state = at_end(end, push(s, end) > 0);",
+        "state = at_end(end, true);",
     ),
 )
 

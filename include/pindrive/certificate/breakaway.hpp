@@ -28,8 +28,8 @@ struct Beginning {
 template <class T>
 T spare_stick_limit(const Drive<T>& drive, const Mode& mode, const Beginning<T>& now) {
   using std::abs;
-  const bool plate = now.rests_on_plate && slips(mode.plate);
-  const bool finger = now.rests_on_finger && slips(mode.finger);
+  const bool plate = now.rests_on_plate && is_slip(mode.plate);
+  const bool finger = now.rests_on_finger && is_slip(mode.finger);
   if (mode.stuck() || !(plate || finger)) return T(0);
   const T at_plate = drive.plate.static_limit * now.plate_load;
   const T at_finger = drive.finger.static_limit * now.finger_load;
@@ -79,7 +79,7 @@ class Breakaways {
 
   /// Whether a contact began what it does at this instant.
   bool began(Doing& doing, ContactState does, T time) const {
-    const bool slides_on = doing.state == ContactState::slip_oblique && slips(does);
+    const bool slides_on = doing.state == ContactState::slip_oblique && is_slip(does);
     if (does != doing.state && !slides_on) doing.since = time;
     doing.state = does;
     return doing.since >= instant_;

@@ -75,7 +75,7 @@ class Certifier {
     const T round = std::prev(motion_.end())->end - outcome.cycle_begin;
     const T known = detail::rounding<T> * outcome.until;
     raise(result_.period, std::max(abs(round - outcome.period) - known, T(0)) / outcome.period);
-    const T begin = std::max(samples.begin(tolerance), detail::last_row(motion_.inputs()));
+    const T begin = std::max(samples.begin(tolerance), detail::last_breakpoint(motion_.inputs()));
     raise(result_.steady_since, std::max((since - begin) / outcome.period - T(1), T(0)));
   }
 
@@ -277,7 +277,7 @@ class Certifier {
     sums.input = over(plate, v_plate) + over(inertia, v);
     sums.damper = drive_.damping * over(v, v);
     sums.plate = -over(plate, v + T(-1) * v_plate);
-    if (touches(segment.mode.stop)) sums.stop = drive_.stops.damping * over(v, v);
+    if (in_contact(segment.mode.stop)) sums.stop = drive_.stops.damping * over(v, v);
     if (segment.mode.finger != ContactState::elastic_stick)
       sums.finger = -over(segment.finger_force, v);
     account(energy(from), energy(to), sums);
@@ -298,7 +298,7 @@ class Certifier {
                      evaluated.force.at(s.tau) - evaluated.stop_force(s);
     raise(errors.law, std::max(abs(missed) - evaluated.unsure(s), T(0)));
     if (held_by_stop(drive_, mode)) {
-      const int end = side(mode.stop);
+      const int end = stop_sign(mode.stop);
       raise(errors.sticking, s.v);
       worst(result_.sticking, end * s.x - drive_.stops.travel, scales_.x);
       const T pull = end * evaluated.stop_force(s) - evaluated.unsure(s);
@@ -306,7 +306,7 @@ class Certifier {
     }
     const auto contact = [&](const Contact<T>& law, ContactState does, T u, T force, T load,
                              T unsure) {
-      if (slips(does))
+      if (is_slip(does))
         raise(errors.friction,
               std::max(
                   abs(force + sign(does) * load * detail::kinetic_friction(law, abs(u))) - unsure,
@@ -348,10 +348,10 @@ class Certifier {
     sums.plate -= weight * s.plate_force * (s.v - v_plate);
     const StopState stop = evaluated.segment.mode.stop;
     if (stop != StopState::apart && !drive_.stops.rigid())
-      sums.stop +=
-          weight * s.v *
-          (touches(stop) ? drive_.stops.damping * s.v
-                         : drive_.stops.stiffness * (side(stop) * drive_.stops.travel - s.x));
+      sums.stop += weight * s.v *
+                   (in_contact(stop)
+                        ? drive_.stops.damping * s.v
+                        : drive_.stops.stiffness * (stop_sign(stop) * drive_.stops.travel - s.x));
     if (evaluated.segment.mode.finger != ContactState::elastic_stick)
       sums.finger -= weight * s.finger_force * evaluated.on_finger(s);
   }
@@ -411,7 +411,7 @@ class Certifier {
     const Contact<T>& finger = drive_.finger;
     const Line<T> load = motion_.inputs().finger_load.from(time);
     if (!(load.rate < 0)) return false;
-    const T slope = slips(mode.finger) ? finger.branch(mode.finger_branch).slope : T(0);
+    const T slope = is_slip(mode.finger) ? finger.branch(mode.finger_branch).slope : T(0);
     const T limit = finger.static_limit;
     const T follows = slope > 0 ? 1 / slope : limit > 0 ? abs(v) / limit : T(0);
     const T known = 65 * detail::rounding<T> * time;

@@ -97,7 +97,7 @@ class SegmentGuards {
   }
   template <class Path>
   void slipping(const Contact<T>& contact, ContactState does, int branch, const Path& sliding) {
-    if (!slips(does)) return;
+    if (!is_slip(does)) return;
     const int last = std::max(contact.branches - 1, 0);
     within(contact.branch(std::clamp(branch, 0, last)), T(sign(does)) * sliding, true);
   }
@@ -120,7 +120,7 @@ class SegmentGuards {
       beyond(-1, -1);
       return;
     }
-    const int end = side(does), sense = touches(does) ? 1 : -1;
+    const int end = stop_sign(does), sense = in_contact(does) ? 1 : -1;
     beyond(end, 1);
     auto push = T(sense * end) * stops.damping * along_.velocity();
     push = T(sense * end) * stops.stiffness * along_.position() + push;

@@ -23,12 +23,13 @@ void end_with(const Segment<T>& last, Outcome<T>& outcome) {
   const T alpha = flow.oscillator.alpha();
   if (!flow.position.oscillates()) {
     const bool still = flow.velocity.start == 0 && flow.velocity.straight();
-    if (still) outcome.end = last.without == FastPart::motion ? End::decaying : End::resting;
+    if (still)
+      outcome.end = last.eliminated == EliminatedPart::motion ? End::decaying : End::resting;
   } else if (alpha < 0) {
     outcome.end = End::decaying;
   } else if (alpha == 0) {
     // Released without a relative acceleration it touches the plate's velocity once a period.
-    const bool grazes = slips(last.mode.plate) && flow.velocity.slope == 0 &&
+    const bool grazes = is_slip(last.mode.plate) && flow.velocity.slope == 0 &&
                         flow.velocity.start == last.plate_velocity.value;
     outcome.end = grazes ? End::grazing : End::free;
     outcome.period = flow.oscillator.period();
@@ -112,7 +113,7 @@ class CycleDetector {
     Mode mode{};
     State<T> state{};
     Extent<T> extent{};
-    T stuck{0};  ///< for how long the plate has stuck to the pin since then, s
+    T stuck{0};  ///< time of stick on the plate since then, s
   };
 
   static constexpr long long first_kept = 3;  ///< index of the first event that is kept
@@ -130,8 +131,8 @@ class CycleDetector {
     if (ended.mode.plate == ContactState::stick) visit.stuck += ended.end - ended.begin;
   }
 
-  /// Distance between the states after two events as a part of the natural scales; infinite if they have
-  /// different modes, or if the motion between them is not larger than the rounding of its position.
+  /// Distance between the states after two events as a fraction of the natural scales; infinite for
+  /// different modes, or if the motion in between is within the rounding of its position.
   T separation(const Visit& earlier, const Event& now) const {
     using std::abs;
     using std::sqrt;
@@ -151,7 +152,8 @@ class CycleDetector {
     T most = std::max(displaced, apart(one.v, other.v, rounded * omega0, speed));
     const Contact<T>& finger = drive_.finger;
     if (finger.may_lag())
-      most = std::max(most, apart(one.slide, other.slide, rounded * omega0, speed));
+      most = std::max(most,
+                      apart(one.slider_velocity, other.slider_velocity, rounded * omega0, speed));
     if (finger.may_lag() || now.mode.finger == ContactState::elastic_stick)
       most = std::max(most, apart(one.skin, other.skin, finger.stiffness * rounded,
                                   std::min(finger.stiffness * length, finger.static_limit)));
@@ -190,7 +192,7 @@ class CycleDetector {
     return false;
   }
 
-  /// Compares the duration of a window of events with that of the window before.
+  /// Compares the durations of a window of events and of the window before.
   void end_window(T time, Outcome<T>& outcome) {
     using std::abs;
     const T lasts = time - window_begin_, longer = lasts - lasted_;
@@ -211,7 +213,7 @@ class CycleDetector {
     windows_ = turns_ = 0;
     grows_ = decays_ = true;
   }
-  /// Compares the range of the position in a block of windows with that in the block before.
+  /// Compares the ranges of the position in a block of windows and in the block before.
   void end_block() {
     const T length = block_.length();
     if (windows_ > windows_in_block) {
@@ -234,8 +236,8 @@ class CycleDetector {
   Visit kept_, recent_, followed_;
   long long count_{0};          ///< events so far
   long long next_{first_kept};  ///< count at which the kept visit is renewed
-  long long period_{0};         ///< of the followed approach, in events; 0 without one
-  T distance_{0}, ratio_{1};    ///< of its last return, and to the distance before
+  long long period_{0};         ///< period of the followed approach, in events; 0 without one
+  T distance_{0}, ratio_{1};    ///< distance of its last return; ratio to the distance before
 
   int in_window_{0}, windows_{0};  ///< events in the window, windows so far
   int turns_{0};                   ///< changes between longer and shorter windows
@@ -243,8 +245,8 @@ class CycleDetector {
   bool grows_{true}, decays_{true};  ///< in each block of windows
   Extent<T> block_;
   T length_{0};                    ///< range in the block before, m
-  T window_begin_{0}, lasted_{0};  ///< of the window, and duration of the window before, s
-  T half_time_{0};                 ///< after half of the windows, s
+  T window_begin_{0}, lasted_{0};  ///< begin of the window; duration of the window before, s
+  T half_time_{0};                 ///< time after half of the windows, s
 };
 
 }  // namespace pindrive::detail

@@ -1,4 +1,4 @@
-/// What the event loop needs of a segment whose mode has no closed form: a step of its series.
+/// Segment of a mode without a closed form: one step of its series.
 #pragma once
 
 #include <algorithm>
@@ -14,36 +14,42 @@
 
 namespace pindrive::detail {
 
-/// The step of a series that the present segment is; none where its mode has a closed form.
+/// Series step of the present segment; empty for a mode with a closed form.
 template <class T>
 class SeriesSegment {
  public:
   bool used() const { return step_.has_value(); }
 
-  /// Whether a slider has the velocity at which its skin stretches as it has to: its force follows the load.
-  bool follows() const { return step_ && step_->without == FastPart::of_slider; }
+  /// True if the slider has its stationary velocity, so that its force follows the load.
+  bool has_eliminated_slider() const {
+    return step_ && step_->eliminated == EliminatedPart::of_slider;
+  }
 
   void reset() { step_.reset(); }
 
-  /// Begins a segment of a mode without a closed form (that, its begin and its plate velocity are set). Its
-  /// flow says how it begins, with its acceleration as a drift of the velocity.
-  /// `at_limit` is the side on which a stick force is at its limit, `no_push` says that a stop's push is
-  /// exactly zero, `span` the time until the next row or the end, s. Its guards come with their zeros.
-  template <class Side>
-  void begin(Segment<T>& segment, Guards<T>& guards, const Drive<T>& drive, const Side& plate,
-             const Side& finger, const Line<T>& force, const State<T>& state, T acceleration,
+  /// Begins a segment of a mode without a closed form, whose mode, begin and plate velocity are
+  /// set.
+  ///
+  /// The flow of the segment holds its initial values, with the acceleration as drift of the
+  /// velocity. `at_limit`: side on which a stick force is at its limit. `no_push`: the push of a
+  /// stop is exactly zero. `span`: time until the next breakpoint or the end, s. Guards are added
+  /// with their zeros.
+  template <class Point>
+  void begin(Segment<T>& segment, Guards<T>& guards, const Drive<T>& drive, const Point& plate,
+             const Point& finger, const Line<T>& force, const State<T>& state, T acceleration,
              int at_limit, bool no_push, T span) {
     using std::abs;
     const SeriesMode<T> mode(
         drive, segment.mode,
         {segment.plate_velocity, plate.load, plate.across, force, finger.load});
     const SeriesEquation<T> equation = mode.equation();
-    const bool lags = finger.lags();
-    const SeriesState<T> start{state.x, state.v, lags ? state.slide : state.skin, acceleration,
+    const bool has_slider_state = finger.has_slider_state();
+    const SeriesState<T> start{state.x, state.v,
+                               has_slider_state ? state.slider_velocity : state.skin, acceleration,
                                segment.begin};
     const SeriesStep<T>& step = step_.emplace(series_step(equation, start, span));
-    segment.without = step.without;
-    const auto paths = mode.guards(step, {plate.does.at, finger.does.at, at_limit, no_push});
+    segment.eliminated = step.eliminated;
+    const auto paths = mode.guards(step, {plate.mode.guard, finger.mode.guard, at_limit, no_push});
     const bool held = held_by_stop(drive, segment.mode);
     guards.clear();
     for (const auto& guard : paths)
@@ -55,17 +61,17 @@ class SeriesSegment {
              left <= 4 * rounding<T> * (segment.begin + span) * turns;
     first_ = guards.earliest_known(step.span());
     // What ends it at once may do so as late as where its step ends, as at a row.
-    const T row = step.span() < span && first_ > 0 ? never : step.span();
+    const T breakpoint = step.span() < span && first_ > 0 ? never : step.span();
     const auto speed_of = [&](bool on_plate) {
-      return abs((on_plate ? step.speed : lags ? step.skin : step.velocity).c[0]);
+      return abs((on_plate ? step.speed : has_slider_state ? step.skin : step.velocity).c[0]);
     };
-    first_ = guards.put_off(first_, row, [&](const Guard<T>& guard, T tau) {
+    first_ = guards.defer_grazing(first_, breakpoint, [&](const Guard<T>& guard, T tau) {
       const Polynomial<T>& path = paths.begin()[&guard - guards.begin()].path;
-      const T roundoff = guard.bound == Bound::none || guard.bound == Bound::push
-                             ? state.roundoff
-                             : rounding<T> * (path.size() + speed_of(guard.plate));
+      const T force_error = guard.bound == ActiveGuard::none || guard.bound == ActiveGuard::push
+                                ? state.force_error
+                                : rounding<T> * (path.size() + speed_of(guard.plate));
       const T fall = path.derivative().at(guard.zero) * (tau - guard.zero);
-      return stays_at_bound(fall, path.at(tau), roundoff);
+      return stays_at_bound(fall, path.at(tau), force_error);
     });
     const T stick = step.stick_force.c[0];
     const T of_plate = plate.stuck() && !held ? stick : plate.force(state);
@@ -77,27 +83,29 @@ class SeriesSegment {
     segment.plate_force = {of_plate, T(0), T(0)};
     segment.finger_force = {of_finger, T(0), T(0)};
     // Of skin whose slider lags, with the rate at which it stretches.
-    if (lags) segment.finger_force.drift = finger.force_rate(state.v, T(0)).value;
+    if (has_slider_state) segment.finger_force.drift = finger.force_rate(state.v, T(0)).value;
   }
 
-  /// The time to the earliest event, the end of the step or the row; what happens at the row to the rounding
-  /// of a time happens there. So does what is some roundings before a row at which the plate comes to rest, along
-  /// and across: the direction in which it slides under a pin that is held is not known there.
-  T earliest(T since, T row) const {
-    const T known = (stops_ ? 128 : 1) * rounding<T> * (since + row);
-    return row < never && row - first_ <= known ? row : first_;
+  /// Time to the earliest event, the end of the step or the breakpoint.
+  ///
+  /// An event within the time resolution of the breakpoint happens there. So does an event a few
+  /// resolutions before a breakpoint at which the plate comes to rest in both directions: the
+  /// sliding direction under a pin that is held is undetermined there.
+  T earliest(T since, T breakpoint) const {
+    const T known = (stops_ ? 128 : 1) * rounding<T> * (since + breakpoint);
+    return breakpoint < never && breakpoint - first_ <= known ? breakpoint : first_;
   }
 
-  /// The time at which a moving pin turns; infinite if it does not within the step.
+  /// Time at which a moving pin turns; infinite if the pin does not turn within the step.
   T turning_point() const {
     if (!step_ || step_->velocity.c[0] == 0) return never;
     const Polynomial<T>& velocity = step_->velocity;
     return first_zero(velocity.c[0] > 0 ? velocity : T(-1) * velocity);
   }
 
-  /// Brings the state on by τ, unless the mode has a closed form.
-  template <class Side>
-  void move(State<T>& state, const Drive<T>& drive, const Side& finger, T tau) const {
+  /// Advances the state by τ, unless the mode has a closed form.
+  template <class Point>
+  void move(State<T>& state, const Drive<T>& drive, const Point& finger, T tau) const {
     using std::abs;
     using std::sqrt;
     if (!step_) return;
@@ -105,30 +113,30 @@ class SeriesSegment {
     const SeriesState<T> now = step.at(tau);
     state.x = now.x;
     state.v = now.v;
-    state.x_size = std::max(state.x_size, abs(state.x));
+    state.position_scale = std::max(state.position_scale, abs(state.x));
     if (finger.elastic()) state.skin = now.skin;
-    if (!finger.lags()) return;
-    state.slide = now.skin;
+    if (!finger.has_slider_state()) return;
+    state.slider_velocity = now.skin;
     // A pin and a slider whose velocities have faded into the rounding of the position are at rest, which is
     // known no better than by what these still carry.
     const T size = std::max(abs(state.x), abs(step.position.c[0]));
     const T still = rounding<T> * size * sqrt(drive.stiffness / drive.mass);
     const T pull = drive.mass * step.velocity.derivative().at(tau) + drive.damping * state.v +
-                   finger.branch().slope * finger.load.at(tau) * state.slide;
+                   finger.branch().slope * finger.load.at(tau) * state.slider_velocity;
     const T known = 2 * abs(pull) / (rounding<T> * drive.stiffness);
-    if (finger.does.branch != 0 || abs(state.v) > still || abs(state.slide) > still) return;
-    if (known > 64 * (1 + drive.damping * still / state.roundoff) * size) return;
-    state.v = state.slide = T(0);
-    state.x_size = std::max(state.x_size, known);
+    if (finger.mode.branch != 0 || abs(state.v) > still || abs(state.slider_velocity) > still)
+      return;
+    if (known > 64 * (1 + drive.damping * still / state.force_error) * size) return;
+    state.v = state.slider_velocity = T(0);
+    state.position_scale = std::max(state.position_scale, known);
   }
 
  private:
   static constexpr T never = std::numeric_limits<T>::infinity();
 
   std::optional<SeriesStep<T>> step_;
-  bool stops_{
-      false};   ///< whether the plate comes to rest under a pin that is held, at the next row
-  T first_{0};  ///< the time to its first guard's zero, or its end, s
+  bool stops_{false};  ///< the plate comes to rest under a pin that is held, at the next breakpoint
+  T first_{0};         ///< time to the zero of the first guard, or to the end of the step, s
 };
 
 }  // namespace pindrive::detail

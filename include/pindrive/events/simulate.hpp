@@ -1,4 +1,4 @@
-/// One motion of a pin.
+/// Simulation of one motion of a pin.
 #pragma once
 
 #include "pindrive/events/simulation.hpp"
@@ -6,7 +6,8 @@
 
 namespace pindrive {
 
-/// Follows one pin and hands each segment to the sink, in order of time; a sink may return false to stop.
+/// Simulates one pin and passes each segment to the sink, in order of time; a sink may return false
+/// to stop.
 template <class T, class Sink>
 Outcome<T> simulate(const Drive<T>& drive, const Inputs<T>& inputs, Sink&& sink) {
   return detail::Simulation<T>(drive, inputs).run(sink);

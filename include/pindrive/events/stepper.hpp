@@ -1,9 +1,9 @@
-/// A pin followed from one time to the next, under inputs that are set on the way: for coupling it to other
-/// simulators.
+/// Simulation from one time to the next under inputs that are set during the simulation, for
+/// coupling to other simulators.
 ///
-/// Nothing is integrated again at a step: a segment goes on from its event until the next one, or until an
-/// input changes, and any time in it is evaluated from its beginning. So the steps leave no trace in the
-/// results.
+/// Nothing is integrated again at a step: a segment continues from its event until the next event,
+/// or until an input changes, and any time in the segment is evaluated from its begin. The division
+/// into steps does not change the results.
 #pragma once
 
 #include <algorithm>
@@ -19,30 +19,30 @@ namespace pindrive {
 template <class T>
 class Stepper {
   using Simulation = detail::Simulation<T>;
-  using Option = typename detail::Touch<T>::Option;
+  using Option = typename detail::ContactPoint<T>::Option;
 
  public:
-  /// All that it goes on with: a stepper made of it gives the same bits.
+  /// Complete state: a stepper constructed from this state gives identical bits.
   struct State {
-    T now;                              ///< s
-    T since;                            ///< time of the last event, s, …
-    T since_error;                      ///< … what its rounding leaves out, s; there …
-    detail::State<T> pin;               ///< … was the pin, …
-    Option plate, finger;               ///< … this each contact had done, …
-    detail::Bound at_plate, at_finger;  ///< … these bounds their speeds had come to, …
-    int limit;                          ///< … this side a stick force, …
-    StopState stop;                     ///< … this the end stops had done, …
-    bool stop_released, stop_met;       ///< … their force had come to zero, the pin to them, …
-    bool struck;                        ///< … it had struck a rigid one, …
-    Mode before;                        ///< … the mode had been this, …
-    Line<T> plate_velocity;             ///< … and from there on the plate moved like this
-    /// The inputs as they were set.
+    T now;                                    ///< s
+    T since;                                  ///< time of the last event, s
+    T since_error;                            ///< rounding error of that time, s
+    detail::State<T> pin;                     ///< pin at that time
+    Option plate, finger;                     ///< modes of the contacts before
+    detail::ActiveGuard at_plate, at_finger;  ///< active guards of the contacts
+    int limit;                                ///< side of a stick force at its limit
+    StopState stop;                           ///< state of the end stops before
+    bool stop_released, stop_met;  ///< the stop force reached zero; the pin reached the stop
+    bool struck;                   ///< the pin struck a rigid stop
+    Mode before;                   ///< mode before
+    Line<T> plate_velocity;        ///< plate velocity from that time on
+    /// Inputs as set.
     Held<T> mouse_velocity, plate_load, across_velocity, force, finger_load;
-    Event event;  ///< what happened to the contacts and the stops now
+    Event event;  ///< transitions of contacts and stops now
   };
 
-  /// A release at the time `begin`, s. The duration of its inputs does not matter: it has no end. The drive's
-  /// friction curves stay where they are.
+  /// Release at the time `begin`, s. The duration of the inputs is ignored. The friction curves of
+  /// the drive are referenced, not copied.
   Stepper(const Drive<T>& drive, const Inputs<T>& inputs, T begin = T(0))
       : drive_(drive),
         inputs_(without_end(inputs)),
@@ -77,10 +77,11 @@ class Stepper {
     return found;
   }
 
-  /// Advances to the time `until`, not before now, s; or, with `stop_at_event`, to the first event of a contact
-  /// until then. `go_on` is called after each event. Returns false if the step was not completed: `status` is
-  /// then not ok, or go_on() returned false, and now() is the time of the event reached; the next step continues
-  /// from there.
+  /// Advances to the time `until` (s, >= now) or, with `stop_at_event`, to the first contact event
+  /// before. `go_on` is called after each event.
+  ///
+  /// Returns false if the step is incomplete: `status` is not ok, or go_on() returned false, and
+  /// now() is the time of the last event; the next step continues from there.
   template <class GoOn = Unattended>
   bool step(T until, bool stop_at_event = false, GoOn go_on = {}) {
     int standing = 0;
@@ -106,10 +107,11 @@ class Stepper {
     return !stopped;
   }
 
-  /// Sets the inputs from now on, values and rates; a load that falls comes to zero at most. A mouse velocity
-  /// that jumps moves the housing in no time: beside it the pin keeps its velocity, as no finite force could
-  /// change that; so it does where the velocity across jumps. A value that differs from the input as it went
-  /// on by rounding is the same.
+  /// Sets the inputs from now on, values and rates; a falling load stops at zero.
+  ///
+  /// A jump of the mouse velocity moves the housing in no time: the pin keeps its velocity relative
+  /// to the housing, which no finite force could change. A jump of the transverse velocity acts
+  /// likewise. A value that differs from the continued input by rounding changes nothing.
   void set(const InputLines<T>& given) {
     Held<T>&velocity = inputs_.mouse_velocity.held(), &load = inputs_.plate_load.held();
     Held<T>&across = inputs_.across_velocity.held(), &force = inputs_.force.held();
@@ -139,10 +141,11 @@ class Stepper {
 
   Status status() const { return standstill_ ? Status::standstill : simulation_.outcome_.status; }
   T now() const { return now_; }  ///< s
-  /// The time until which no contact changes if the inputs go on as they do, s; infinite if none ever does.
+  /// Time until which no contact changes if the inputs continue unchanged, s; infinite if none ever
+  /// changes.
   T next() const { return simulation_.time_after(tau_); }
-  const Event& event() const { return event_; }  ///< what happens to the contacts now
-  Mode mode() const { return segment_.mode; }    ///< of the contacts from now on
+  const Event& event() const { return event_; }  ///< transitions of the contacts now
+  Mode mode() const { return segment_.mode; }    ///< mode of the contacts from now on
   const Drive<T>& drive() const { return drive_; }
   InputLines<T> inputs() const {
     return {inputs_.mouse_velocity.from(now_), inputs_.plate_load.from(now_),
@@ -150,10 +153,10 @@ class Stepper {
             inputs_.finger_load.from(now_)};
   }
 
-  /// The segment that goes on from now, how long it has lasted, and its inputs from its begin on.
+  /// Present segment, its duration until now, and its inputs from its begin on.
   const Segment<T>& segment() const { return segment_; }
   T tau() const { return std::min(std::max(now_ - segment_.begin, T(0)), tau_); }
-  /// The pin now; skin that slips is not looked at.
+  /// State of the pin now, without the tension of slipping skin.
   detail::State<T> pin() const {
     detail::State<T> pin = simulation_.state_;
     if (!(tau() > 0)) return pin;
@@ -172,7 +175,7 @@ class Stepper {
  private:
   static constexpr T never = std::numeric_limits<T>::infinity();
 
-  /// The load falls to zero at most: friction never pushes.
+  /// Load that falls to zero at most, as friction never pushes.
   static Held<T> load_from(T now, T value, T rate) {
     Held<T> load(now, {value, rate});
     if (rate < 0) load.ends = now - value / rate;
@@ -184,14 +187,14 @@ class Stepper {
       if (!(load->ends < never)) *load = load_from(load->since, load->line.value, load->line.rate);
     return inputs;
   }
-  /// Whether a number, and its derivative, is zero.
+  /// True if a number and its derivative are zero.
   static bool zero(const T& x) {
     if constexpr (std::is_floating_point_v<T>)
       return x == 0;
     else
       return x.value == 0 && x.slope == 0;
   }
-  /// From what an input would be now to what is given; without what is rounding.
+  /// Difference between an input and its continuation; zero within rounding.
   T change_to(const T& given, const Held<T>& held) const {
     using std::abs;
     const Line<T> line = held.from(now_);
@@ -207,7 +210,7 @@ class Stepper {
   }
   bool happens_after(const T& time) const { return event_.any() && simulation_.time_ > time; }
 
-  /// What happens where the segment that goes on begins.
+  /// Transitions at the begin of the present segment.
   Event event_now() const {
     const Mode& after = segment_.mode;
     return {change(before_.plate, after.plate), change(before_.finger, after.finger),
@@ -218,20 +221,21 @@ class Stepper {
     simulation_.time_ = state.since;
     simulation_.time_error_ = state.since_error;
     simulation_.state_ = state.pin;
-    simulation_.plate_.does = state.plate;
-    simulation_.finger_.does = state.finger;
-    simulation_.plate_.reached = state.at_plate;
-    simulation_.finger_.reached = state.at_finger;
+    simulation_.plate_.mode = state.plate;
+    simulation_.finger_.mode = state.finger;
+    simulation_.plate_.reached_guard = state.at_plate;
+    simulation_.finger_.reached_guard = state.at_finger;
     simulation_.plate_.surface = state.plate_velocity;
-    simulation_.limit_ = state.limit;
-    simulation_.stop_.does = state.stop;
+    simulation_.stick_limit_side_ = state.limit;
+    simulation_.stop_.state = state.stop;
     simulation_.stop_.released = state.stop_released;
     simulation_.stop_.met = state.stop_met;
     simulation_.struck_ = state.struck;
     before_ = state.before;
     take_inputs(state.since);
   }
-  /// Those but for the plate's velocity, which may be known to be exactly the pin's.
+  /// Reads the inputs except for the plate velocity, which may be known to be exactly that of the
+  /// pin.
   void take_inputs(const T& time) {
     simulation_.plate_.load = inputs_.plate_load.from(time);
     simulation_.plate_.across =
@@ -240,7 +244,8 @@ class Stepper {
     simulation_.finger_.load = inputs_.finger_load.from(time);
   }
 
-  /// Brings the pin to now, where the inputs have a row: at an event that is now to rounding, to that.
+  /// Advances the pin to now, where an input has a breakpoint; an event within the time resolution
+  /// of now happens now.
   void restart() {
     using std::abs;
     if (abs(now_ - simulation_.time_) <= detail::rounding<T> * abs(now_)) {
@@ -249,17 +254,17 @@ class Stepper {
       simulation_.time_error_ = T(0);
       simulation_.plate_.surface.rate = inputs_.mouse_velocity.held().line.rate;
       take_inputs(now_);
-      simulation_.limit_ = 0;
+      simulation_.stick_limit_side_ = 0;
       if (simulation_.stop_.rigid()) simulation_.stop_.released = false;  // its push may jump
     } else {
-      simulation_.row_ = now_;
+      simulation_.breakpoint_ = now_;
       before_ = segment_.mode;
-      simulation_.jump(segment_, simulation_.until_row());
+      simulation_.jump(segment_, simulation_.until_breakpoint());
     }
   }
 
-  /// The mouse velocity jumps: the pin keeps its velocity beside the housing, and so to the plate. Only a
-  /// rigid stop takes it along.
+  /// Applies a jump of the mouse velocity: the pin keeps its velocity relative to the housing, and
+  /// so to the plate. Only a rigid stop moves the pin along.
   void shift(const T& jump) {
     using std::abs;
     auto &plate = simulation_.plate_, &finger = simulation_.finger_;
@@ -267,48 +272,48 @@ class Stepper {
         moved(plate.surface.value, jump, inputs_.mouse_velocity.held().line.value);
     auto& stop = simulation_.stop_;
     T& v = simulation_.state_.v;
-    if (plate.stuck() && !stop.holds())
+    if (plate.stuck() && !stop.is_holding())
       v = plate.surface.value;
-    else if (!(finger.stuck() || stop.holds()) || plain(jump) != 0)
+    else if (!(finger.stuck() || stop.is_holding()) || plain(jump) != 0)
       v += jump;
     if (plain(jump) == 0) return;
     simulation_.struck_ = false;
-    if (stop.begin(simulation_.state_)) return simulation_.begin_at_stop();
-    finger.reached = detail::Bound::none;
-    const T sense = finger.does.sense;
+    if (stop.initialize(simulation_.state_)) return simulation_.begin_at_stop();
+    finger.reached_guard = detail::ActiveGuard::none;
+    const T sense = finger.mode.slip_sign;
     if (finger.sliding() && finger.contact.may_lag()) return;
     if (finger.sliding() && sense * v > 0) {
-      finger.does =
-          Option{finger.does.state, detail::Bound::none, finger.contact.branch_of(abs(v)), sense};
+      finger.mode = Option{finger.mode.state, detail::ActiveGuard::none,
+                           finger.contact.branch_of(abs(v)), sense};
     } else {
-      finger.does = {};
-      finger.begin(simulation_.state_, true);
+      finger.mode = {};
+      finger.initialize(simulation_.state_, true);
     }
   }
 
-  /// The velocity across jumps, and with it the speed at which the plate slides.
+  /// Applies a jump of the transverse velocity, which changes the sliding speed of the plate.
   void turn() {
     using detail::hypot;
     auto& plate = simulation_.plate_;
-    plate.reached = detail::Bound::none;
+    plate.reached_guard = detail::ActiveGuard::none;
     if (!plate.oblique()) return;
     const T u = simulation_.state_.v - plate.surface.value;
-    plate.does.branch = plate.contact.branch_of(hypot(u, plate.across.value));
+    plate.mode.branch = plate.contact.branch_of(hypot(u, plate.across.value));
   }
 
-  /// Begins the segment that follows.
+  /// Begins the next segment.
   void select() {
     const auto &plate = simulation_.plate_, &finger = simulation_.finger_;
     last_ = {now_,
              simulation_.time_,
              simulation_.time_error_,
              simulation_.state_,
-             plate.does,
-             finger.does,
-             plate.reached,
-             finger.reached,
-             simulation_.limit_,
-             simulation_.stop_.does,
+             plate.mode,
+             finger.mode,
+             plate.reached_guard,
+             finger.reached_guard,
+             simulation_.stick_limit_side_,
+             simulation_.stop_.state,
              simulation_.stop_.released,
              simulation_.stop_.met,
              simulation_.struck_,
@@ -323,9 +328,9 @@ class Stepper {
     // A quantity that follows a line is looked at for a finite time.
     const bool steady = plate.surface.rate == 0 && plate.load.rate == 0 && finger.load.rate == 0 &&
                         simulation_.force_.rate == 0;
-    simulation_.row_ = std::min({inputs_.plate_load.next_row(simulation_.time_),
-                                 inputs_.finger_load.next_row(simulation_.time_),
-                                 steady ? never : simulation_.time_ + far_});
+    simulation_.breakpoint_ = std::min({inputs_.plate_load.next_breakpoint(simulation_.time_),
+                                        inputs_.finger_load.next_breakpoint(simulation_.time_),
+                                        steady ? never : simulation_.time_ + far_});
     simulation_.select();
     simulation_.begin(segment_);
     tau_ = simulation_.earliest(segment_.flow);
@@ -342,10 +347,10 @@ class Stepper {
   Inputs<T> inputs_;
   Simulation simulation_;
   T now_;          ///< s
-  Mode before_{};  ///< until the last event
-  State last_;     ///< at the last event, before the mode was selected
+  Mode before_{};  ///< mode until the last event
+  State last_;     ///< state at the last event, before the mode was selected
   Segment<T> segment_;
-  T tau_;  ///< its duration if the inputs go on, s
+  T tau_;  ///< duration of the segment if the inputs continue, s
   Event event_{};
   bool standstill_{false};
 };

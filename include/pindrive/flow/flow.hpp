@@ -1,4 +1,4 @@
-/// The closed form of one mode: between two events the pin is a damped sinusoid plus a line.
+/// Closed form of one mode: between two events the pin follows a damped sinusoid plus a line.
 ///
 /// Every mode obeys  m x'' + c x' + κ x = f + g τ  with constant coefficients, so
 ///
@@ -6,8 +6,8 @@
 ///
 /// where y and y' are value and slope of the free oscillation at τ = 0, p is the slope of the line,
 /// and Φ, Ψ are the responses of the free oscillator to a unit displacement and a unit velocity.
-/// Each derivative of x has the same form. Written as a change from the start, a quantity that is
-/// set exactly at an event (a velocity at that of a surface) stays exact there.
+/// Each derivative of x has this form too. Written as a change from the start, a quantity that is
+/// set exactly at an event (a velocity equal to that of a surface) stays exact there.
 #pragma once
 
 #include <cmath>
@@ -17,18 +17,18 @@
 
 namespace pindrive {
 
-/// How the free oscillator has moved on after a time τ.
+/// Response of the free oscillator after a time τ.
 template <class T>
 struct Propagator {
   T decline;  ///< Φ(τ) − 1: change of a unit displacement; dimensionless
-  T gain;     ///< Ψ(τ): displacement grown from a unit velocity, s
+  T gain;     ///< Ψ(τ): response to a unit velocity, s
   T tau;      ///< s
 
-  /// Of what does not oscillate.
+  /// Propagator of a path that does not oscillate.
   static Propagator still(T tau) { return {T(0), T(0), tau}; }
 };
 
-/// Zeros of a free oscillation at τ > 0: first, first + spacing, …; infinity where there is none.
+/// Zeros of a free oscillation at τ > 0: first, first + spacing, …; infinite if there are none.
 template <class T>
 struct Zeros {
   T first;
@@ -37,7 +37,7 @@ struct Zeros {
   T at(T index) const { return index == 0 ? first : first + index * spacing; }
 };
 
-/// The free oscillator  y'' = 2α y' − ω₀² y  of a mode, in every damping regime.
+/// Free oscillator  y'' = 2α y' − ω₀² y  of a mode, in every damping regime.
 template <class T>
 class Oscillator {
  public:
@@ -58,34 +58,34 @@ class Oscillator {
   T omega0_squared() const { return omega0_squared_; }  ///< ω₀² = κ/m, 1/s²
   T omega() const { return omega_; }                    ///< |ω₀² − α²|^½, rad/s
   bool oscillates() const { return discriminant_ > 0; }
-  /// No part of the motion changes at more than twice the root of this rate, 1/s².
+  /// Square of a rate, 1/s²; no part of the motion changes faster than twice this rate.
   T hurry_squared() const { return omega0_squared_ + alpha_ * alpha_; }
   T period() const { return 2 * half_period(); }
   T half_period() const { return oscillates() ? pi / omega_ : std::numeric_limits<T>::infinity(); }
 
-  /// The modulus of its fastest rate, 1/s.
+  /// Modulus of the fastest eigenvalue, 1/s.
   T fastest_rate() const {
     using std::abs;
     using std::sqrt;
     return oscillates() ? sqrt(omega0_squared_) : abs(alpha_) + omega_;
   }
-  /// The rate at which the slowest part of the motion grows (> 0) or decays (< 0), 1/s.
+  /// Rate at which the slowest part of the motion grows (> 0) or decays (< 0), 1/s.
   T slowest_rate() const { return oscillates() ? alpha_ : alpha_ < 0 ? gentle() : alpha_ + omega_; }
 
-  /// How long it is in the range of doubles: until what is slowest has decayed to e^−700 of its start,
-  /// or has grown by e^700. Beyond, no zero is looked for.
+  /// Time within the range of doubles, s: until the slowest part has decayed to e^−700 of its
+  /// start, or has grown by e^700. Later zeros are not searched.
   T lasts_for() const {
     using std::abs;
     return extinct / abs(slowest_rate());
   }
 
-  /// How long a start of rounded numbers serves: where two growing waves draw apart, so does what
-  /// rounding put into the faster one, by e⁶ in this time.
+  /// Time for which rounded initial values suffice, s: where two growing exponentials separate,
+  /// rounding of the faster one grows by e⁶ in this time.
   T serves_for() const {
     return alpha_ > 0 && discriminant_ < 0 ? 3 / omega_ : std::numeric_limits<T>::infinity();
   }
 
-  /// The second derivative of a free oscillation from its value and slope.
+  /// Second derivative of a free oscillation from its value and slope.
   T bend(T value, T slope) const { return 2 * alpha_ * slope - omega0_squared_ * value; }
 
   /// Φ(τ) − 1 and Ψ(τ) for finite τ ≥ 0.
@@ -108,20 +108,20 @@ class Oscillator {
     return {decay_change - rate * gain, gain, tau};
   }
 
-  /// The same for half a period: where a velocity has come from zero to zero again.
+  /// Propagator of half a period, from one zero of the velocity to the next.
   Propagator<T> half_turn() const {
     using detail::exp;
     return {-1 - exp(alpha_ * half_period()), T(0), half_period()};
   }
 
-  /// How far from zero a free oscillation turns whose rate has this value and slope at τ = 0: so far,
-  /// times e^(ατ), whenever that rate vanishes.
+  /// Amplitude of a free oscillation from the value and slope of its rate at τ = 0: the turning
+  /// points have this distance from zero, times e^(ατ).
   T reach(T rate, T rate_slope) const {
     using detail::hypot;
     return hypot(omega_ * rate, rate_slope - alpha_ * rate) / omega0_squared_;
   }
 
-  /// Where a free oscillation of this value and slope at τ = 0 vanishes while it lasts.
+  /// Zeros of a free oscillation with a value and slope at τ = 0, within `lasts_for`.
   Zeros<T> zeros(T value, T slope) const {
     using detail::atan2;
     constexpr T never = std::numeric_limits<T>::infinity();
@@ -139,9 +139,9 @@ class Oscillator {
   static constexpr T pi = T(3.141592653589793238462643383279502884L);
   static constexpr T series_reach = T(0.1);
   static constexpr T early = T(0.2);
-  static constexpr T extinct = T(700);  ///< e^−700 is about the smallest double
+  static constexpr T extinct = T(700);  ///< e^−700 is close to the smallest double
 
-  /// The power series of Ψ and of Φ − 1 = −ω₀² ∫Ψ: their first moments without cancellation.
+  /// Power series of Ψ and of Φ − 1 = −ω₀² ∫Ψ: first moments without cancellation.
   Propagator<T> soon_after(T tau) const {
     const T damp = 2 * alpha_ * tau, pull = omega0_squared_ * tau * tau;
     T before{0}, term = tau;
@@ -156,7 +156,7 @@ class Oscillator {
     return {-omega0_squared_ * integral, gain, tau};
   }
 
-  /// cos √z − 1 and sin √z / √z as entire functions of z: one expression through ω² = 0.
+  /// cos √z − 1 and sin √z / √z as entire functions of z: valid through ω² = 0.
   static T cosine_series(T z) {
     return -z / 2 *
            (1 -
@@ -169,7 +169,8 @@ class Oscillator {
                                      (1 - z / 72 * (1 - z / 110 * (1 - z / 156 * (1 - z / 210))))));
   }
 
-  /// Where two real waves cancel. A wave whose part is rounding is absent, and one alone has no zero.
+  /// Zero of the sum of two real exponentials. An exponential whose amplitude is within rounding of
+  /// zero is absent, and a single exponential has no zero.
   T only_zero(T value, T slope) const {
     using detail::log1p;
     using std::abs;
@@ -185,9 +186,9 @@ class Oscillator {
     return omega_ > 0 ? log1p(apart * ratio) / apart : ratio;
   }
 
-  /// The gentle one of two real rates: from the other, which needs no subtraction, and ω₀².
+  /// Smaller of two real rates, from the larger one, which needs no subtraction, and ω₀².
   T gentle() const { return omega0_squared_ / (alpha_ < 0 ? alpha_ - omega_ : alpha_ + omega_); }
-  /// From it to the other: −2ω in a decay, 2ω in a growth.
+  /// Difference of the two rates: −2ω in a decay, 2ω in a growth.
   T to_other_root() const { return alpha_ < 0 ? -2 * omega_ : 2 * omega_; }
 
   Propagator<T> damped(T tau, T cosine_change, T sine) const {
@@ -199,16 +200,16 @@ class Oscillator {
   T alpha_{0}, omega0_squared_{1}, discriminant_{1}, omega_{1};
 };
 
-/// One quantity along a mode: start + value·(Φ − 1) + slope·Ψ + drift·τ + curvature·τ²/2.
+/// Quantity along a mode: start + value·(Φ − 1) + slope·Ψ + drift·τ + curvature·τ²/2.
 template <class T>
 struct Path {
-  T start;         ///< its value at τ = 0
-  T value;         ///< the oscillating part's value at τ = 0
-  T slope;         ///< the oscillating part's derivative at τ = 0
+  T start;         ///< value at τ = 0
+  T value;         ///< value of the oscillating part at τ = 0
+  T slope;         ///< derivative of the oscillating part at τ = 0
   T drift{0};      ///< slope of the line
-  T curvature{0};  ///< of a pin that is carried by an accelerating plate
+  T curvature{0};  ///< second derivative, of a pin stuck to an accelerating plate
 
-  /// What it has changed by since τ = 0.
+  /// Change since τ = 0.
   T change(const Propagator<T>& moved) const {
     const T tau = moved.tau;
     return value * moved.decline + slope * moved.gain + (drift + curvature * tau / 2) * tau;
@@ -225,14 +226,14 @@ struct Path {
   struct Rates {
     T first, second, third;
   };
-  /// Its first three derivatives there.
+  /// First three derivatives at a propagator.
   Rates rates(const Oscillator<T>& oscillator, const Propagator<T>& moved) const {
     const T wave = value + value * moved.decline + slope * moved.gain;
     const T rate = slope + slope * moved.decline + oscillator.bend(value, slope) * moved.gain;
     const T bend = oscillator.bend(wave, rate);
     return {rate + drift + curvature * moved.tau, bend + curvature, oscillator.bend(rate, bend)};
   }
-  /// The same path with its time counted from τ on.
+  /// Path with its time counted from τ on.
   Path from(const Oscillator<T>& oscillator, T tau) const {
     const Propagator<T> moved = oscillator.after(tau);
     const T wave = value + value * moved.decline + slope * moved.gain;
@@ -244,7 +245,7 @@ struct Path {
   bool straight() const { return drift == 0 && curvature == 0; }
   bool constant() const { return straight() && !oscillates(); }
 
-  /// Where a straight path oscillates about and, if it decays, ends.
+  /// Centre of oscillation of a straight path; its limit if it decays.
   T centre() const { return start - value; }
 
   friend Path operator+(const Path& p, const Path& q) {
@@ -257,7 +258,7 @@ struct Path {
   }
 };
 
-/// A quantity that changes at a constant rate.
+/// Linear function of time.
 template <class T>
 struct Line {
   T value{0}, rate{0};
@@ -266,31 +267,31 @@ struct Line {
   operator Path<T>() const { return {value, T(0), T(0), rate, T(0)}; }
 };
 
-/// Position and velocity in one mode as functions of the time τ since it began.
+/// Position and velocity in one mode as functions of the time τ since its begin.
 template <class T>
 struct Flow {
   Oscillator<T> oscillator;
   Path<T> position, velocity;
 
-  /// Free to move from x, v, at y from a rest that drifts; the acceleration at τ = 0 is given, so
-  /// that a start which is exactly tangential can say so.
+  /// Flow of a free pin from x, v, at y from an equilibrium that drifts. The acceleration at τ = 0
+  /// is given, so that an exactly tangential start is represented.
   static Flow free(const Oscillator<T>& oscillator, T x, T v, T acceleration, T y, T drift) {
     const T y_rate = v - drift;
     return {oscillator, {x, y, y_rate, drift}, {v, y_rate, acceleration}};
   }
-  /// Stuck to a surface that moves with the given velocity.
+  /// Flow of a pin stuck to a surface with the given velocity.
   static Flow stuck(T x, Line<T> velocity) {
     return {{}, {x, T(0), T(0), velocity.value, velocity.rate}, velocity};
   }
 
   Path<T> acceleration() const { return velocity.derivative(oscillator); }
 
-  /// How the oscillation has moved on after τ; a stuck pin does not oscillate.
+  /// Propagator after τ; a stuck pin does not oscillate.
   Propagator<T> after(T tau) const {
     return velocity.oscillates() ? oscillator.after(tau) : Propagator<T>::still(tau);
   }
 
-  /// Half the width of the oscillation about its centre if it were undamped from now on, m.
+  /// Amplitude about the centre if the oscillation were undamped from now on, m.
   T amplitude() const {
     using detail::hypot;
     const T y = position.value;
@@ -299,19 +300,19 @@ struct Flow {
 };
 
 namespace detail {
-/// Whether a number is zero, whatever it is differentiated along.
+/// True if a number and its derivatives are zero.
 template <class T>
 bool vanishes(T number) {
   return number == 0;
 }
 }  // namespace detail
 
-/// A force on the pin in one mode: constant − drag x' − stiffness (x − x₀), N.
+/// Force on the pin in one mode: constant − drag x' − stiffness (x − x₀), N.
 template <class T>
 struct Force {
   Line<T> constant{};
   T drag{0}, stiffness{0};
-  T rounding{0};  ///< how well the drag is known, N s/m
+  T rounding{0};  ///< error of the drag, N s/m
 
   Path<T> along(const Flow<T>& flow) const {
     using detail::vanishes;

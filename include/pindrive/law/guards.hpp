@@ -1,4 +1,4 @@
-/// What ends a mode: its guards, and the earliest of their zeros.
+/// Guards of a mode and the earliest of their zeros.
 #pragma once
 
 #include <algorithm>
@@ -12,28 +12,28 @@
 
 namespace pindrive::detail {
 
-/// What stays positive while a mode lasts: the distance of a sliding speed from a bound, or (none) what
-/// contacts that stick could carry beyond what they do, to a side.
+/// Quantity that is positive while a mode lasts: distance of a sliding speed from the end of its
+/// branch or, with `ActiveGuard::none`, margin of a stick force to its limit on one side.
 template <class T>
 struct Guard {
   Path<T> path;
-  Bound bound;
-  bool plate;  ///< whose it is, or the finger's; the force of both that stick is the plate's
+  ActiveGuard bound;
+  bool plate;  ///< plate or finger; the joint stick force of both belongs to the plate
   int side;
   T zero{std::numeric_limits<T>::infinity()};  ///< s
 };
 
-/// The sign of what a quantity begins with. Of two guards that are images of each other, the one that it
-/// approaches is looked at first: a mirrored motion then has the same zeros, to the bit.
+/// Sign of the first part of a path that is not zero. Of two mirrored guards the approached one is
+/// evaluated first; a mirrored motion then has identical zeros, to the bit.
 template <class T>
-int sense(const Path<T>& path) {
+int leading_sign(const Path<T>& path) {
   for (const T part : {path.start, path.slope + path.drift, path.value, path.curvature})
     if (part != 0) return part < 0 ? -1 : 1;
   return 1;
 }
 
-/// The guards of a mode; at most two of a sliding contact or an elastic stick, of a stick force and of the
-/// end stops.
+/// List of the guards of a mode: at most two for a sliding contact or an elastic stick, for a stick
+/// force and for the end stops.
 template <class T>
 class Guards {
  public:
@@ -42,55 +42,58 @@ class Guards {
     below_ = above_ = -1;
   }
 
-  /// Adds what contacts that stick could carry to a side, before the guards of speeds.
+  /// Adds the margin of a stick force on one side; called before the guards of speeds are added.
   void add_force(const Path<T>& left, bool plate, int side) {
-    add(left, Bound::none, plate, side);
+    add(left, ActiveGuard::none, plate, side);
     forces_ = count_;
   }
-  /// Adds a guard that may come to zero: it oscillates or falls.
-  void add(const Path<T>& path, Bound bound, bool plate, int side = 0) {
+  /// Adds a guard, unless it neither oscillates nor falls.
+  void add(const Path<T>& path, ActiveGuard bound, bool plate, int side = 0) {
     if (path.oscillates() || path.drift < 0 || path.curvature < 0)
       list_[count_++] = {path, bound, plate, side};
   }
-  /// Adds one of which only the zero is needed, s; those of a stick force come first.
-  void add_known(T zero, Bound bound, bool plate, int side, bool stick_force) {
+  /// Adds a guard by its zero alone, s; guards of a stick force are added first.
+  void add_known(T zero, ActiveGuard bound, bool plate, int side, bool stick_force) {
     list_[count_++] = {{}, bound, plate, side, zero};
     if (stick_force) forces_ = count_;
   }
-  /// Adds those of a contact in a mode, of speeds along the segment and of the force in an elastic stick.
-  void add(const Touch<T>& side, const Segment<T>& segment, bool plate) {
+  /// Adds the guards of a contact: of speeds along the segment, and of the skin tension in an
+  /// elastic stick.
+  void add(const ContactPoint<T>& side, const Segment<T>& segment, bool plate) {
     if (side.elastic()) {
       const Path<T> most = Line<T>{side.stick_limit(), side.contact.static_limit * side.load.rate};
-      const int near = -sense(segment.finger_force);
+      const int near = -leading_sign(segment.finger_force);
       for (const int to : {near, -near}) {
         Path<T> left = most + T(to) * segment.finger_force;
-        if (most.drift != 0 && side.does.at == Bound::upper && to == near) {
+        if (most.drift != 0 && side.mode.guard == ActiveGuard::upper && to == near) {
           left.start = T(0);
-          if (side.off_level(segment.flow.velocity.start) == 0) left.drift = -left.slope;
+          if (side.excess_velocity(segment.flow.velocity.start) == 0) left.drift = -left.slope;
         }
-        add(left, Bound::none, plate, to);
+        add(left, ActiveGuard::none, plate, to);
       }
     }
     if (!side.sliding()) return;
     const Branch<T> range = side.branch();
     const Path<T>& v = segment.flow.velocity;
-    const T to = side.does.sense;
+    const T to = side.mode.slip_sign;
     const T speed = to * (v.start - side.surface.value) -
-                    (side.contact.rigid() ? T(0) : side.stretching(range.force));
-    const Path<T> above{side.does.at == Bound::lower ? T(0) : speed - range.from, to * v.value,
-                        to * v.slope, to * (v.drift - side.surface.rate)};
-    add_nearer(above, Bound::lower, plate, to > 0, v.start);
+                    (side.contact.rigid() ? T(0) : side.stretch_rate(range.force));
+    const Path<T> above{side.mode.guard == ActiveGuard::lower ? T(0) : speed - range.from,
+                        to * v.value, to * v.slope, to * (v.drift - side.surface.rate)};
+    add_nearer(above, ActiveGuard::lower, plate, to > 0, v.start);
     if (!(range.to < std::numeric_limits<T>::infinity())) return;
     Path<T> below = T(-1) * above;
-    below.start = side.does.at == Bound::upper ? T(0) : range.to - speed;
-    add_nearer(below, Bound::upper, plate, to < 0, v.start);
+    below.start = side.mode.guard == ActiveGuard::upper ? T(0) : range.to - speed;
+    add_nearer(below, ActiveGuard::upper, plate, to < 0, v.start);
   }
 
   const Guard<T>* begin() const { return list_.data(); }
   const Guard<T>* end() const { return list_.data() + count_; }
 
-  /// The earliest zero, or the limit if none comes before it. Times are `since` the start of the mode, and
-  /// those that differ by less than the rounding of a time are one.
+  /// Earliest zero, or the limit if there is none before.
+  ///
+  /// Times count from the start of the mode, which is at `since`. Times that differ by less than
+  /// the time resolution are equal.
   T earliest(const Oscillator<T>& oscillator, T since, T limit, T force_error) {
     const Path<T>* falls = nullptr;     // to the middle of its oscillation
     for (int n = 0; n < count_; ++n) {  // speeds, then stick forces
@@ -116,18 +119,18 @@ class Guards {
     return limit;
   }
 
-  /// Of zeros that are known, the earliest, or the limit if none comes before it.
+  /// Earliest of the zeros already known, or the limit if there is none before.
   T earliest_known(T limit) const {
     for (const Guard<T>& guard : *this) limit = std::min(limit, guard.zero);
     return limit;
   }
 
-  /// The earliest zero, or when it counts: what has come to its bound and stays there to rounding until a
-  /// speed comes to its own after a stick force's, or until the row, does so there: a stick force may turn
-  /// where a speed is zero. stays(guard, τ) says whether one does.
+  /// Defers grazing zeros: a guard that reaches zero and stays there within its error until a later
+  /// zero of a speed, or until the breakpoint, acts there. A stick force may turn where a speed is
+  /// zero. `stays(guard, τ)` returns true for such a guard.
   template <class Stays>
-  T put_off(T earliest, T row, Stays&& stays) const {
-    T next = row;
+  T defer_grazing(T earliest, T breakpoint, Stays&& stays) const {
+    T next = breakpoint;
     if (forces_ > 0)
       for (int i = forces_; i < count_; ++i)
         if (list_[i].zero > earliest) next = std::min(next, list_[i].zero);
@@ -139,53 +142,54 @@ class Guards {
     return late ? next : earliest;
   }
 
-  /// When the first of those in closed form counts: up to a limit, which may be a row, and with stick forces
-  /// that are known to their roundoff.
-  T first_event(const Oscillator<T>& oscillator, T since, T limit, bool is_row, T roundoff) {
-    const T row = is_row ? limit : std::numeric_limits<T>::infinity();
-    const T first = earliest(oscillator, since, limit, roundoff);
-    T counts = put_off(first, row, [&](const Guard<T>& guard, T tau) {
-      return stays(guard, oscillator, tau, roundoff);
+  /// Time of the first event of a mode in closed form, up to a limit, which may be a breakpoint.
+  T first_event(const Oscillator<T>& oscillator, T since, T limit, bool is_breakpoint,
+                T force_error) {
+    const T breakpoint = is_breakpoint ? limit : std::numeric_limits<T>::infinity();
+    const T first = earliest(oscillator, since, limit, force_error);
+    T counts = defer_grazing(first, breakpoint, [&](const Guard<T>& guard, T tau) {
+      return stays(guard, oscillator, tau, force_error);
     });
     if (counts > first)  // until then the others have not been looked at
       for (int i = 0; i < count_; ++i)
         if (list_[i].zero > counts) {
-          list_[i].zero = first_crossing(list_[i], oscillator, roundoff, counts);
+          list_[i].zero = first_crossing(list_[i], oscillator, force_error, counts);
           counts = std::min(counts, list_[i].zero);
         }
     return counts;
   }
 
-  /// Whether one in closed form stays at its bound from its zero until τ, to rounding.
+  /// True if a guard in closed form stays at zero from its zero until τ, within its error.
   bool stays(const Guard<T>& guard, const Oscillator<T>& oscillator, T tau,
              T force_roundoff) const {
     using std::abs;
     const Path<T>& path = guard.path;
-    const T roundoff = guard.bound == Bound::none || guard.bound == Bound::push
-                           ? force_roundoff
-                           : rounding<T> * (abs(path.start) + abs(path.value));
+    const T force_error = guard.bound == ActiveGuard::none || guard.bound == ActiveGuard::push
+                              ? force_roundoff
+                              : rounding<T> * (abs(path.start) + abs(path.value));
     const T rate = path.rates(oscillator, oscillator.after(guard.zero)).first;
-    return stays_at_bound(rate * (tau - guard.zero), path.at(oscillator, tau), roundoff);
+    return stays_at_bound(rate * (tau - guard.zero), path.at(oscillator, tau), force_error);
   }
 
  private:
-  /// The first zero of a guard until a limit; infinite if the stick force of skin only grazes its limit. A force
-  /// that does not grow and exceeds its limit by no more than its error never exceeds the limit: the same
-  /// drive in other units has another error, and does not slip.
+  /// First zero of a guard up to a limit; infinite if the skin tension only grazes its limit.
+  ///
+  /// A tension that does not grow and exceeds its limit by at most its error never exceeds the
+  /// limit: a drive in other units has another error and does not slip either.
   static T first_crossing(const Guard<T>& guard, const Oscillator<T>& oscillator, T force_error,
                           T limit) {
     const Path<T>& path = guard.path;
     const T zero = first_root(oscillator, path, 1, limit);
-    const bool skin = guard.bound == Bound::none && !guard.plate;
+    const bool skin = guard.bound == ActiveGuard::none && !guard.plate;
     if (!skin || !(zero < std::numeric_limits<T>::infinity())) return zero;
     if (oscillator.alpha() > 0 || !path.oscillates() || !path.straight()) return zero;
     const auto rates = path.rates(oscillator, oscillator.after(zero));
-    return touches(rates.first, rates.second, 2 * force_error) ? std::numeric_limits<T>::infinity()
-                                                               : zero;
+    return grazes(rates.first, rates.second, 2 * force_error) ? std::numeric_limits<T>::infinity()
+                                                              : zero;
   }
-  /// Adds the distance of a speed from a bound: one that falls as the velocity v does (or rises). Of two that
-  /// run at a constant distance beyond the rounding of v only the one below: it comes to zero first.
-  void add_nearer(const Path<T>& path, Bound bound, bool plate, bool falls, T v) {
+  /// Adds the distance of a speed from the end of its branch; `falls` if it decreases with the
+  /// velocity v. Of two parallel distances only the smaller is kept, as its zero comes first.
+  void add_nearer(const Path<T>& path, ActiveGuard bound, bool plate, bool falls, T v) {
     using std::abs;
     int& nearest = falls ? below_ : above_;
     if (nearest >= 0 && list_[nearest].path.drift == path.drift) {
@@ -204,8 +208,8 @@ class Guards {
   }
 
   std::array<Guard<T>, 8> list_;
-  int count_{0}, forces_{0};   ///< of them, those of a stick force
-  int below_{-1}, above_{-1};  ///< those of the velocity, from below and from above
+  int count_{0}, forces_{0};   ///< number of guards; number of guards of a stick force
+  int below_{-1}, above_{-1};  ///< nearest guards of the velocity below and above
 };
 
 }  // namespace pindrive::detail

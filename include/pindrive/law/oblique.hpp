@@ -1,5 +1,4 @@
-/// The friction of a plate that also slides across, along the axis, at an instant: how it changes from there,
-/// and how a pin sets out from the plate and comes to rest on it.
+/// Oblique slip: axial friction of a plate that also slides in the transverse direction.
 #pragma once
 
 #include <cmath>
@@ -12,16 +11,18 @@
 
 namespace pindrive {
 
-/// Whether a plate of this load, which moves like this across the axis, slides across too and carries something.
+/// True if a plate slides in the transverse direction and has a load, from this instant on.
 template <class T>
-bool carries_across(const Line<T>& load, const Line<T>& across) {
+bool slides_obliquely(const Line<T>& load, const Line<T>& across) {
   return (across.value != 0 || across.rate != 0) && (load.value != 0 || load.rate != 0);
 }
 
-/// The relative acceleration p with which a pin of mass m sets out from a plate that begins to slide across
-/// with the acceleration w': m p + λF p/√(p² + w'²) = what else pulls, N. It grows with the pull: one root.
+/// Relative acceleration p with which a pin of mass m leaves a plate that begins to slide across
+/// with acceleration w'.
+///
+/// Solves m p + λF p/√(p² + w'²) = pull (N); the left side is monotone, so the root is unique.
 template <class T>
-T setting_out(T mass, T friction, T across_rate, T pull) {
+T departure_acceleration(T mass, T friction, T across_rate, T pull) {
   using std::abs;
   using std::sqrt;
   const T w = abs(across_rate);
@@ -45,22 +46,25 @@ T setting_out(T mass, T friction, T across_rate, T pull) {
 
 namespace detail {
 
-/// The sliding velocity along the axis and across, both lines from here on. With the branch F + S ρ,
-/// ρ = √(u² + w²), the force is −λ (F d + S u), d = u/ρ; u' w − u w' does not change.
+/// Axial and transverse sliding velocity u and w, linear from this instant on.
+///
+/// On the branch F + S ρ with ρ = √(u² + w²) the axial force is −λ (F d + S u) with d = u/ρ, and u'
+/// w − u w' is constant.
 template <class T>
 struct ObliqueSlip {
   Line<T> u, w;  ///< m/s
 
-  /// ρ ρ': positive where the plate slides ever faster, …
+  /// Derivative of ρ²/2, m²/s³; positive if the sliding speed grows.
   T closing() const { return u.value * u.rate + w.value * w.rate; }
-  /// … and its rate, where that is zero to rounding, of a pin whose acceleration changes at this rate.
+  /// Second derivative of ρ²/2 for a pin with this jerk, where the first derivative is zero within
+  /// its error.
   T parting(T jerk) const { return u.rate * u.rate + w.rate * w.rate + u.value * jerk; }
-  /// What ρ²/2 is known to beside a surface of this velocity.
+  /// Error of the derivative of ρ²/2, for a surface with this velocity.
   T rounding_of(T surface) const {
     using std::abs;
     return rounding<T> * speed() * (speed() + abs(surface));
   }
-  /// How steeply the force falls with the velocity along the axis, N s/m.
+  /// Decrease of the force with the axial velocity, N s/m.
   T steepness(const Branch<T>& branch, const Line<T>& load) const {
     const T r = speed(), across = r > 0 ? w.value / r : T(0);
     return load.value * ((r > 0 ? at_rest(branch) * across * across / r : T(0)) + branch.slope);
@@ -87,7 +91,7 @@ struct ObliqueSlip {
     return speed() > 0 ? u.value / speed() : u.rate / hypot(u.rate, w.rate);
   }
   T turn() const { return u.rate * w.value - u.value * w.rate; }
-  /// d' and d''; none while it sets out from no speed.
+  /// First derivative of d; zero at zero speed.
   T turning() const {
     const T r = speed();
     return r > 0 ? turn() * w.value / (r * r * r) : T(0);
@@ -98,55 +102,60 @@ struct ObliqueSlip {
   }
 };
 
-/// Whether a contact of relative velocity u slides across too and carries anything from here on; then it slips on
-/// the branch of its speed, and `at` is the end of that which it is at, the one it has just come to or none. Where
-/// it no longer does, it slips along the axis, or is asked whether it sticks.
-template <class Side, class T>
-bool asks_across(Side& side, T u, Bound& at) {
+/// Enumerates the candidates of an oblique slip. Returns false if the plate does not slide across;
+/// the contact then slips along the axis or may stick.
+///
+/// `guard` is the active guard: the end of the branch that the sliding speed has just reached, or
+/// none.
+template <class Point, class T>
+bool enumerate_oblique_options(Point& side, T u, ActiveGuard& guard) {
   using detail::hypot;
   const auto& contact = side.contact;
-  if (!carries_across(side.load, side.across)) {
+  if (!slides_obliquely(side.load, side.across)) {
     if (!side.oblique()) return false;
-    at = Bound::none;  // that of another speed
-    side.does = {ContactState::stick, Bound::none, 0, T(0)};
+    guard = ActiveGuard::none;  // that of another speed
+    side.mode = {ContactState::stick, ActiveGuard::none, 0, T(0)};
     if (u != 0)
-      side.does = Side::slip(u < 0 ? T(-1) : T(1), Bound::none, contact.branch_of(u < 0 ? -u : u));
+      side.mode =
+          Point::slip(u < 0 ? T(-1) : T(1), ActiveGuard::none, contact.branch_of(u < 0 ? -u : u));
     return false;
   }
   if (!contact.present()) return false;
   const T speed = hypot(u, side.across.value);
   if (!side.oblique()) {
-    at = Bound::none;
-    side.does = {ContactState::slip_oblique, Bound::none, contact.branch_of(speed), T(0)};
+    guard = ActiveGuard::none;
+    side.mode = {ContactState::slip_oblique, ActiveGuard::none, contact.branch_of(speed), T(0)};
   }
   const Branch<T> range = side.branch();
-  if (at == Bound::none && speed >= range.to) at = Bound::upper;
-  if (at == Bound::none && !(speed > range.from || side.does.branch == 0)) at = Bound::lower;
+  if (guard == ActiveGuard::none && speed >= range.to) guard = ActiveGuard::upper;
+  if (guard == ActiveGuard::none && !(speed > range.from || side.mode.branch == 0))
+    guard = ActiveGuard::lower;
   side.friction = range.at(speed);
   const T rate = side.surface.rate;
   side.direction = speed > 0 ? u / speed : -rate / hypot(rate, side.across.rate);
-  if (at == Bound::none) return true;
+  if (guard == ActiveGuard::none) return true;
   side.count = 2;
   side.friction =
-      contact.branch(at == Bound::upper ? side.does.branch + 1 : side.does.branch).force;
+      contact.branch(guard == ActiveGuard::upper ? side.mode.branch + 1 : side.mode.branch).force;
   return true;
 }
 
-/// The relative acceleration with which a pin leaves a plate that begins to slide across, while all else pulls
-/// it, N; the plate's direction follows.
-template <class T, class Side>
-T set_out_across(T mass, Side& plate, T pull) {
+/// Relative acceleration with which a pin leaves a plate that begins to slide across; sets the
+/// sliding direction. `pull` is the sum of all further forces, N.
+template <class T, class Point>
+T oblique_departure(T mass, Point& plate, T pull) {
   using detail::hypot;
   const T rest = pull - mass * plate.surface.rate;
-  const T p = setting_out(mass, plate.load.value * plate.friction, plate.across.rate, rest);
+  const T p =
+      departure_acceleration(mass, plate.load.value * plate.friction, plate.across.rate, rest);
   plate.direction = p / hypot(p, plate.across.rate);
   return p;
 }
 
-/// Where a plate stops to slide across, a pin that has come to its velocity has it exactly: to what it was
-/// across there, to the rounding of the velocity, or to what friction does in the rounding of the time.
-template <class T, class Side>
-void land_along_axis(State<T>& state, Side& plate, bool on_finger, T across, T mass, T time) {
+/// Ends an oblique slip at zero transverse velocity: a pin that has the velocity of the plate
+/// within the errors of both gets it exactly.
+template <class T, class Point>
+void end_oblique_slip(State<T>& state, Point& plate, bool on_finger, T across, T mass, T time) {
   using std::abs;
   if (!plate.oblique() || plate.across.value != 0) return;
   const T changes = plate.load.value * plate.friction / mass + abs(plate.surface.rate);

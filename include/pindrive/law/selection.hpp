@@ -1,4 +1,4 @@
-/// The selection of the mode that follows an event, from the state there (docs/theory.md, section 4).
+/// Selection of the mode that follows an event (docs/theory.md, section 4).
 #pragma once
 
 #include <cmath>
@@ -13,11 +13,11 @@
 
 namespace pindrive::detail {
 
-/// The pin and its contacts at an instant, and the mode in which they go on from there.
+/// Pin, contacts and stops at an instant, with the mode that follows.
 template <class T>
 class Selection {
  protected:
-  using Side = Touch<T>;
+  using ContactPoint = detail::ContactPoint<T>;
 
   Selection(const Drive<T>& drive, T time, T x, T v)
       : drive_(drive),
@@ -27,189 +27,199 @@ class Selection {
         finger_(drive.finger),
         stop_(drive.stops) {
     using std::abs;
-    state_.x_size = abs(x);
+    state_.position_scale = abs(x);
   }
 
-  /// Selects the mode that follows: of the candidates, the first that is consistent, which is to say
-  /// that each guard that is zero has a first derivative that is not zero and is positive. Preferred
-  /// is what sticks; of two contacts that cannot both, the one that held until now, or the plate.
-  /// False if none is.
+  /// Selects the first candidate that is consistent: the first non-zero derivative of each guard
+  /// that is zero is positive.
+  ///
+  /// Stick is preferred. If only one of two contacts can stick, the contact that stuck until now is
+  /// preferred, then the plate. Returns false if no candidate is consistent.
   bool select() {
     using std::abs;
-    plate_.ask(state_);
-    finger_.ask(state_);
-    inertia_ = drive_.mass * plate_.surface.rate;
-    pull_ = drive_.stiffness * state_.x + drive_.damping * state_.v;
-    T size = drive_.stiffness * state_.x_size + drive_.damping * abs(state_.v);
-    inertia_ += force_.value;
+    plate_.enumerate_options(state_);
+    finger_.enumerate_options(state_);
+    applied_force_ = drive_.mass * plate_.surface.rate;
+    restoring_force_ = drive_.stiffness * state_.x + drive_.damping * state_.v;
+    T size = drive_.stiffness * state_.position_scale + drive_.damping * abs(state_.v);
+    applied_force_ += force_.value;
     size += abs(force_.rate) * time_;  // known to the rounding of the time
-    stop_.ask(state_);
-    size += stop_.size(state_);
-    state_.roundoff =
-        rounding<T> * (size + 2 * abs(inertia_) + plate_.size(state_.v) + finger_.size(state_.v));
-    const T pull = pull_;
+    stop_.enumerate_options(state_);
+    size += stop_.force_scale(state_);
+    state_.force_error =
+        rounding<T> * (size + 2 * abs(applied_force_) + plate_.force_scale(state_.v) +
+                       finger_.force_scale(state_.v));
+    const T pull = restoring_force_;
     for (const bool stick : {true, false})
       for (int option = 0; option < stop_.count(); ++option) {
-        stop_.take(option);
-        pull_ = pull - stop_.force(state_);
-        if (stop_.holds() ? stick && stays_at_stop() : stick ? sticks() : slips()) return true;
+        stop_.choose(option);
+        restoring_force_ = pull - stop_.force(state_);
+        if (stop_.is_holding() ? stick && try_stop() : stick ? try_any_stick() : try_any_slip())
+          return true;
       }
     return false;
   }
 
-  /// The mode that was selected.
+  /// Selected mode.
   Mode mode() const {
-    return {plate_.does.state, finger_.does.state, plate_.does.branch, finger_.does.branch,
-            stop_.does};
+    return {plate_.mode.state, finger_.mode.state, plate_.mode.branch, finger_.mode.branch,
+            stop_.state};
   }
 
   bool held() const { return pindrive::held(drive_, mode()); }
 
-  /// Whether a stick force that has come to its limit stays exactly there: no force jumps.
-  bool continues() const {
-    return limit_ != 0 && plate_.continues(limit_) && finger_.continues(limit_) && !stop_.jumped();
+  /// True if a stick force at its limit stays there exactly, because no force jumps.
+  bool stays_at_limit() const {
+    return stick_limit_side_ != 0 && plate_.is_continuous(stick_limit_side_) &&
+           finger_.is_continuous(stick_limit_side_) && !stop_.force_jumped();
   }
 
-  /// Whether the push of a stop is exactly zero: it came to that, and no force jumps. What is at rest at a rigid
-  /// one carries nothing.
+  /// True if the push of a stop is exactly zero: it has reached zero and no force jumps. A pin at
+  /// rest at a rigid stop is not pushed.
   bool no_push() const {
     if (!stop_.no_push() || !stop_.rigid()) return stop_.no_push();
-    const auto alike = [&](const Side& side) {
+    const auto alike = [&](const ContactPoint& side) {
       const bool rested = side.before == ContactState::stick || side.before == ContactState::absent;
-      return side.continues(0) || (rested && side.force(state_) == 0);
+      return side.is_continuous(0) || (rested && side.force(state_) == 0);
     };
     return alike(plate_) && alike(finger_);
   }
 
   const Drive<T>& drive_;
-  T time_;  ///< now, s
+  T time_;  ///< time of the instant, s
   State<T> state_;
-  Side plate_, finger_;   ///< in the mode that was selected, …
-  EndStops<T> stop_;      ///< … and the end stops
-  int limit_{0};          ///< the side of a stick force that has just come to its limit
-  Line<T> force_{};       ///< from outside, N
-  T inertia_{}, pull_{};  ///< m v_p' and what acts from outside; k x + b v less a stop's force, N
+  ContactPoint plate_, finger_;  ///< contacts in the selected mode
+  EndStops<T> stop_;             ///< end stops in the selected state
+  int stick_limit_side_{0};      ///< side of a stick force that has just reached its limit, else 0
+  Line<T> force_{};              ///< external force, N
+  T applied_force_{},
+      restoring_force_{};  ///< inertial and external force; force of spring and damper less that of a stop, N
 
-  T acceleration_{};  ///< of a pin that slips; tangential: that of a surface …
+  T acceleration_{};  ///< acceleration in slip, m/s²
   bool tangential_{false};
-  Path<T> stick_force_{};  ///< … or what carries it
-  Guards<T> guards_;       ///< the mode's
+  Path<T> stick_force_{};  ///< stick force, N
+  Guards<T> guards_;       ///< guards of the mode
 
  private:
-  /// Of spring and damper, with a stop that pushes.
+  /// Stiffness of spring and pushing stop, N/m.
   T stiffness() const { return drive_.stiffness + stop_.stiffness(); }
   T damping() const { return drive_.damping + stop_.damping(); }
 
-  /// Whether the finger is asked before the plate.
+  /// True if the finger is evaluated before the plate.
   bool finger_first() const {
     return finger_.before == ContactState::stick && plate_.before != ContactState::stick;
   }
-  /// Whether a contact sticks …
-  bool sticks() {
+  /// Selects a mode in which a contact sticks; false if none is consistent.
+  bool try_any_stick() {
     const bool finger = finger_first();
-    Side &first = finger ? finger_ : plate_, &second = finger ? plate_ : finger_;
-    if (first.may_stick() && sticks(first, second, 0)) return true;
-    return second.may_stick() && sticks(second, first, first.may_stick() ? 1 : 0);
+    ContactPoint &first = finger ? finger_ : plate_, &second = finger ? plate_ : finger_;
+    if (first.may_stick() && try_stick_beside(first, second, 0)) return true;
+    return second.may_stick() && try_stick_beside(second, first, first.may_stick() ? 1 : 0);
   }
-  /// … or the pin sets out with none that does.
-  bool slips() {
+  /// Selects a mode in which no contact sticks; false if none is consistent.
+  bool try_any_slip() {
     const bool finger = finger_first();
-    Side &first = finger ? finger_ : plate_, &second = finger ? plate_ : finger_;
-    for (Side* side : {&first, &second}) {
-      Side& other = side == &first ? second : first;
+    ContactPoint &first = finger ? finger_ : plate_, &second = finger ? plate_ : finger_;
+    for (ContactPoint* side : {&first, &second}) {
+      ContactPoint& other = side == &first ? second : first;
       if (!side->may_stick()) continue;
-      if (!other.may_stick()) other.does = other.option(0);
-      side->breaks_under(stick_force(*side, other.may_stick() ? T(0) : other.force(state_)));
+      if (!other.may_stick()) other.mode = other.option(0);
+      side->prefer_direction(stick_force(*side, other.may_stick() ? T(0) : other.force(state_)));
     }
     for (const bool kept : {false, true})
       for (int k = first.may_stick() ? 1 : 0; k < first.count; ++k)
         for (int l = second.may_stick() ? 1 : 0; l < second.count; ++l) {
-          first.does = first.option(k);
-          second.does = second.option(l);
-          if ((keeps(first, second) || keeps(second, first)) == kept && sets_out()) return true;
+          first.mode = first.option(k);
+          second.mode = second.option(l);
+          if ((could_stick(first, second) || could_stick(second, first)) == kept && try_slip())
+            return true;
         }
     return false;
   }
-  /// Whether what stuck could carry the pin beside a slip of the other: it slips only where nothing else goes.
-  bool keeps(const Side& side, const Side& other) const {
+  /// True if `side` was stuck and its static friction still suffices while `other` slips. `side` is
+  /// released only if no other candidate is consistent.
+  bool could_stick(const ContactPoint& side, const ContactPoint& other) const {
     using std::abs;
     if (side.before != ContactState::stick || !side.may_stick() || other.may_stick()) return false;
     const T force = stick_force(side, other.force(state_));
-    return limit_ == 0 && side.stick_limit() - abs(force) > state_.roundoff;
+    return stick_limit_side_ == 0 && side.stick_limit() - abs(force) > state_.force_error;
   }
 
-  /// Whether a rigid stop keeps the pin where it is. What its contacts do then follows from that it is at rest;
-  /// a rigid finger does nothing.
-  bool stays_at_stop() {
+  /// Tests the mode in which a rigid stop holds the pin. The pin is at rest, which determines the
+  /// modes of its contacts; a rigid finger transmits no force.
+  bool try_stop() {
     using std::abs;
     tangential_ = false;
     acceleration_ = T(0);
-    const T end = side(stop_.does);
-    const auto goes = [&](Side& side, T apart) {
+    const T end = stop_sign(stop_.state);
+    const auto goes = [&](ContactPoint& side, T apart) {
       for (int k = 0; k < side.count; ++k) {
-        side.does = side.option(k);
-        if (side.stuck() ? apart == 0 : side.goes_inside(state_, apart)) return true;
+        side.mode = side.option(k);
+        if (side.stuck() ? apart == 0 : side.is_admissible(state_, apart)) return true;
       }
       return false;
     };
     if (!goes(plate_, -plate_.surface.rate) || !goes(finger_, T(0))) return false;
-    const T force = inertia_ - pull_ + plate_.force(state_) + finger_.force(state_);
+    const T force =
+        applied_force_ - restoring_force_ + plate_.force(state_) + finger_.force(state_);
     const auto rate = plate_.force_rate(T(0), T(0)), skin = finger_.force_rate(T(0), T(0));
     const Path<T> push{end * force, T(0), T(0), end * (force_.rate + rate.value + skin.value),
-                       end * (rate.bend + skin.bend)};
-    return stop_.holds_under(push, abs(force_.rate) + rate.size + skin.size, no_push(),
-                             state_.roundoff, guards_);
+                       end * (rate.second + skin.second)};
+    return stop_.try_hold(push, abs(force_.rate) + rate.scale + skin.scale, no_push(),
+                          state_.force_error, guards_);
   }
 
-  /// Whether a contact sticks while the other one does one of its options.
-  bool sticks(Side& on, Side& other, int option) {
-    on.does = on.option(0);
+  /// Tests stick of one contact beside each candidate of the second contact, from `option` on.
+  bool try_stick_beside(ContactPoint& on, ContactPoint& other, int option) {
+    on.mode = on.option(0);
     for (; option < other.count; ++option) {
-      other.does = other.option(option);
-      if (holds(on, other)) return true;
+      other.mode = other.option(option);
+      if (try_stick(on, other)) return true;
     }
     return false;
   }
 
-  /// The force that would keep the pin on a contact's surface, beside what the other does, N, …
-  T stick_force(const Side& on, T of_other) const {
-    return pull_ - (inertia_ - drive_.mass * on.surface.rate) - of_other;
+  /// Force that keeps the pin on the surface of a contact, beside the force of the second contact,
+  /// N.
+  T stick_force(const ContactPoint& on, T of_other) const {
+    return restoring_force_ - (applied_force_ - drive_.mass * on.surface.rate) - of_other;
   }
-  /// … and how it changes; `size` is that of the terms of its slope.
-  Path<T> stick_force_from(T force, const Side& on, const Side& other, T& size) const {
+  /// Stick force as a function of time; `size` is the magnitude of the terms of its slope.
+  Path<T> stick_force_from(T force, const ContactPoint& on, const ContactPoint& other,
+                           T& size) const {
     using std::abs;
     const T a = on.surface.rate, spring = stiffness() * state_.v, damper = damping() * a;
     const auto rate = other.force_rate(state_.v, a);
-    size = abs(spring) + abs(damper) + rate.size;
+    size = abs(spring) + abs(damper) + rate.scale;
     T drift = spring + damper - rate.value;
     drift -= force_.rate;
     size += abs(force_.rate);
-    return {force, T(0), T(0), drift, stiffness() * a - rate.bend};
+    return {force, T(0), T(0), drift, stiffness() * a - rate.second};
   }
 
-  /// Whether a contact, and the other where it sticks too, keeps the pin on its surface.
-  bool holds(const Side& on, const Side& other) {
+  /// Tests the mode in which a contact, and `other` if it sticks too, keeps the pin on its surface.
+  bool try_stick(const ContactPoint& on, const ContactPoint& other) {
     using std::abs;
     const T apart = on.surface.rate - other.surface.rate;
-    if (other.stuck() ? apart != 0 : !other.goes_inside(state_, apart)) return false;
-    if (!stop_.allows(state_.v, on.surface.rate, {})) return false;
+    if (other.stuck() ? apart != 0 : !other.is_admissible(state_, apart)) return false;
+    if (!stop_.is_consistent(state_.v, on.surface.rate, {})) return false;
     const T of_on = on.contact.static_limit;
     const T of_other = other.stuck() ? other.contact.static_limit : T(0);
     const Line<T> most{of_on * on.load.value + of_other * other.load.value,
                        of_on * on.load.rate + of_other * other.load.rate};
     const T force = stick_force(on, other.force(state_));
-    const int at_limit = continues() ? limit_ : 0;
-    if (most.value - abs(force) < -state_.roundoff && (force < 0 ? -1 : 1) != at_limit)
+    const int at_limit = stays_at_limit() ? stick_limit_side_ : 0;
+    if (most.value - abs(force) < -state_.force_error && (force < 0 ? -1 : 1) != at_limit)
       return false;
     T size;
     stick_force_ = stick_force_from(force, on, other, size);
     guards_.clear();
     for (const int side : {1, -1}) {
       Path<T> left = Path<T>(most) + T(-side) * stick_force_;
-      if (!(left.start > state_.roundoff) || side == at_limit) {
+      if (!(left.start > state_.force_error) || side == at_limit) {
         left.start = T(0);
         if (abs(left.drift) <= rounding<T> * (size + abs(most.rate)) ||
-            touches(left.drift, left.curvature, state_.roundoff))
+            grazes(left.drift, left.curvature, state_.force_error))
           left.drift = T(0);
         if ((left.drift != 0 ? left.drift : left.curvature) < 0) return false;
       }
@@ -218,9 +228,9 @@ class Selection {
     return true;
   }
 
-  /// Whether the pin can set out with no contact that sticks. A relative acceleration that is zero is
-  /// exactly zero: it sets out along with that surface.
-  bool sets_out() {
+  /// Tests the mode in which no contact sticks. A relative acceleration that is zero within its
+  /// error is exactly zero: the pin starts tangentially to that surface.
+  bool try_slip() {
     using std::abs;
     tangential_ = false;
     guards_.clear();
@@ -229,16 +239,17 @@ class Selection {
     const bool across =
         plate_.oblique() && plate_.across.value == 0 && state_.v == plate_.surface.value;
     const T parting =
-        across ? set_out_across(drive_.mass, plate_, inertia_ - pull_ + finger) : T(0);
+        across ? oblique_departure(drive_.mass, plate_, applied_force_ - restoring_force_ + finger)
+               : T(0);
     const T plate = plate_.force(state_);
-    acceleration_ =
-        across ? plate_.surface.rate + parting : (inertia_ - pull_ + plate + finger) / drive_.mass;
-    const auto parts = [&](const Side& side, T own, T of_other) {  // times the mass
-      if (!side.rests(state_.v)) return acceleration_;
+    acceleration_ = across ? plate_.surface.rate + parting
+                           : (applied_force_ - restoring_force_ + plate + finger) / drive_.mass;
+    const auto parts = [&](const ContactPoint& side, T own, T of_other) {  // times the mass
+      if (!side.is_decided_by_acceleration(state_.v)) return acceleration_;
       const T force = across ? drive_.mass * (acceleration_ - side.surface.rate)
                              : own - stick_force(side, of_other);
-      const bool releases = side.before == ContactState::stick && continues();
-      const T known = across ? T(0) : state_.roundoff + plate_.unsure(state_.v);
+      const bool releases = side.before == ContactState::stick && stays_at_limit();
+      const T known = across ? T(0) : state_.force_error + plate_.force_error(state_.v);
       const bool none = abs(force) <= known;
       if (!tangential_ && (none || releases || turns_at_once(side, force))) {
         tangential_ = true;
@@ -247,60 +258,62 @@ class Selection {
       return force;
     };
     const T at_plate = parts(plate_, plate, finger), at_finger = parts(finger_, finger, plate);
-    if (stop_.ask_further() && !leaves_stop()) return false;
-    const auto leaves = [&](const Side& side, const Side& other, T force) {
+    if (stop_.is_undecided() && !leaves_stop()) return false;
+    const auto leaves = [&](const ContactPoint& side, const ContactPoint& other, T force) {
       if (side.oblique()) {
         const Line<T> jerk = this->jerk();
-        return side.goes_inside(state_, acceleration_ - side.surface.rate, jerk.value, jerk.rate);
+        return side.is_admissible(state_, acceleration_ - side.surface.rate, jerk.value, jerk.rate);
       }
-      if (!tangential_) return side.goes_inside(state_, force);
+      if (!tangential_) return side.is_admissible(state_, force);
       const T apart = acceleration_ - side.surface.rate;
-      if (drive_.mass * abs(apart) > state_.roundoff || !side.rests(state_.v))
-        return side.goes_inside(state_, apart);
+      if (drive_.mass * abs(apart) > state_.force_error ||
+          !side.is_decided_by_acceleration(state_.v))
+        return side.is_admissible(state_, apart);
       T size;
       const Path<T> needed = stick_force_from(T(0), side, other, size);
       const T own = side.force_rate(state_.v, acceleration_).value, jerk = own - needed.drift;
       const bool none = abs(jerk) <= rounding<T> * (size + abs(own));
-      return side.goes_inside(state_, T(0), none ? T(0) : jerk, -needed.curvature);
+      return side.is_admissible(state_, T(0), none ? T(0) : jerk, -needed.curvature);
     };
     return leaves(plate_, finger_, at_plate) && leaves(finger_, plate_, at_finger);
   }
 
-  /// Whether the force that takes a sliding speed off a breakpoint turns within the rounding of the time.
-  bool turns_at_once(const Side& side, T force) const {
+  /// True if the force that moves a sliding speed off a breakpoint changes its sign within the time
+  /// resolution.
+  bool turns_at_once(const ContactPoint& side, T force) const {
     using std::abs;
-    if (side.may_stick() || side.lags() || !side.sliding()) return false;
+    if (side.may_stick() || side.has_slider_state() || !side.sliding()) return false;
     const T rate = force_rate().value;
     return force * rate < 0 && 2 * abs(force) <= rounding<T> * time_ * abs(rate);
   }
 
-  /// Whether a pin that sets out goes on as the stops do.
+  /// True if a slipping pin is consistent with the state of the stops.
   bool leaves_stop() {
     using std::abs;
     const bool none =
-        drive_.mass * abs(acceleration_) <= state_.roundoff || (stop_.rigid() && no_push());
+        drive_.mass * abs(acceleration_) <= state_.force_error || (stop_.rigid() && no_push());
     if (!tangential_ && stop_.at_edge() && none) {
       tangential_ = true;
       acceleration_ = T(0);
     }
-    return stop_.allows(state_.v, acceleration_, jerk());
+    return stop_.is_consistent(state_.v, acceleration_, jerk());
   }
 
-  /// The jerk of a pin that sets out, none to rounding, and how fast it changes.
+  /// Jerk of a slipping pin, m/s³, zero within its error; and the derivative of the jerk.
   Line<T> jerk() const {
     using std::abs;
     const auto [rate, size, bend] = force_rate();
     return {abs(rate) <= rounding<T> * size ? T(0) : rate / drive_.mass, bend / drive_.mass};
   }
-  /// How the force on a pin that sets out changes: mass times its jerk.
-  typename Side::Rate force_rate() const {
+  /// Derivatives of the force on a slipping pin.
+  typename ContactPoint::Rate force_rate() const {
     using std::abs;
     const auto plate = plate_.force_rate(state_.v, acceleration_);
     const auto finger = finger_.force_rate(state_.v, acceleration_);
     const T spring = stiffness() * state_.v, damper = damping() * acceleration_;
     return {force_.rate + plate.value + finger.value - spring - damper,
-            abs(force_.rate) + plate.size + finger.size + abs(spring) + abs(damper),
-            plate.bend + finger.bend - stiffness() * acceleration_};
+            abs(force_.rate) + plate.scale + finger.scale + abs(spring) + abs(damper),
+            plate.second + finger.second - stiffness() * acceleration_};
   }
 };
 

@@ -1,8 +1,9 @@
-/// The slider of a compliant contact: a point without mass between the skin, which stretches, and the pin, on
-/// which it slides (docs/theory.md, section 11).
+/// Slider of a compliant contact: a massless point between the skin, which stretches, and the pin,
+/// on which the slider slides (docs/theory.md, section 11).
 ///
-/// Its skin asks of it one friction. Where its curve rises that is one speed, and a plateau leaves it the
-/// speed of the pin; where its curve falls, no speed lasts.
+/// The skin tension determines the friction of the slider. On a rising branch one speed has that
+/// friction; on a plateau the slider has the speed of the pin; on a falling branch no speed is
+/// stable.
 #pragma once
 
 #include <algorithm>
@@ -15,124 +16,128 @@
 
 namespace pindrive::detail {
 
-/// Where a slider is after it has come to an end of what it can do, at once.
+/// State of a slider after an instantaneous change of its speed.
 template <class T>
-struct Landing {
+struct SliderJump {
   int branch{0};
-  T speed{0};             ///< along the slip, m/s
-  T friction{0};          ///< under a load of 1, N
-  Bound at{Bound::none};  ///< the end of the branch that it is at
-  bool grips{false};      ///< it does not slide …
-  bool drops{false};      ///< or it slid so fast that the skin has become shorter
-  bool turns{false};      ///< it slides the other way
+  T speed{0};                            ///< in the direction of slip, m/s
+  T friction{0};                         ///< for a load factor of 1, N
+  ActiveGuard guard{ActiveGuard::none};  ///< active guard: an end of the branch
+  bool sticks{false};                    ///< the slider sticks
+  bool shortens_skin{false};             ///< the skin shortens during the jump
+  bool reverses{false};                  ///< the slip direction reverses
 };
 
-/// The landings of a slider on a curve, of a pin with a speed along the slip. Its skin stretches by `follows`
-/// for each newton of friction under a load of 1, as its load changes, m/s.
+/// Jumps of a slider on a friction curve, for a pin with a speed in the direction of slip (m/s).
+///
+/// `stretch_rate` is the rate at which the skin stretches per newton of friction at load factor 1,
+/// as the load changes, m/(s N).
 template <class T>
 class Slider {
  public:
-  Slider(const Contact<T>& contact, T speed, T follows)
-      : contact_(contact), speed_(speed), follows_(follows) {}
+  Slider(const Contact<T>& contact, T speed, T stretch_rate)
+      : contact_(contact), speed_(speed), stretch_rate_(stretch_rate) {}
 
-  /// The speed that it has where its friction stays this, m/s; none to rounding is none.
-  T pin(T friction) const {
+  /// Slider speed at which a friction stays constant, m/s; zero within its error.
+  T stationary_speed(T friction) const {
     using std::abs;
-    const T pin = follows_ == 0 ? speed_ : speed_ - follows_ * friction;
+    const T pin = stretch_rate_ == 0 ? speed_ : speed_ - stretch_rate_ * friction;
     return abs(pin) < rounding<T> * abs(speed_) ? T(0) : pin;
   }
 
-  /// By how much that is faster than a speed at this friction; none to rounding is none.
-  T misses(T speed, T friction) const {
+  /// Stationary speed at a friction, minus a speed, m/s; zero within its error.
+  T excess(T speed, T friction) const {
     using std::abs;
-    const T left = pin(friction) - speed;
+    const T left = stationary_speed(friction) - speed;
     return abs(left) < rounding<T> * abs(speed_) ? T(0) : left;
   }
 
-  /// The first speed from the begin of a branch on at which its curve carries the friction asked of it. If
-  /// none does, it is infinitely fast until the skin asks no more than the last.
-  [[gnu::noinline]] Landing<T> faster(int branch, T asked) const {
+  /// Smallest speed from the begin of a branch upwards at which the friction curve has the given
+  /// friction. If there is none, the speed is infinite for an instant until the skin tension equals
+  /// the last friction.
+  [[gnu::noinline]] SliderJump<T> next_faster(int branch, T asked) const {
     for (int j = branch;; ++j) {
       const Branch<T> range = contact_.branch(j);
       const bool last = !(range.to < never);
       if (range.slope > 0) {
         const T most = last ? never : contact_.branch(j + 1).force;
         if (!(asked > range.force) || same(asked, range.force))
-          return {j, range.from, range.force, Bound::lower};
+          return {j, range.from, range.force, ActiveGuard::lower};
         if (same(asked, most)) {
-          if (!(pin(most) > range.to)) return {j, range.to, most, Bound::upper};
+          if (!(stationary_speed(most) > range.to)) return {j, range.to, most, ActiveGuard::upper};
         } else if (asked < most) {
           return {j, range.from + (asked - range.force) / range.slope, asked};
         }
       }
-      const bool drops = range.force < asked && !same(asked, range.force);
-      if (range.slope != 0 || (drops && !last)) continue;
-      const T speed = pin(range.force);
-      if (speed < range.from && drops) {
-        Landing<T> back = slower(j, range.force);
-        back.drops = true;
+      const bool shortens_skin = range.force < asked && !same(asked, range.force);
+      if (range.slope != 0 || (shortens_skin && !last)) continue;
+      const T speed = stationary_speed(range.force);
+      if (speed < range.from && shortens_skin) {
+        SliderJump<T> back = next_slower(j, range.force);
+        back.shortens_skin = true;
         return back;
       }
-      if (!(speed > range.from)) return {j, range.from, range.force, Bound::lower, false, drops};
-      if (speed < range.to) return {j, speed, range.force, Bound::none, false, drops};
+      if (!(speed > range.from))
+        return {j, range.from, range.force, ActiveGuard::lower, false, shortens_skin};
+      if (speed < range.to) return {j, speed, range.force, ActiveGuard::none, false, shortens_skin};
     }
   }
 
-  /// The first speed below the begin of a branch at which its curve carries no more than the friction asked of
-  /// it; without one it grips.
-  [[gnu::noinline]] Landing<T> slower(int branch, T asked) const {
+  /// Largest speed below the begin of a branch at which the friction does not exceed the given
+  /// friction; without one the slider sticks.
+  [[gnu::noinline]] SliderJump<T> next_slower(int branch, T asked) const {
     for (int j = branch - 1; j >= 0; --j) {
       const Branch<T> range = contact_.branch(j);
       const bool start = same(asked, range.force);
       if (range.slope > 0 && asked > range.force && !start) {
         const T most = j + 1 < contact_.branches ? contact_.branch(j + 1).force : never;
-        if (asked > most || same(asked, most)) return {j, range.to, most, Bound::upper};
+        if (asked > most || same(asked, most)) return {j, range.to, most, ActiveGuard::upper};
         return {j, range.from + (asked - range.force) / range.slope, asked};
       }
-      const T speed = pin(range.force);
+      const T speed = stationary_speed(range.force);
       const bool holds = j == 0 && asked < contact_.static_limit;
       if (range.slope > 0 && start && speed > range.from && !holds)
-        return {j, range.from, range.force, Bound::lower};
+        return {j, range.from, range.force, ActiveGuard::lower};
       if (range.slope != 0 || (range.force > asked && !start)) continue;
       if (!(speed > range.from)) continue;
       if (speed < range.to) return {j, speed, range.force};
-      return {j, range.to, range.force, Bound::upper};
+      return {j, range.to, range.force, ActiveGuard::upper};
     }
-    return {0, T(0), asked, Bound::none, true};
+    return {0, T(0), asked, ActiveGuard::none, true};
   }
-  /// The same of one that has become slower at once, and would be at rest on a plateau.
-  Landing<T> gripping(const Landing<T>& rests) const {
-    Landing<T> grips = slower(rests.branch, rests.friction);
-    grips.drops = true;
-    return grips;
+  /// Jump of a slider that has slowed down at once and would rest on a plateau.
+  SliderJump<T> sticking(const SliderJump<T>& rests) const {
+    SliderJump<T> sticks = next_slower(rests.branch, rests.friction);
+    sticks.shortens_skin = true;
+    return sticks;
   }
 
-  /// The largest speed that lasts as a load grows from zero, at which friction grows as the skin stretches; it
-  /// grips if none does.
-  [[gnu::noinline]] Landing<T> from_zero() const {
+  /// Largest stable speed as a load grows from zero, at which friction grows as the skin stretches.
+  /// Without one the slider sticks.
+  [[gnu::noinline]] SliderJump<T> at_first_load() const {
     for (int j = speed_ > 0 ? contact_.branch_of(speed_) : -1; j >= 0; --j) {
       const Branch<T> range = contact_.branch(j);
-      const T left = misses(range.from, range.force);
+      const T left = excess(range.from, range.force);
       const bool last = !(range.to < never);
       if (range.slope < 0 || left < 0 || (left == 0 && j == 0)) continue;
-      if (left == 0) return {j, range.from, range.force, Bound::lower};
-      if (!last && misses(range.to, contact_.branch(j + 1).force) >= 0) continue;
-      const T speed = std::min(range.from + left / (1 + follows_ * range.slope), range.to);
+      if (left == 0) return {j, range.from, range.force, ActiveGuard::lower};
+      if (!last && excess(range.to, contact_.branch(j + 1).force) >= 0) continue;
+      const T speed = std::min(range.from + left / (1 + stretch_rate_ * range.slope), range.to);
       return {j, speed, range.at(speed)};
     }
-    return {0, T(0), T(0), Bound::none, true};
+    return {0, T(0), T(0), ActiveGuard::none, true};
   }
 
  private:
   static constexpr T never = std::numeric_limits<T>::infinity();
-  /// Whether two frictions differ by rounding only.
+  /// True if two frictions are equal within their error.
   static bool same(T one, T other) {
     using std::abs;
     return one == other || abs(one - other) < rounding<T> * other;
   }
 
   const Contact<T>& contact_;
-  T speed_, follows_;
+  T speed_, stretch_rate_;
 };
 
 }  // namespace pindrive::detail

@@ -1,4 +1,4 @@
-/// The pin at an instant: what is known of it exactly, and what counts as exact there.
+/// State of the pin at an instant, with the errors of its parts.
 #pragma once
 
 #include <algorithm>
@@ -8,44 +8,47 @@
 
 namespace pindrive::detail {
 
-/// Which end of its range a contact is at exactly: of the branch of its friction curve or, an elastic
-/// stick at its stick limit, the upper one. Of an end stop: the end of the travel, or no push.
-enum class Bound : signed char { none, lower, upper, edge, push };
+/// Guard that is exactly zero at an instant.
+///
+/// `lower`, `upper`: end of the branch of the friction curve; of an elastic stick, `upper` is the
+/// stick limit. `edge`: end of the travel. `push`: zero force of an end stop.
+enum class ActiveGuard : signed char { none, lower, upper, edge, push };
 
-/// The pin at an instant.
+/// Position and velocity of the pin, and the state of its compliant finger.
 template <class T>
 struct State {
-  T x, v;         ///< m, m/s
-  T skin{0};      ///< force in an elastic stick, N
-  T x_size{0};    ///< the largest that the position is a sum of, m
-  T roundoff{0};  ///< forces that differ by less are one, N
-  T slide{0};     ///< velocity of the slider of a compliant finger on a sloped branch, m/s
+  T x, v;                ///< position, m; velocity, m/s
+  T skin{0};             ///< skin tension in an elastic stick, N
+  T position_scale{0};   ///< largest term of the position since the release, m
+  T force_error{0};      ///< error bound of a sum of forces, N
+  T slider_velocity{0};  ///< slider velocity of a compliant finger on a sloped branch, m/s
 
-  /// Brings it to the end of a segment in closed form.
+  /// Advances the state to the end of a segment in closed form.
   void move(const Segment<T>& along, bool elastic) {
     using std::abs;
     const Path<T>& position = along.flow.position;
     const Propagator<T> moved = along.moved;
     x = position.at(moved);
     v = along.flow.velocity.at(moved);
-    x_size = std::max(std::max(x_size, abs(x)), std::max(abs(position.value * moved.decline),
-                                                         abs(position.slope * moved.gain)));
+    position_scale =
+        std::max(std::max(position_scale, abs(x)),
+                 std::max(abs(position.value * moved.decline), abs(position.slope * moved.gain)));
     if (elastic) skin = -along.finger_force.at(moved);
   }
 };
 
-/// Whether a guard at its zero dips below it by no more than its roundoff.
+/// True if a guard with zero value falls below zero by at most its error.
 template <class T>
-bool touches(T rate, T curvature, T roundoff) {
-  return rate < 0 && rate * rate <= 2 * curvature * roundoff;
+bool grazes(T rate, T curvature, T force_error) {
+  return rate < 0 && rate * rate <= 2 * curvature * force_error;
 }
 
-/// Whether what has come to zero stays there to its roundoff: by what it would fall at the rate that it has
-/// there, and by its value at the end.
+/// True if a guard stays within its error of zero: by its decrease at the present rate, and by its
+/// value at the end.
 template <class T>
-bool stays_at_bound(T fall, T value, T roundoff) {
+bool stays_at_bound(T fall, T value, T force_error) {
   using std::abs;
-  return fall >= -2 * roundoff && abs(value) <= roundoff;
+  return fall >= -2 * force_error && abs(value) <= force_error;
 }
 
 }  // namespace pindrive::detail

@@ -1,4 +1,4 @@
-/// A contact at an instant: what it does, on which surface and under which load.
+/// Mode, surface and load of one contact at an instant.
 #pragma once
 
 #include "pindrive/law/state.hpp"
@@ -6,53 +6,55 @@
 
 namespace pindrive::detail {
 
-/// What a contact may do.
+/// Mode of one contact.
 template <class T>
-struct TouchOption {
+struct ContactMode {
   ContactState state{ContactState::absent};
-  Bound at{Bound::none};
+  ActiveGuard guard{ActiveGuard::none};
   int branch{0};
-  T sense{0};  ///< in which it slips: 1, −1 or 0
+  T slip_sign{0};  ///< sign of the sliding velocity: 1, −1 or 0
 };
 
-/// The rate of a force, how large the terms of that rate are, as its slope is known to rounding only, and how
-/// fast the rate changes while the acceleration is constant.
+/// First and second derivative of a force, N/s and N/s², at constant acceleration.
+///
+/// `scale` is the magnitude of the terms of the first derivative, from which its error follows.
 template <class T>
 struct ForceRate {
-  T value{0}, size{0}, bend{0};
+  T value{0}, scale{0}, second{0};
 };
 
-/// A contact at an instant: its surface and its load from here on, and what it does.
+/// Contact with its surface, its load factor and its mode.
 template <class T>
-struct TouchState {
-  explicit TouchState(const Contact<T>& given) : contact(given) {}
+struct ContactPointState {
+  explicit ContactPointState(const Contact<T>& given) : contact(given) {}
 
   Contact<T> contact;
   Line<T> surface{}, load{T(1), T(0)}, across{};
-  TouchOption<T> does{};
-  ContactState before{};       ///< what it did until the last event, …
-  Bound reached{Bound::none};  ///< … and the end of its branch that its speed came to there
-  int count{0};                ///< of its options
-  T friction{0};   ///< how large its friction is at its sliding speed under a load of 1, N
-  T direction{0};  ///< of an oblique slip, along the axis: u/√(u² + w²)
+  ContactMode<T> mode{};
+  ContactState before{};                         ///< state before the last event
+  ActiveGuard reached_guard{ActiveGuard::none};  ///< guard that became zero at the last event
+  int count{0};                                  ///< number of candidate modes
+  T friction{0};   ///< friction at the sliding speed for a load factor of 1, N
+  T direction{0};  ///< axial component of the sliding direction of an oblique slip: u/√(u² + w²)
 
-  static TouchOption<T> slip(T sense, Bound at, int branch = 0) {
-    return {sense > 0 ? ContactState::slip_forward : ContactState::slip_backward, at, branch,
-            sense};
+  static ContactMode<T> slip(T slip_sign, ActiveGuard guard, int branch = 0) {
+    return {slip_sign > 0 ? ContactState::slip_forward : ContactState::slip_backward, guard, branch,
+            slip_sign};
   }
-  bool sliding() const { return slips(does.state); }
-  bool elastic() const { return does.state == ContactState::elastic_stick; }
-  Branch<T> branch() const { return contact.branch(does.branch); }
-  T stick_limit() const { return contact.static_limit * load.value; }  ///< N
+  bool sliding() const { return is_slip(mode.state); }
+  bool elastic() const { return mode.state == ContactState::elastic_stick; }
+  Branch<T> branch() const { return contact.branch(mode.branch); }
+  T stick_limit() const { return contact.static_limit * load.value; }  ///< largest stick force, N
 
  protected:
-  ContactState goes_on_{
-      ContactState::absent};  ///< what it does unless it comes to an end of its range,
-  T sense_{0};                ///< in which direction it slips then,
-  int branch_{0};             ///< on which branch,
-  Bound at_{Bound::none};     ///< and the end of its range that it is at now
-  ContactState rest_{ContactState::absent};  ///< how it can stick, or absent
-  Bound parts_{Bound::none};                 ///< where it is on its branch if it slips from there
+  ContactState default_state_{ContactState::absent};  ///< state if no guard is active
+  T slip_sign_{0};                                    ///< its slip sign
+  int branch_{0};                                     ///< its branch of the friction curve
+  ActiveGuard guard_{ActiveGuard::none};              ///< guard that is zero now
+  ContactState stick_state_{
+      ContactState::absent};  ///< stick or elastic_stick if the contact may stick, else absent
+  ActiveGuard departure_guard_{
+      ActiveGuard::none};  ///< active guard of a slip that starts from stick
 };
 
 }  // namespace pindrive::detail

@@ -1,4 +1,4 @@
-/// What goes into the core and what comes out of it. SI units throughout.
+/// Input and output of the core: drive, release, inputs, modes, segments and outcome. SI units.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace pindrive {
 
-/// Default band of the settling time, as a part of |x(0) − x_end|.
+/// Default band of the settling time, as a fraction of |x(0) − x_end|.
 inline constexpr double settling_band = 0.05;
 
 /// Kinetic friction in one range of sliding speed: force + slope·(|u| − from) for from <= |u| < to.
@@ -20,14 +20,17 @@ struct Branch {
   T from, to;  ///< m/s
   T force;     ///< at `from`, N
   T slope;     ///< N s/m; negative where friction falls with speed
-  T rounding;  ///< how well the slope is known from rounded rows, N s/m
+  T rounding;  ///< error of the slope from rounded points, N s/m
 
   T at(T speed) const { return force + slope * (speed - from); }
 };
 
-/// The branches between the rows (speed, force) of a friction curve, at most count + 1; none for the
-/// one row of Coulomb friction. Rows on one line, to rounding, make one branch, and a slope that is
-/// rounding is none. The last slope goes on; where it falls, until the force is zero: friction never pushes.
+/// Computes the branches between the points (speed, force) of a friction curve, at most count + 1;
+/// none for the single point of Coulomb friction.
+///
+/// Points on one line, within rounding, make one branch, and a slope within rounding of zero is
+/// zero. The last slope continues; a falling one only until the force is zero, as friction never
+/// pushes.
 template <class T>
 int branches_of(const T* speeds, const T* forces, int count, Branch<T>* branches) {
   using std::abs;
@@ -57,21 +60,21 @@ int branches_of(const T* speeds, const T* forces, int count, Branch<T>* branches
   return made;
 }
 
-/// Dry friction at one surface. Without friction the contact is absent.
+/// Dry friction at one surface. A contact without friction is absent.
 template <class T>
 struct Contact {
-  T kinetic{0};       ///< friction force when it starts to slide, N; >= 0
-  T static_limit{0};  ///< largest friction force while it sticks, N; >= kinetic
+  T kinetic{0};       ///< friction force at the smallest sliding speed, N; >= 0
+  T static_limit{0};  ///< largest friction force in stick, N; >= kinetic
   T stiffness{std::numeric_limits<T>::infinity()};  ///< tangential, N/m; > 0, infinite if rigid
 
-  /// Kinetic friction over sliding speed; none: `kinetic` at every speed (Coulomb).
+  /// Branches of kinetic friction over sliding speed; null: `kinetic` at every speed (Coulomb).
   const Branch<T>* curve{nullptr};
   int branches{0};
 
   bool rigid() const { return !(stiffness < std::numeric_limits<T>::infinity()); }
-  /// Whether skin stretches between it and the pin.
+  /// True if skin stretches between surface and pin.
   bool compliant() const { return present() && !rigid(); }
-  /// Whether the slider may lag behind the pin: that of skin on a friction curve.
+  /// True if the slider may have a velocity of its own: compliant skin with a friction curve.
   bool may_lag() const { return branches > 0 && !rigid(); }
   Branch<T> branch(int index) const {
     if (branches == 0) return {T(0), std::numeric_limits<T>::infinity(), kinetic, T(0), T(0)};
@@ -89,34 +92,36 @@ struct Contact {
   }
 };
 
-/// End stops of the pin's travel, which push it and never pull: rigid and plastic, or elastic.
+/// End stops of the travel, which push the pin and never pull it: rigid and plastic, or elastic.
 template <class T>
 struct Stops {
   T travel{std::numeric_limits<T>::infinity()};     ///< to either side, m; > 0, infinite without
   T stiffness{std::numeric_limits<T>::infinity()};  ///< N/m; > 0, infinite if rigid
-  T damping{0};                                     ///< of elastic ones, N s/m; >= 0
+  T damping{0};  ///< damping coefficient of elastic stops, N s/m; >= 0
 
   bool present() const { return travel < std::numeric_limits<T>::infinity(); }
   bool rigid() const { return !(stiffness < std::numeric_limits<T>::infinity()); }
-  /// A position without what its closed form goes beyond a rigid stop by rounding, as the pin strikes that, m.
+  /// Position limited to the travel of a rigid stop: removes the rounding of a closed form at the
+  /// impact, m.
   T within(T x) const { return !rigid() ? x : x < -travel ? -travel : travel < x ? travel : x; }
 };
 
 template <class T>
 struct Drive {
-  T mass;                    ///< of the moving body: in a device electromagnet and pin, kg; > 0
+  T mass;  ///< mass of the moving body (in a device: electromagnet and pin), kg; > 0
   T stiffness;               ///< spring, N/m; > 0
   T damping;                 ///< damper, N s/m; >= 0
   Contact<T> plate, finger;  ///< the plate is rigid
   Stops<T> stops{};
 };
 
-/// An input that goes on at its rate from the time at which it was set; at no rate it is a constant.
+/// Input that is linear from the time at which it was set; constant at zero rate.
 template <class T>
 struct Held {
-  T since{0};                                  ///< s
-  Line<T> line{};                              ///< from then on
-  T ends{std::numeric_limits<T>::infinity()};  ///< when it has come to zero and stays there, s
+  T since{0};      ///< s
+  Line<T> line{};  ///< value and rate from `since` on
+  T ends{std::numeric_limits<
+      T>::infinity()};  ///< time at which the input reaches zero and stays there, s
 
   Held() = default;
   constexpr Held(T constant) noexcept : line{constant, T(0)} {}  // NOLINT: a number is an input
@@ -126,10 +131,10 @@ struct Held {
     if (t >= ends) return {};
     return {line.at(t - since), line.rate};
   }
-  T next_row(T t) const { return t < ends ? ends : std::numeric_limits<T>::infinity(); }
+  T next_breakpoint(T t) const { return t < ends ? ends : std::numeric_limits<T>::infinity(); }
 };
 
-/// An input over time: held, or linear between its rows and constant outside. It owns nothing.
+/// Input over time: held, or linear between its breakpoints and constant outside. Owns no memory.
 template <class T>
 class Profile {
  public:
@@ -137,30 +142,31 @@ class Profile {
   constexpr Profile(const Held<T>& line) noexcept
       : held_(line), constant_(false) {}  // NOLINT: so is it
   Profile(T since, const Line<T>& from_there) noexcept : Profile(Held<T>(since, from_there)) {}
-  /// count >= 1 rows, times strictly increasing.
+  /// Piecewise linear input with count >= 1 breakpoints, times strictly increasing.
   Profile(const T* times, const T* values, std::size_t count)
       : held_(values[0]), constant_(false), times_(times), values_(values), count_(count) {}
 
-  /// Value and rate from time t on, until the next row.
+  /// Value and rate from time t on, until the next breakpoint.
   Line<T> from(T t) const {
     if (count_ == 0) return held_.from(t);
-    const std::size_t i = rows_until(t);
+    const std::size_t i = breakpoints_until(t);
     if (i == 0) return {first(), T(0)};
     if (i == count_) return {values_[count_ - 1], T(0)};
     const T rate = (values_[i] - values_[i - 1]) / (times_[i] - times_[i - 1]);
     const T after = t - times_[i - 1];  // what lies after a row by the rounding of a time is at it
     return {after > detail::rounding<T> * t ? values_[i - 1] + rate * after : values_[i - 1], rate};
   }
-  /// The first row after time t; infinite when there is none.
-  T next_row(T t) const {
-    if (count_ == 0) return held_.next_row(t);
-    const std::size_t i = rows_until(t);
+  /// First breakpoint after time t, s; infinite without one.
+  T next_breakpoint(T t) const {
+    if (count_ == 0) return held_.next_breakpoint(t);
+    const std::size_t i = breakpoints_until(t);
     return i == count_ ? std::numeric_limits<T>::infinity() : times_[i];
   }
-  bool constant() const { return constant_; }   ///< it is one number, and stays so
-  T first() const { return held_.line.value; }  ///< its value until its first row
+  bool constant() const { return constant_; }   ///< the input is one number and remains so
+  T first() const { return held_.line.value; }  ///< value before the first breakpoint
 
-  /// Of an input without rows, to be set on the way: it is no constant any more.
+  /// Line of an input without breakpoints, to be set during the simulation; the input is not
+  /// constant any more.
   Held<T>& held() {
     constant_ = false;
     return held_;
@@ -168,35 +174,36 @@ class Profile {
   const Held<T>& held() const { return held_; }
 
  private:
-  std::size_t rows_until(T t) const {
+  std::size_t breakpoints_until(T t) const {
     return static_cast<std::size_t>(std::upper_bound(times_, times_ + count_, t) - times_);
   }
 
-  Held<T> held_;  ///< without rows; before the first, a constant
+  Held<T> held_;  ///< line of an input without breakpoints; else the value before the first
   bool constant_{true};
   const T* times_{nullptr};
   const T* values_{nullptr};
   std::size_t count_{0};
 };
 
-/// The release at t = 0 and what happens after it.
+/// Release at t = 0 and inputs from then on.
 template <class T>
 struct Inputs {
-  Profile<T> mouse_velocity;  ///< v_p: the plate's velocity in the housing's frame, m/s
+  Profile<T> mouse_velocity;  ///< v_p: velocity of the plate in the frame of the housing, m/s
   T displacement;             ///< x(0), m
   T velocity;                 ///< x'(0), m/s
   T duration{std::numeric_limits<T>::infinity()};  ///< s; infinite: until the ending is known
-  Profile<T> plate_load{T(1)};                     ///< factor on the plate's friction; >= 0
-  /// Stretch of a compliant finger, m; NaN: as it slides or, at rest, none.
+  Profile<T> plate_load{T(1)};                     ///< factor of the plate friction; >= 0
+  /// Skin stretch of a compliant finger, m; NaN: that of the sliding skin or, at rest, zero.
   T skin_stretch{std::numeric_limits<T>::quiet_NaN()};
-  Profile<T> force{T(0)};            ///< on the pin from outside, N
-  Profile<T> across_velocity{T(0)};  ///< of the plate across the axis of the pin, m/s; continuous
-  Profile<T> finger_load{T(1)};      ///< factor on the finger's friction; >= 0
+  Profile<T> force{T(0)};            ///< external force on the pin, N
+  Profile<T> across_velocity{T(0)};  ///< transverse velocity of the plate, m/s; continuous
+  Profile<T> finger_load{T(1)};      ///< factor of the finger friction; >= 0
 
-  /// The first row of any input after time t, s; infinite without one.
-  T next_row(T t) const {
-    return std::min({mouse_velocity.next_row(t), plate_load.next_row(t), finger_load.next_row(t),
-                     force.next_row(t), across_velocity.next_row(t)});
+  /// First breakpoint of any input after time t, s; infinite without one.
+  T next_breakpoint(T t) const {
+    return std::min({mouse_velocity.next_breakpoint(t), plate_load.next_breakpoint(t),
+                     finger_load.next_breakpoint(t), force.next_breakpoint(t),
+                     across_velocity.next_breakpoint(t)});
   }
   bool constant() const {
     return mouse_velocity.constant() && plate_load.constant() && force.constant() &&
@@ -204,9 +211,9 @@ struct Inputs {
   }
 };
 
-/// What a contact does: it slips with one sign of its sliding velocity or the other, sticks, is
-/// absent, or sticks elastically: skin that stretches with the pin. A plate that also slides across
-/// slips, whatever the pin does.
+/// State of a contact: slip forward or backward, stick, absent, elastic stick (skin that stretches
+/// with the pin), or oblique slip (the plate also slides in the transverse direction, whatever the
+/// pin does).
 enum class ContactState : signed char {
   slip_backward = -1,
   stick = 0,
@@ -216,25 +223,25 @@ enum class ContactState : signed char {
   slip_oblique = 4
 };
 
-inline bool slips(ContactState state) {
+inline bool is_slip(ContactState state) {
   return state == ContactState::slip_backward || state == ContactState::slip_forward ||
          state == ContactState::slip_oblique;
 }
-inline bool holds(ContactState state) {
+inline bool is_stick(ContactState state) {
   return state == ContactState::stick || state == ContactState::elastic_stick;
 }
 inline int sign(ContactState state) {
   return state == ContactState::slip_backward ? -1 : state == ContactState::slip_forward ? 1 : 0;
 }
 inline ContactState opposite(ContactState state) { return static_cast<ContactState>(-sign(state)); }
-/// A value in the direction of slipping.
+/// Component of a value in the direction of slip.
 template <class T>
 T along(ContactState state, T value) {
   return T(static_cast<int>(state)) * value;
 }
 
-/// What the end stops do: the upper or the lower one touches the pin, or it is beyond the end of its travel
-/// and on its way back faster than an elastic one follows.
+/// State of the end stops: the upper or lower stop touches the pin, or the pin is beyond the end of
+/// the travel and returns faster than an elastic stop follows.
 enum class StopState : signed char {
   beyond_lower = -2,
   lower = -1,
@@ -243,15 +250,17 @@ enum class StopState : signed char {
   beyond_upper = 2
 };
 
-inline bool touches(StopState state) {
+inline bool in_contact(StopState state) {
   return state == StopState::lower || state == StopState::upper;
 }
-/// Of the stop, if any: 1, −1 or 0.
-inline int side(StopState state) { return (state > StopState::apart) - (state < StopState::apart); }
+/// Sign of the stop: 1, −1, or 0 without one.
+inline int stop_sign(StopState state) {
+  return (state > StopState::apart) - (state < StopState::apart);
+}
 
 struct Mode {
   ContactState plate, finger;
-  int plate_branch{0}, finger_branch{0};  ///< of the friction curve, while sliding
+  int plate_branch{0}, finger_branch{0};  ///< branches of the friction curves, in slip
   StopState stop{StopState::apart};
 
   bool stuck() const { return plate == ContactState::stick || finger == ContactState::stick; }
@@ -264,25 +273,26 @@ inline bool same_mode(const Mode& one, const Mode& other) {
          one.stop == other.stop;
 }
 
-/// What happens to a contact where a segment ends: it begins to hold, it breaks loose or lifts, or
-/// sliding reverses. Nothing where only an input has its next row or a friction curve its breakpoint.
+/// Transition of a contact at the end of a segment: start of stick, start of slip or separation,
+/// reversal of the sliding direction; none at a breakpoint of an input or of a friction curve.
 enum class Transition : signed char { none, stick, slip, cross };
 
 struct Event {
   Transition plate{Transition::none}, finger{Transition::none};
-  Transition stop{Transition::none};  ///< stick: it is met, cross: for an instant; slip: it is left
+  Transition stop{
+      Transition::none};  ///< stick: contact; cross: momentary contact; slip: separation
 
   bool any() const {
     return plate != Transition::none || finger != Transition::none || stop != Transition::none;
   }
 };
 
-/// Whether a rigid stop holds the pin.
+/// True if a rigid stop holds the pin.
 template <class T>
 bool held_by_stop(const Drive<T>& drive, const Mode& mode) {
-  return touches(mode.stop) && drive.stops.rigid();
+  return in_contact(mode.stop) && drive.stops.rigid();
 }
-/// Whether what holds the pin gives its velocity.
+/// True if the velocity of the pin is prescribed, by a sticking contact or a rigid stop.
 template <class T>
 bool held(const Drive<T>& drive, const Mode& mode) {
   return mode.stuck() || held_by_stop(drive, mode);
@@ -290,46 +300,46 @@ bool held(const Drive<T>& drive, const Mode& mode) {
 
 inline Transition change(ContactState before, ContactState after) {
   if (before == after) return Transition::none;
-  if (holds(before) == holds(after))
+  if (is_stick(before) == is_stick(after))
     return sign(before) == -sign(after) ? Transition::cross : Transition::none;
-  return holds(after) ? Transition::stick : Transition::slip;
+  return is_stick(after) ? Transition::stick : Transition::slip;
 }
 
-/// Whether the sliding velocity came to zero.
+/// True if the sliding velocity became zero.
 inline bool stops(Transition transition) {
   return transition == Transition::stick || transition == Transition::cross;
 }
 
-/// The fast part that a series leaves out (creep.hpp, slow_slider.hpp).
-/// `motion`: the whole motion of a pin that is in equilibrium by the rest criterion.
-enum class FastPart : signed char { none, of_friction, of_slider, motion };
+/// Fast transient that a series omits (creep.hpp, slow_slider.hpp). `motion`: the whole motion of a
+/// pin in equilibrium by the rest criterion.
+enum class EliminatedPart : signed char { none, of_friction, of_slider, motion };
 
-/// One mode from begin to end (infinite for one that lasts for ever), with its friction.
+/// One mode from begin to end (infinite if it never ends), with its friction.
 template <class T>
 struct Segment {
   T begin, end;  ///< s
   Mode mode;
-  Event event;  ///< at the end
+  Event event;  ///< event at the end
   Flow<T> flow;
-  Propagator<T> moved;                ///< of its oscillation, from begin to a finite end
-  Line<T> plate_velocity;             ///< m/s
-  Path<T> plate_force, finger_force;  ///< friction on the pin, N; while both are stuck the plate's
-                                      ///< is what they carry together
-  FastPart without{FastPart::none};   ///< which its series leaves out
+  Propagator<T> moved;  ///< propagator of the oscillator from begin to a finite end
+  Line<T> plate_velocity;  ///< m/s
+  Path<T> plate_force,
+      finger_force;  ///< friction on the pin, N; if both contacts stick, the plate force is their sum
+  EliminatedPart eliminated{EliminatedPart::none};  ///< fast transient that the series omits
 
-  /// How its oscillation has moved on after τ.
+  /// Propagator of the oscillator after τ.
   Propagator<T> after(T tau) const { return tau == end - begin ? moved : flow.after(tau); }
 };
 
-/// How a motion ends.
+/// Ending of a motion.
 enum class End : signed char {
-  moving,       ///< not known within the duration
+  moving,       ///< unknown within the duration
   resting,      ///< at rest for ever
   decaying,     ///< free decay, no further event
   free,         ///< undamped oscillation, no further event
-  grazing,      ///< the same, touching the plate's velocity once a period
-  stick_slip,   ///< a cycle of carried and sliding phases, repeated
-  limit_cycle,  ///< a cycle that is sustained by falling friction, without a carried phase
+  grazing,      ///< undamped oscillation that touches the velocity of the plate once a period
+  stick_slip,   ///< periodic alternation of stick and slip
+  limit_cycle,  ///< periodic motion sustained by falling friction, without stick
   irregular     ///< chaotic or quasi-periodic: no return within `irregular_windows` (limits.hpp)
 };
 
@@ -339,10 +349,10 @@ template <class T>
 struct Outcome {
   Status status{Status::ok};
   End end{End::moving};
-  T period{std::numeric_limits<T>::quiet_NaN()};  ///< of a steady oscillation, s
-  T until{0};  ///< end of the last segment, s; then a cycle begins again …
+  T period{std::numeric_limits<T>::quiet_NaN()};  ///< period of a steady oscillation, s
+  T until{0};  ///< end of the last segment, s; a cycle repeats from here on
   T cycle_begin{
-      0};  ///< … from here, s; of an irregular motion, begin of the stretch that is measured
+      0};  ///< begin of the repeated cycle, s; of an irregular motion, begin of the stretch that is measured
 
   /// True if the state is known at all times, not only as far as it was simulated.
   bool known() const { return end != End::moving && end != End::irregular; }
@@ -350,13 +360,13 @@ struct Outcome {
   bool cycles() const { return end == End::stick_slip || end == End::limit_cycle; }
 };
 
-/// Asked all along a long computation whether to go on, which this one always does. Where another one
-/// returns false, the computation ends early and what it returns means nothing.
+/// Progress function that never interrupts. A progress function is called during long computations;
+/// if it returns false, the computation ends early and its result is meaningless.
 struct Unattended {
   constexpr bool operator()() const { return true; }
 };
 
-/// Calls a function that may return false when it wants no more calls; whether to go on.
+/// Calls a function that may return false to request no further calls; true to continue.
 template <class Function, class... Arguments>
 bool goes_on(Function& function, const Arguments&... arguments) {
   if constexpr (std::is_void_v<std::invoke_result_t<Function&, const Arguments&...>>) {

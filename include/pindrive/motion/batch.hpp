@@ -1,4 +1,5 @@
-/// One point of a study: a drive and its release in, its numbers out, and no way between them kept.
+/// One point of a study: numbers of the motion of one drive and release; the motion itself is not
+/// kept.
 #pragma once
 
 #include "pindrive/events/simulate.hpp"
@@ -7,16 +8,17 @@
 
 namespace pindrive {
 
-/// Everything asked of a motion (docs/theory.md, 6), over [0, duration].
+/// Numbers of a motion over [0, duration] (docs/theory.md, section 6).
 template <class T>
 struct Summary {
   Transient<T> transient;
   Outcome<T> outcome;
-  T duration;           ///< that was asked for, or long enough to see the ending, s
-  long long events{0};  ///< changes at a contact; of a cycle, those of one round
+  T duration;           ///< requested duration, or long enough to see the ending, s
+  long long events{0};  ///< contact events; in a cycle, events of one period
 };
 
-/// How many events end a segment: one for each contact, or one that plate and finger share.
+/// Number of events at the end of a segment: one for each contact, or one that plate and finger
+/// share.
 template <class T>
 int events_at_end(const Segment<T>& segment) {
   const Event event = segment.event;
@@ -25,8 +27,8 @@ int events_at_end(const Segment<T>& segment) {
   return one(event.plate) + rubbing + one(event.stop);
 }
 
-/// Follows one pin and measures its motion. `segments` is a container that the caller lends for the
-/// meantime: what it held is lost, and once it has grown large enough nothing is allocated.
+/// Simulates one pin and measures its motion. `segments` is a container lent by the caller: its
+/// content is overwritten, and once it is large enough nothing is allocated.
 template <class T, class Segments, class GoOn = Unattended>
 Summary<T> summarise(const Drive<T>& drive, const Inputs<T>& inputs, T band, Segments& segments,
                      GoOn go_on = {}) {

@@ -15,19 +15,21 @@ namespace pindrive {
 /// Use of one contact in a stretch of a motion.
 template <class T>
 struct ContactUse {
-  T reversals{0};      ///< zeros of the sliding velocity
-  T time_stuck{0};     ///< time in stick or elastic stick, s
-  T distance_slid{0};  ///< of the pin over the surface, across its axis too, m
-  T dissipated{0};     ///< friction work, across its axis too, J
-  T peak_force{0};     ///< largest friction force, N
+  T reversals{0};   ///< zeros of the sliding velocity
+  T time_stuck{0};  ///< time in stick or elastic stick, s
+  T distance_slid{
+      0};  ///< distance that the pin slides over the surface, also in the transverse direction, m
+  T dissipated{0};  ///< friction work, also in the transverse direction, J
+  T peak_force{0};  ///< largest friction force, N
 };
 
 /// Use of both contacts; the stretch of a rigid finger is NaN.
 template <class T>
 struct ContactsUse {
   ContactUse<T> plate, finger;
-  T across_dissipated{0};  ///< part of the friction work of the plate across the axis of the pin, J
-  T peak_stretch{std::numeric_limits<T>::quiet_NaN()};       ///< largest of a compliant finger's, m
+  T across_dissipated{0};  ///< transverse part of the friction work of the plate, J
+  T peak_stretch{
+      std::numeric_limits<T>::quiet_NaN()};  ///< largest stretch of a compliant finger, m
   T peak_stretch_rate{std::numeric_limits<T>::quiet_NaN()};  ///< m/s
 };
 
@@ -53,8 +55,8 @@ class ContactMeasurement {
  private:
   bool skin() const { return motion_.drive().finger.present() && !motion_.drive().finger.rigid(); }
 
-  /// How far the pin comes between two times of a segment. As a change it keeps its digits, however
-  /// short it is beside x.
+  /// Displacement between two times of a segment. Computed as a change, with full relative
+  /// precision however short beside x.
   template <class Trajectory>
   static T moved(const Trajectory& along, T from, T to) {
     const T change = along.change(along.position(), to);
@@ -98,7 +100,8 @@ class ContactMeasurement {
     peak(result.peak_stretch_rate, along, along.derivative(in_skin), from, to);
   }
 
-  /// Adds the distance and the friction work of a plate that slides across the axis of the pin, too.
+  /// Adds the distance and the friction work of a plate that also slides in the transverse
+  /// direction.
   template <class Trajectory>
   void across(ContactsUse<T>& result, const Trajectory& along, const Segment<T>& segment, T from,
               T to, T times) const {
@@ -140,7 +143,7 @@ class ContactMeasurement {
     using std::abs;
     if (does == ContactState::absent) return;
     if (!segment.mode.both_stuck()) peak(contact.peak_force, along, force, from, to);
-    if (!slips(does)) {
+    if (!is_slip(does)) {
       contact.time_stuck += times * (to - from);
       return;
     }
@@ -154,7 +157,7 @@ class ContactMeasurement {
     }
   }
 
-  /// What a stretched skin loses as it becomes shorter at once, at the end of a segment, J.
+  /// Energy that a stretched skin loses as it shortens at once, at the end of a segment, J.
   template <class Trajectory>
   T skin_loss(const Trajectory& along, const Segment<T>& segment, T to) const {
     const Segment<T>* next = motion_.after(segment);

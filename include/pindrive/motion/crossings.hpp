@@ -1,5 +1,5 @@
-/// Where position, velocity and acceleration of a motion cross a level, and their extrema: exactly, from
-/// the closed form of each segment, with the cycles of a motion expanded.
+/// Level crossings and extrema of position, velocity and acceleration: exactly, from the closed
+/// form of each segment, with cycles expanded.
 #pragma once
 
 #include <algorithm>
@@ -15,13 +15,14 @@ namespace pindrive {
 
 namespace detail {
 
-/// Follows the sign of one path, and the value of another, from segment to segment. What comes to zero and
-/// stays there changes its sign, when it leaves to the other side, at the time at which it came.
+/// Tracks the sign of one path, and the value of another, from segment to segment. A path that
+/// reaches zero, stays there and leaves to the opposite side changes its sign at the time at which
+/// it reached zero.
 template <class T>
 class SignChanges {
  public:
-  /// Calls visit(time, value, sign after) at each change along the first `span` of a trajectory that begins
-  /// at a time, until it returns false; returns that.
+  /// Calls visit(time, value, sign after) at each sign change along the first `span` of a
+  /// trajectory that begins at a time, until visit returns false; returns the last result.
   template <class Trajectory, class Path, class Visitor>
   bool follow(const Trajectory& along, const Path& path, const Path& value, T begin, T span,
               Visitor&& visit) {
@@ -52,21 +53,21 @@ class SignChanges {
     return more;
   }
 
-  /// Forgets the sign, where the path begins anew.
+  /// Resets the sign, where the path begins anew.
   void restart() { side_ = 0, zero_ = false; }
 
  private:
   void come(T time, T value) { zero_ = true, zero_time_ = time, zero_value_ = value; }
 
   int side_{0};
-  bool zero_{false};  ///< at zero, since this time, with this value
+  bool zero_{false};  ///< at zero; since this time, with this value
   T zero_time_{0}, zero_value_{0};
 };
 
 }  // namespace detail
 
-/// Calls visit(time, sign after) wherever a quantity changes from one side of a level to the other in
-/// [0, until], until it returns false; s. Touching the level is no change.
+/// Calls visit(time, sign after) where a quantity crosses a level in [0, until], s, until visit
+/// returns false. A tangency is no crossing.
 template <class T, class Visitor>
 void crossings(const Motion<T>& motion, Quantity quantity, T level, T until, Visitor&& visit) {
   detail::SignChanges<T> changes;
@@ -79,9 +80,9 @@ void crossings(const Motion<T>& motion, Quantity quantity, T level, T until, Vis
   });
 }
 
-/// Calls visit(time, value) at the extrema of a quantity in [0, until], in order, until it returns false:
-/// where the motion begins and ends, where the quantity turns, and on both sides of a jump. Between two
-/// neighbours it is continuous and goes one way.
+/// Calls visit(time, value) at the extrema of a quantity in [0, until], s, in order, until visit
+/// returns false: at begin and end, at turning points, and on both sides of a jump. Between two
+/// neighbours the quantity is continuous and monotone.
 template <class T, class Visitor>
 void extrema(const Motion<T>& motion, Quantity quantity, T until, Visitor&& visit) {
   using std::abs;
@@ -124,8 +125,8 @@ void extrema(const Motion<T>& motion, Quantity quantity, T until, Visitor&& visi
   if (began && more && time < until) add(until, end);
 }
 
-/// Calls visit(time, segment) at the events in [from, to], with the segment that each one ends, until it
-/// returns false; s.
+/// Calls visit(time, segment) at the events in [from, to], s, with the segment that each event
+/// ends, until visit returns false.
 template <class T, class Visitor>
 void events(const Motion<T>& motion, T from, T to, Visitor&& visit) {
   motion.expanded(from, to, [&](const Segment<T>& segment, T begin, T) {

@@ -1,7 +1,5 @@
-/// Where the energy of a motion comes from and where it goes.
-///
-/// Each term is integrated on its own, none is what is left over, so that they add up only if the
-/// motion is right.
+/// Energy balance of a motion. Each term is integrated separately, so that the terms add up only if
+/// the motion is right.
 #pragma once
 
 #include <algorithm>
@@ -20,18 +18,18 @@ struct Ledger {
   T spring_start, spring_end;    ///< J
   T skin_start, skin_end;        ///< in a compliant finger, J
   T stop_start, stop_end;        ///< in elastic end stops, J
-  T plate_work;                  ///< what the moving plate puts in through friction, across too, J
-  T inertia_work;                ///< what the housing puts in by accelerating, J
-  T force_work;                  ///< what the force from outside puts in, J
+  T plate_work;                  ///< work of the moving plate through friction, also transverse, J
+  T inertia_work;                ///< work of the accelerating housing, J
+  T force_work;                  ///< work of the external force, J
   T damper_dissipated, plate_dissipated, finger_dissipated, stop_dissipated;  ///< J
-  T exchanged;  ///< what the housing puts in or takes back on the way, at most, J
+  T exchanged;  ///< largest energy exchanged with the housing during the motion, J
 
   T residual() const {
     return (kinetic_end - kinetic_start) + (spring_end - spring_start) + (skin_end - skin_start) +
            (stop_end - stop_start) - plate_work - inertia_work - force_work + damper_dissipated +
            plate_dissipated + finger_dissipated + stop_dissipated;
   }
-  /// The largest energy in the ledger, or on the way: what the residual is measured against.
+  /// Largest energy in the ledger or during the motion, J; the scale of the residual.
   T scale() const {
     using std::abs;
     return std::max({kinetic_start, kinetic_end, spring_start, spring_end, skin_start, skin_end,
@@ -41,7 +39,7 @@ struct Ledger {
   }
 };
 
-/// Its terms, by their names in the table of quantities, after "energy.".
+/// Terms by their names in the table of quantities, after "energy.".
 template <class T>
 inline constexpr NamedNumber<T, Ledger<T>> ledger_numbers[] = {
     {"kinetic_start", [](const Ledger<T>& l) { return l.kinetic_start; }},
@@ -62,7 +60,8 @@ inline constexpr NamedNumber<T, Ledger<T>> ledger_numbers[] = {
     {"residual", [](const Ledger<T>& l) { return l.residual(); }},
 };
 
-/// What the end stops take in a stretch of a segment over which ∫ v² dτ is known, and at its end, J.
+/// Energy dissipated by the end stops in a stretch of a segment with known ∫ v² dτ, and at its end,
+/// J.
 template <class Trajectory, class T>
 T lost_at_stop(const Motion<T>& motion, const Trajectory& along, const Segment<T>& segment, T from,
                T to, T v_squared) {
@@ -74,12 +73,12 @@ T lost_at_stop(const Motion<T>& motion, const Trajectory& along, const Segment<T
     const T v = along.at(along.velocity(), to);
     return drive.mass * v * v / 2;
   }
-  if (touches(segment.mode.stop)) return drive.stops.damping * v_squared;
+  if (in_contact(segment.mode.stop)) return drive.stops.damping * v_squared;
   const auto energy = [&](T tau) { return motion.stop_energy(along.at(along.position(), tau)); };
   return segment.mode.stop == StopState::apart ? T(0) : energy(from) - energy(to);
 }
 
-/// The ledger of a motion over [0, duration].
+/// Computes the energy ledger of a motion over [0, duration].
 template <class T, class GoOn = Unattended>
 Ledger<T> energy_ledger(const Motion<T>& motion, T duration, GoOn go_on = {}) {
   using std::abs;

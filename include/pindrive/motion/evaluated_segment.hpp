@@ -1,5 +1,5 @@
-/// A segment of a motion evaluated from its trajectory and the inputs as they were given: the pin at an
-/// instant, the forces on it that the law of friction does not give, and how well each is known.
+/// Segment evaluated from its trajectory and the given inputs: state of the pin, forces not given
+/// by the friction law, and their errors.
 #pragma once
 
 #include <algorithm>
@@ -13,20 +13,21 @@
 
 namespace pindrive::detail {
 
-/// The largest displacement, velocity and force of a motion; of forces also where elastic stops are, which
-/// may be stiffer by far.
+/// Largest displacement, velocity and force of a motion. Elastic stops, which may be much stiffer,
+/// have a force scale of their own.
 template <class T>
 struct Scales {
   T x{0}, v{0}, force{0}, stop{0};
 };
 
-/// The pin at an instant, τ after its segment begins.
+/// State of the pin, τ after the begin of its segment.
 template <class T>
 struct PinState {
   T tau, x, v, a, plate_force, finger_force, finger_rate;
 };
 
-/// Kinetic friction under a load of 1 at a sliding speed, from the rows of a contact's curve, N.
+/// Kinetic friction for a load factor of 1 at a sliding speed, from the points of the friction
+/// curve, N.
 template <class T>
 T kinetic_friction(const Contact<T>& contact, T speed) {
   T force = contact.kinetic;
@@ -36,7 +37,7 @@ T kinetic_friction(const Contact<T>& contact, T speed) {
   return force;
 }
 
-/// What the force of skin is unsure by, N: it changes within the rounding of the time, as its load does.
+/// Error of the skin tension, N: its change, as that of the load, within the time resolution.
 template <class T>
 T skin_unsure(const Drive<T>& drive, const Line<T>& load, T time, const PinState<T>& s) {
   using std::abs;
@@ -56,7 +57,7 @@ class EvaluatedSegment {
   const Segment<T>& segment;
   const Trajectory& along;
   const Line<T> plate_velocity, load, finger_load, force, across;
-  const T span;  ///< s, until the segment or what is looked at ends
+  const T span;  ///< time to the end of the segment or of the evaluated range, s
   const Quantity x_rate, acceleration, finger_rate;
 
   EvaluatedSegment(const Drive<T>& of, const Scales<T>& largest, const Inputs<T>& inputs,
@@ -86,25 +87,25 @@ class EvaluatedSegment {
             now};
   }
 
-  /// The force of an elastic stop on the pin, or of a rigid one that keeps it in equilibrium, N.
+  /// Force of an elastic stop on the pin, or of a rigid stop that keeps the pin in equilibrium, N.
   T stop_force(const PinState<T>& s) const {
-    if (!touches(mode().stop)) return T(0);
+    if (!in_contact(mode().stop)) return T(0);
     const Stops<T>& stops = drive.stops;
     if (!stops.rigid())
-      return stops.stiffness * (side(mode().stop) * stops.travel - s.x) - stops.damping * s.v;
+      return stops.stiffness * (stop_sign(mode().stop) * stops.travel - s.x) - stops.damping * s.v;
     return drive.stiffness * s.x - drive.mass * plate_velocity.rate - s.plate_force -
            s.finger_force - force.at(s.tau);
   }
 
-  /// The sliding velocity on the finger, m/s.
+  /// Sliding velocity on the finger, m/s.
   T on_finger(const State& s) const {
     if (!drive.finger.compliant()) return s.v;
     return s.v + along.at(finger_rate, s.moment) / drive.finger.stiffness;
   }
 
-  /// How far a force and a sliding velocity are from the law of a plate that slides across too, N: by the
-  /// force at that velocity or, where that turns steeply, by how far the velocity is from those with the
-  /// direction of the force, as a part of the largest.
+  /// Distance of a force and a sliding velocity from the law of oblique slip, N: by the force at
+  /// the given velocity or, where the force turns steeply, by the distance of the velocity from the
+  /// direction of the force, scaled to the largest velocity.
   T oblique_error(const PinState<T>& s) const {
     using std::abs;
     using std::sqrt;
@@ -120,25 +121,25 @@ class EvaluatedSegment {
                      : by_velocity;
   }
 
-  /// What the forces are unsure by, N.
+  /// Error of the forces, N.
   T unsure(const PinState<T>& s) const {
     const T time = segment.begin + s.tau;
-    const T of_skin = slips(mode().finger) ? skin_unsure(drive, finger_load, time, s) : T(0);
+    const T of_skin = is_slip(mode().finger) ? skin_unsure(drive, finger_load, time, s) : T(0);
     return of_skin + turning_unsure(s, time);
   }
-  /// What skin carries at most where it is not followed, as its load comes from zero or to it: what this does to the
-  /// momentum is within the rounding of the time, N.
+  /// Largest skin tension near a load of zero, where the skin is not simulated: its momentum is
+  /// within the time resolution, N.
   T lifted_unsure() const {
     if (!drive.finger.compliant() || finger_load.rate == 0 || !(span > 0)) return T(0);
     return 256 * rounding<T> * scales.force * (segment.begin + span) / span;
   }
-  /// What the speed of a slider under a load that changes is unsure by, m/s: by the rounding of the time, in which it
-  /// changes, and by that of the force, of whose change it is known.
+  /// Error of the slider speed under a changing load, m/s: from the time resolution and from the
+  /// error of the force.
   const T slider_unsure = unsure_slider();
 
  private:
-  /// Of that, what a plate that slides across too brings: its force turns with the velocity, which is known to
-  /// its rounding and to that of the time.
+  /// Part of the error from oblique slip: the force turns with the velocity, which has the error of
+  /// its rounding and of the time.
   T turning_unsure(const PinState<T>& s, T time) const {
     using std::abs;
     if (!oblique()) return T(0);
@@ -167,10 +168,10 @@ class EvaluatedSegment {
     const T rate = span > 0 ? terms / (drive.finger.stiffness * span) : T(0);
     return rounding<T> * (most * (segment.begin + span) + rate);
   }
-  /// How large the friction of the finger's branch is, continued to no speed, N.
+  /// Friction of the finger branch extrapolated to zero speed, N.
   T finger_at_rest() const {
     using std::abs;
-    if (!slips(mode().finger)) return T(0);
+    if (!is_slip(mode().finger)) return T(0);
     const int last = std::max(drive.finger.branches - 1, 0);
     const Branch<T> branch = drive.finger.branch(std::clamp(mode().finger_branch, 0, last));
     return abs(branch.force - branch.slope * branch.from);

@@ -1,4 +1,4 @@
-/// The extrema of a quantity in a segment: in closed form, or by roots of its derivative.
+/// Extrema of a quantity in a segment: in closed form, or from roots of its derivative.
 #pragma once
 
 #include <cmath>
@@ -9,8 +9,9 @@
 
 namespace pindrive {
 
-/// Calls visit(τ, value) where a vibration without a line turns between two times. Times and values
-/// follow from its start: at `from` what is left of it may have fewer digits.
+/// Calls visit(τ, value) at the turning points of an oscillation without drift between two times.
+/// Times and values are computed from its start; at `from` a decayed oscillation may have fewer
+/// digits.
 template <class T, class Visitor>
 void turns(const Oscillator<T>& oscillator, const Path<T>& path, T from, T to, Visitor& visit) {
   using detail::exp;
@@ -63,8 +64,8 @@ void extrema(const BySeries<T>& along, const Polynomial<T>& path, T from, T to, 
   visit(to, path.at(to));
 }
 
-/// The same for a path on which only the highest and the lowest value are asked for: a vibration on
-/// a line has them within a period of an end, so what lies between need not be followed.
+/// Calls visit(τ, value) at the highest and lowest value of a path only. An oscillation with drift
+/// has these within a period of an end; the part between is skipped.
 template <class T, class Visitor>
 void highest_and_lowest(const ClosedForm<T>& along, const Path<T>& path, T from, T to,
                         Visitor&& visit) {

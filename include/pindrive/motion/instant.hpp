@@ -1,5 +1,5 @@
-/// What is known of a pin at an instant from its state, its inputs and the mode that holds: the equation of
-/// motion itself, without its solution over time. On dual numbers, the derivatives there.
+/// Quantities of a pin at an instant from its state, its inputs and its mode, by the equation of
+/// motion without its solution; with dual numbers, their derivatives.
 #pragma once
 
 #include <cmath>
@@ -12,8 +12,8 @@
 
 namespace pindrive {
 
-/// The pin at an instant of a mode. `state` is read for its position and velocity and, of a compliant finger, for
-/// what the mode has as its state: the force in skin that sticks, the velocity of a slider that lags.
+/// Pin at an instant of a mode. `state` provides position and velocity and, for a compliant finger,
+/// the state of the mode: the tension of sticking skin or the slider velocity.
 template <class T>
 class Instant {
  public:
@@ -21,13 +21,13 @@ class Instant {
           const detail::State<T>& state) {
     const SeriesMode<T> series(drive, mode, inputs);
     const SeriesEquation<T> e = series.equation();
-    const bool lags = series.lags(), at_stop = held_by_stop(drive, mode);
-    position_ = at_stop ? side(mode.stop) * drive.stops.travel : drive.stops.within(state.x);
+    const bool has_slider_state = series.has_slider_state(), at_stop = held_by_stop(drive, mode);
+    position_ = at_stop ? stop_sign(mode.stop) * drive.stops.travel : drive.stops.within(state.x);
     const Line<T> surface = at_stop ? Line<T>{} : e.surface;
     velocity_ = e.held ? surface.value : state.v;
-    const T skin = e.skin_factor.value * (lags ? state.slide : state.skin);
+    const T skin = e.skin_factor.value * (has_slider_state ? state.slider_velocity : state.skin);
     const T pull = e.force.value - e.damping * velocity_ - e.stiffness * position_ - skin;
-    const T plate = slips(mode.plate) ? plate_slip(e, pull) : T(0);
+    const T plate = is_slip(mode.plate) ? plate_slip(e, pull) : T(0);
     acceleration_ = e.held ? surface.rate : (pull + plate) / e.mass;
     const T carried = e.mass * acceleration_ - pull - plate;  // by what holds the pin
     const bool plate_holds = mode.plate == ContactState::stick && !at_stop;
@@ -43,14 +43,14 @@ class Instant {
     if (mode.finger == ContactState::elastic_stick) {
       friction_.finger = -state.skin;
       stretch_rate_ = velocity_;
-    } else if (slips(mode.finger)) {
+    } else if (is_slip(mode.finger)) {
       const Branch<T> branch = drive.finger.branch(mode.finger_branch);
-      const T speed = lags ? state.slide : velocity_;
+      const T speed = has_slider_state ? state.slider_velocity : velocity_;
       const T at_load_1 =
           along(mode.finger, branch.force - branch.slope * branch.from) + branch.slope * speed;
       friction_.finger = -at_load_1 * inputs.finger_load.value;
-      if (lags)
-        stretch_rate_ = velocity_ - state.slide;
+      if (has_slider_state)
+        stretch_rate_ = velocity_ - state.slider_velocity;
       else
         stretch_rate_ = at_load_1 * inputs.finger_load.rate / drive.finger.stiffness;
     }
@@ -61,12 +61,12 @@ class Instant {
   T velocity() const { return velocity_; }          ///< m/s
   T acceleration() const { return acceleration_; }  ///< m/s²
   const Friction<T>& friction() const { return friction_; }
-  T stretch() const { return stretch_; }            ///< of skin, m; 0 without
+  T stretch() const { return stretch_; }            ///< skin stretch, m; 0 without skin
   T stretch_rate() const { return stretch_rate_; }  ///< m/s
 
  private:
-  /// The friction of the plate as it slips, on a pin that `pull` acts on beside. A pin that has the plate's velocity
-  /// sets out as that begins to slide across.
+  /// Friction of the slipping plate beside a force `pull`. A pin with the velocity of the plate
+  /// starts to slide as the plate begins to slide across.
   T plate_slip(const SeriesEquation<T>& e, T pull) const {
     using detail::hypot;
     const T u = velocity_ - e.plate_velocity.value, w = e.across.value;
@@ -74,7 +74,8 @@ class Instant {
     if (e.side == 0 && u == 0 && w == 0) {
       const T rest = pull - e.mass * e.plate_velocity.rate;
       const T p = e.held ? e.surface.rate - e.plate_velocity.rate
-                         : setting_out(e.mass, e.load.value * e.plate_force, e.across.rate, rest);
+                         : departure_acceleration(e.mass, e.load.value * e.plate_force,
+                                                  e.across.rate, rest);
       along = p / hypot(p, e.across.rate);
     } else if (e.side == 0) {
       along = u / hypot(u, w);
@@ -86,8 +87,9 @@ class Instant {
   Friction<T> friction_{T(0), T(0)};
 };
 
-/// The pin at the beginning of the mode that a release at x, v with that stretch of the skin leads to; NaN is as it
-/// slides or, at rest, none. `pin` is the same in plain numbers: a rigid stop may have taken its velocity.
+/// State at the begin of the first mode after a release at x, v with a skin stretch; NaN: stretch
+/// of sliding skin or, at rest, zero. `pin` is the state in plain numbers: a rigid stop may have
+/// taken the velocity.
 template <class T, class Plain>
 detail::State<T> released(const Drive<T>& drive, const Mode& mode, const InputLines<T>& inputs, T x,
                           T v, T stretch, const detail::State<Plain>& pin) {
@@ -102,14 +104,14 @@ detail::State<T> released(const Drive<T>& drive, const Mode& mode, const InputLi
     state.skin = finger.stiffness * stretch;
   else if (speed != 0)
     state.skin = (state.v < 0 ? -load : load) * finger.branch(finger.branch_of(speed)).at(speed);
-  if (!SeriesMode<T>(drive, mode, inputs).lags()) return state;
+  if (!SeriesMode<T>(drive, mode, inputs).has_slider_state()) return state;
   const int slid = finger.branch_of(speed);
   const Branch<T> branch = finger.branch(mode.finger_branch);
   // Where its curve falls a slider goes on at once to another speed, of the same friction.
   const T asked = abs(state.skin) / load - branch.force;
-  state.slide = slid == mode.finger_branch && isnan(stretch)
-                    ? state.v
-                    : along(mode.finger, branch.from + asked / branch.slope);
+  state.slider_velocity = slid == mode.finger_branch && isnan(stretch)
+                              ? state.v
+                              : along(mode.finger, branch.from + asked / branch.slope);
   return state;
 }
 

@@ -1,4 +1,4 @@
-/// A finished motion: the state at any time, from the segments and the cycle that repeats them.
+/// Finished motion: state at any time, from the segments and the repeated cycle.
 #pragma once
 
 #include <algorithm>
@@ -11,15 +11,15 @@
 
 namespace pindrive {
 
-/// Which limit is asked for at an event.
+/// One-sided limit at an event.
 enum class Side : signed char { left, right };
 
-/// Calls visit with the quantities of a segment, whose inputs go on from its begin along lines: a ClosedForm
-/// or, where it has none, BySeries; what that returns.
+/// Calls visit with the trajectory of a segment whose inputs are linear from its begin on: a
+/// ClosedForm, else a BySeries. Returns the result of visit.
 template <class T, class Visitor>
 auto visit_trajectory(const Drive<T>& drive, const Segment<T>& segment, const InputLines<T>& lines,
                       Visitor&& visit) {
-  if (!(segment.end > segment.begin) || segment.without == FastPart::motion ||
+  if (!(segment.end > segment.begin) || segment.eliminated == EliminatedPart::motion ||
       SeriesMode<T>(drive, segment.mode, lines).has_closed_form())
     return visit(ClosedForm<T>(segment));
   return visit(BySeries<T>(drive, segment, lines));
@@ -31,8 +31,9 @@ struct Friction {
   T plate, finger;
 };
 
-/// That along the quantities of a segment after τ, where lines() are its inputs from its begin on.
-/// Two stuck contacts share in proportion to their static friction: how they really do is not determined.
+/// Friction along a trajectory after τ; lines() returns the inputs from the begin of the segment.
+/// Two stuck contacts share in proportion to their static friction; the true division is statically
+/// indeterminate.
 template <class Trajectory, class T, class Lines>
 Friction<T> friction_along(const Trajectory& along, const Drive<T>& drive,
                            const Segment<T>& segment, Lines&& lines, T tau) {
@@ -45,22 +46,22 @@ Friction<T> friction_along(const Trajectory& along, const Drive<T>& drive,
   return {part * found.plate, (1 - part) * found.plate};
 }
 
-/// Force of the end stops on the pin along the quantities of a segment after τ, where a force from outside
-/// goes on from its begin along a line, N: of elastic ones by their law, of rigid ones what keeps it there.
+/// Force of the end stops on the pin along a trajectory after τ, with a linear external force, N:
+/// of elastic stops by their law, of rigid stops the reaction.
 template <class Trajectory, class T>
 T stop_force_along(const Trajectory& along, const Drive<T>& drive, const Segment<T>& segment,
                    const Line<T>& force, T tau) {
-  if (!touches(segment.mode.stop)) return T(0);
+  if (!in_contact(segment.mode.stop)) return T(0);
   const Stops<T>& stops = drive.stops;
   const T x = along.at(along.position(), tau);
   if (stops.rigid())
     return drive.stiffness * x - drive.mass * segment.plate_velocity.rate - force.at(tau) -
            along.at(along.plate_force(), tau) - along.at(along.finger_force(), tau);
-  return stops.stiffness * (side(segment.mode.stop) * stops.travel - x) -
+  return stops.stiffness * (stop_sign(segment.mode.stop) * stops.travel - x) -
          stops.damping * along.at(along.velocity(), tau);
 }
 
-/// What a simulation was given and what it found. It owns nothing: the segments live elsewhere.
+/// Inputs and results of a simulation. Owns no memory: the segments belong to the caller.
 template <class T>
 class Motion {
  public:
@@ -75,12 +76,12 @@ class Motion {
   const Segment<T>* begin() const { return first_; }
   const Segment<T>* end() const { return first_ + count_; }
 
-  /// The last time at which the state is known: for ever once the ending is.
+  /// Last time at which the state is known, s; infinite once the ending is known.
   T known_until() const {
     return outcome_.known() ? std::numeric_limits<T>::infinity() : outcome_.until;
   }
 
-  /// The segment that follows one, in a cycle its first one after the last; null without one.
+  /// Next segment; in a cycle, the first segment after the last; null without one.
   const Segment<T>* after(const Segment<T>& segment) const {
     if (&segment + 1 != end()) return &segment + 1;
     return outcome_.cycles() ? locate(outcome_.cycle_begin, Side::right).segment : nullptr;
@@ -91,7 +92,7 @@ class Motion {
     T tau;
   };
 
-  /// The segment that holds time t in [0, known_until()], and the time since it began.
+  /// Segment that contains time t in [0, known_until()], and the time since its begin.
   Place locate(T t, Side side) const {
     t = folded(t, side);
     const auto before = [&](const Segment<T>& segment) {
@@ -111,8 +112,8 @@ class Motion {
     return {low, std::min(std::max(t - low->begin, T(0)), low->end - low->begin)};
   }
 
-  /// Calls visit with the quantities of a segment, a ClosedForm or, where it has none, BySeries; what
-  /// that returns.
+  /// Calls visit with the trajectory of a segment: a ClosedForm, else a BySeries. Returns the
+  /// result of visit.
   template <class Visitor>
   auto along(const Segment<T>& segment, Visitor&& visit) const {
     const bool bilinear = (drive_.plate.branches > 0 && !inputs_.plate_load.constant()) ||
@@ -131,11 +132,11 @@ class Motion {
   }
   /// Force of the end stops on the pin, N.
   T stop_force(const Segment<T>& segment, T tau) const {
-    if (!touches(segment.mode.stop)) return T(0);
+    if (!in_contact(segment.mode.stop)) return T(0);
     return along(segment, [&](const auto& t) { return stop_force_of(t, segment, tau); });
   }
 
-  /// The same of the quantities of a segment, which `along` hands over.
+  /// Position, velocity or acceleration along a trajectory from `along`.
   template <class Trajectory>
   T value_of(const Trajectory& t, T tau, Quantity quantity) const {
     const T found = t.at(quantity_of(t, quantity), tau);
@@ -150,7 +151,7 @@ class Motion {
   T stop_force_of(const Trajectory& t, const Segment<T>& segment, T tau) const {
     return stop_force_along(t, drive_, segment, inputs_.force.from(segment.begin), tau);
   }
-  /// What elastic stops store, J; also while they come back behind a pin.
+  /// Energy stored in elastic stops, J; also while they return behind a pin.
   T stop_energy(T x) const {
     using std::abs;
     const Stops<T>& stops = drive_.stops;
@@ -158,8 +159,8 @@ class Motion {
     return depth > 0 && !stops.rigid() ? stops.stiffness * depth * depth / 2 : T(0);
   }
 
-  /// Hands over each stretch of the motion in [from, until] as (segment, from τ, to τ, how often), until
-  /// the visitor returns false; `from` lies in what was simulated.
+  /// Calls visit(segment, from τ, to τ, repetitions) for each stretch of the motion in [from,
+  /// until], until visit returns false; `from` is within the simulated time.
   template <class Visitor>
   void stretches(T from, T until, Visitor&& visit) const {
     if (!stretch(from, std::min(until, outcome_.until), T(1), visit)) return;
@@ -171,8 +172,8 @@ class Motion {
     stretch(outcome_.cycle_begin, outcome_.cycle_begin + rest, T(1), visit);
   }
 
-  /// Hands over each segment that lies in part in [from, to], in order and with cycles expanded, as
-  /// (segment, when it begins, how much of it lies before `to`), until the visitor returns false; s.
+  /// Calls visit(segment, begin, part before `to`) for each segment that overlaps [from, to], s, in
+  /// order and with cycles expanded, until visit returns false.
   template <class Visitor>
   void expanded(T from, T to, Visitor&& visit) const {
     using std::floor;
@@ -196,7 +197,7 @@ class Motion {
   }
 
  private:
-  /// Time in a cycle is brought back to the cycle that was simulated.
+  /// Time mapped into the simulated cycle.
   T folded(T t, Side side) const {
     if (!outcome_.cycles() || t < outcome_.until) return t;
     using std::floor;

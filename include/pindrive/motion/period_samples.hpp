@@ -1,5 +1,5 @@
-/// Samples of a steady motion beside its last period: a check of its period and of where it begins, without
-/// the code that found them (recurrence.hpp).
+/// Samples of a steady motion and of its last period: a check of period and begin without the code
+/// that found them (recurrence.hpp).
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,8 @@
 
 namespace pindrive::detail {
 
-/// Compares x(t), from the end of the segments backwards, with what the last period repeats into the past.
+/// Compares x(t), from the end of the segments backwards, with the last period continued into the
+/// past.
 template <class T>
 class PeriodSamples {
  public:

@@ -1,4 +1,4 @@
-/// Integrals along a mode, apart from its closed form: what the solver says is checked with them.
+/// Integrals along a mode by quadrature, independent of its closed form; used to check the solver.
 #pragma once
 
 #include <algorithm>
@@ -49,8 +49,8 @@ T gauss(Function&& f, T low, T high) {
   return sum;
 }
 
-/// So many times the time of a mode's fastest rate the 16-point rule is exact to rounding, for a product
-/// of two of its quantities too.
+/// Number of time constants of the fastest rate of a mode over which the 16-point rule is exact to
+/// rounding, also for a product of two quantities.
 inline constexpr int exact_over = 8;
 
 /// ∫ f from 0 to `to` for a function of a mode: panels that resolve its oscillation and, where there
@@ -71,7 +71,7 @@ T panels(const Oscillator<T>& oscillator, T to, Function&& f) {
   return sum;
 }
 
-/// ∫₀^to p q for two quantities of a mode that are each a line and an oscillation.
+/// ∫₀^to p q for two quantities of a mode, each a line plus an oscillation.
 template <class T>
 T product_integral(const Oscillator<T>& oscillator, const Path<T>& p, const Path<T>& q, T to) {
   using detail::exp;

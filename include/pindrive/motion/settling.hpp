@@ -1,4 +1,4 @@
-/// When a motion has settled: the last time that it is farther from a position than a width.
+/// Settling time of a motion: last time with a distance from a position larger than a width.
 #pragma once
 
 #include <algorithm>
@@ -12,22 +12,22 @@
 
 namespace pindrive {
 
-/// A pin that slides on the finger, which is at rest, does not turn back meanwhile.
+/// True if a pin slides on a finger at rest, and therefore does not turn back.
 template <class T>
 bool may_turn(const Segment<T>& segment) {
-  return !slips(segment.mode.finger);
+  return !is_slip(segment.mode.finger);
 }
 
-/// When a motion, which outlives it, has settled, over [0, duration].
+/// Settling of a motion over [0, duration]; the motion outlives the measurement.
 template <class T, class GoOn = Unattended>
 class Settling {
  public:
   Settling(const Motion<T>& motion, T duration, GoOn go_on = {})
       : motion_(motion), duration_(duration), go_on_(go_on) {}
 
-  /// Earliest time after which |x − x_end| stays within the band, a part of |x(0) − x_end|, of a motion that
-  /// rests or decays; without a distance |x(0) − x_end|, the time of its rest. NaN if that is later than the
-  /// duration, or never.
+  /// Earliest time after which |x − x_end| stays within the band, a fraction of |x(0) − x_end|, for
+  /// a motion that rests or decays; if |x(0) − x_end| is zero, the time of rest. NaN if later than
+  /// the duration, or never.
   T within(T x_end, T band) const {
     using std::abs;
     const T way = motion_.begin()->flow.position.start - x_end;
@@ -35,7 +35,7 @@ class Settling {
     for (const Segment<T>& segment : motion_)
       size = std::max(size, abs(segment.flow.position.start));
     // What turns at the edge of the band to its error stays within.
-    const bool by_criterion = std::prev(motion_.end())->without == FastPart::motion;
+    const bool by_criterion = std::prev(motion_.end())->eliminated == EliminatedPart::motion;
     const T part = by_criterion ? T(detail::band_error_at_rest) : detail::band_error<T>;
     const T error = part * size;
     const bool returns = !(abs(way) > error);  // to where it began: the band has no width
@@ -45,7 +45,7 @@ class Settling {
     return since <= duration_ && since < never ? since : none;
   }
 
-  /// The last time at which |x − x_end| is beyond the width: 0 if it never is, infinite if it always is.
+  /// Last time at which |x − x_end| exceeds the width: 0 if never, infinite if always.
   T last_outside(T x_end, T width) const {
     T since{0};
     for (const Segment<T>* segment = motion_.end();
@@ -59,8 +59,8 @@ class Settling {
   static constexpr T never = std::numeric_limits<T>::infinity();
   static constexpr T none = std::numeric_limits<T>::quiet_NaN();
 
-  /// When, in a segment, |x − x_end| comes within the width to stay there, followed from extremum
-  /// to extremum: 0 if it is never outside, infinite if it is outside at the end.
+  /// Time in a segment from which |x − x_end| stays within the width, evaluated from extremum to
+  /// extremum: 0 if never outside, infinite if outside at the end.
   T entry(const BySeries<T>& along, const Segment<T>& segment, T x_end, T width) const {
     T since{0};
     // Beyond the width on either side: where it comes within for good, or infinite.
@@ -142,8 +142,8 @@ class Settling {
   struct Stretch {
     T from, to;
   };
-  /// What need be followed of a finite segment: until |x − x_end| is within the width for good. A
-  /// long vibration is halved until the few periods are left in which it leaves the band last.
+  /// Part of a finite segment to be evaluated: until |x − x_end| stays within the width. A long
+  /// oscillation is bisected until only the last few periods outside the band remain.
   static Stretch last_stretch_outside(const ClosedForm<T>& along, const Segment<T>& segment,
                                       T x_end, T width) {
     const Oscillator<T>& oscillator = segment.flow.oscillator;

@@ -1,4 +1,5 @@
-/// Numbers of the motion in which another one ends: centre, amplitude, period, peak velocity and rounds.
+/// Numbers of the steady motion in which a motion ends: centre, amplitude, period, peak velocity
+/// and rounds.
 #pragma once
 
 #include <algorithm>

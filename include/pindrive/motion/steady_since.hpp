@@ -15,20 +15,22 @@ namespace pindrive {
 
 namespace detail {
 
-/// Time of the last row of the inputs, s; 0 without rows. No motion is steady before.
+/// Time of the last breakpoint of the inputs, s; 0 without breakpoints. No motion is steady before.
 template <class T>
-T last_row(const Inputs<T>& inputs) {
+T last_breakpoint(const Inputs<T>& inputs) {
   T last{0};
-  for (T row; (row = inputs.next_row(last)) < std::numeric_limits<T>::infinity();) last = row;
+  for (T breakpoint;
+       (breakpoint = inputs.next_breakpoint(last)) < std::numeric_limits<T>::infinity();)
+    last = breakpoint;
   return last;
 }
 
-/// Beginning of a steady motion: the first event from which the motion agrees with its own periodic
+/// Beginning of a steady motion: the first event from which the motion agrees with its periodic
 /// continuation into the past.
 ///
-/// Both are compared backwards from event to event, those of the motion and those of the continuation. The
-/// comparison at equal times, not at equal events, also serves phases that vanish as a cycle is approached,
-/// and motions that join within a phase.
+/// Motion and continuation are compared backwards from event to event of both. The comparison at
+/// equal times, not at equal events, also serves phases that vanish as a cycle is approached, and
+/// motions that join within a phase.
 template <class T>
 class FirstRepeat {
  public:
@@ -37,7 +39,7 @@ class FirstRepeat {
         known_(motion.outcome().cycles() ? motion.outcome().cycle_begin
                                          : std::prev(motion.end())->begin),
         period_(motion.outcome().period),
-        last_row_(last_row(motion.inputs())) {}
+        last_breakpoint_(last_breakpoint(motion.inputs())) {}
 
   T find() const {
     const T tolerance = T(repeat_tolerance) * amplitude();
@@ -45,11 +47,11 @@ class FirstRepeat {
     const Segment<T>*const first = own, *const last = std::prev(motion_.end());
     const Segment<T>* continued = last;
     T periods{1};
-    for (T since = known_; since > last_row_;) {
+    for (T since = known_; since > last_breakpoint_;) {
       const T before = own == motion_.begin() ? T(0) : std::prev(own)->begin;
       const T before_too =
-          motion_.outcome().cycles() ? continued->begin - periods * period_ : last_row_;
-      const T next = std::max({before, before_too, last_row_});
+          motion_.outcome().cycles() ? continued->begin - periods * period_ : last_breakpoint_;
+      const T next = std::max({before, before_too, last_breakpoint_});
       for (const T part : {T(0), T(0.25), T(0.5), T(0.75)})
         if (next < since && !agrees(next + part * (since - next), tolerance)) return since;
       since = std::min(since, next);
@@ -58,12 +60,12 @@ class FirstRepeat {
       if (continued == first) periods += T(1);
       continued = continued == first ? last : std::prev(continued);
     }
-    return last_row_;
+    return last_breakpoint_;
   }
 
  private:
-  /// True if the motion is, at a time, where its continuation is; of an oscillation without events, which begins
-  /// in finite time, also in the same mode.
+  /// True if motion and continuation have equal positions at a time; for an oscillation without
+  /// events, which begins in finite time, also equal modes.
   bool agrees(T time, T tolerance) const {
     using std::abs;
     using std::floor;
@@ -78,15 +80,15 @@ class FirstRepeat {
     const auto place = motion_.locate(time, Side::right);
     return motion_.value(*place.segment, place.tau, Quantity::position);
   }
-  /// Of the steady motion, m.
+  /// Amplitude of the steady motion, m.
   T amplitude() const {
     if (!motion_.outcome().cycles()) return std::prev(motion_.end())->flow.amplitude();
     return SteadyMeasurement<T>(motion_).range().half();
   }
 
   const Motion<T>& motion_;
-  T known_;              ///< time from which the motion is steady in any case, s
-  T period_, last_row_;  ///< s
+  T known_;                     ///< time from which the motion is steady in any case, s
+  T period_, last_breakpoint_;  ///< s
 };
 
 }  // namespace detail

@@ -1,5 +1,5 @@
-/// The quantities of a segment as functions of the time τ since it began, and what is asked of them: in
-/// closed form, or by the series of a mode that has none, behind one interface.
+/// Trajectory of a segment: quantities as functions of the time τ since its begin, in closed form
+/// or by series, behind one interface.
 #pragma once
 
 #include <algorithm>
@@ -14,10 +14,10 @@
 
 namespace pindrive {
 
-/// A quantity of a motion over time.
+/// Quantity of a motion.
 enum class Quantity : signed char { position, velocity, acceleration };
 
-/// A quantity along a segment, by its name.
+/// Quantity along a segment, by its name.
 template <class Trajectory>
 std::decay_t<decltype(std::declval<Trajectory>().position())> quantity_of(const Trajectory& t,
                                                                           Quantity quantity) {
@@ -25,7 +25,7 @@ std::decay_t<decltype(std::declval<Trajectory>().position())> quantity_of(const 
   return quantity == Quantity::velocity ? t.velocity() : t.acceleration();
 }
 
-/// A segment in closed form. It refers to the segment.
+/// Trajectory in closed form. Refers to the segment.
 template <class T>
 class ClosedForm {
  public:
@@ -51,7 +51,7 @@ class ClosedForm {
     return waves() && tau > 0 ? oscillator().after(tau) : Moment::still(tau);
   }
   T at(const Path<T>& path, const Moment& now) const { return path.at(now); }
-  /// Whether anything oscillates.
+  /// True if any quantity oscillates.
   bool waves() const {
     return position().oscillates() || velocity().oscillates() || plate_force().oscillates() ||
            finger_force().oscillates();
@@ -59,18 +59,18 @@ class ClosedForm {
   T change(const Path<T>& path, T tau) const { return path.change(segment_.after(tau)); }
   Path<T> derivative(const Path<T>& path) const { return path.derivative(oscillator()); }
   bool constant(const Path<T>& path) const { return path.constant(); }
-  /// A bound of its terms until τ.
+  /// Bound of the terms of a path until τ.
   T terms(const Path<T>& path, T tau) const {
     using std::abs;
     return abs(path.start) + abs(path.value) + abs(path.drift) * tau;
   }
-  /// Of the rate of the oscillation, 1/s².
+  /// Square of a rate that bounds all rates of the oscillation, 1/s².
   T hurry_squared() const { return oscillator().hurry_squared(); }
 
   int side_after_start(const Path<T>& path) const {
     return pindrive::side_after_start(oscillator(), path);
   }
-  /// Calls visit(τ) at each sign change in (0, horizon], until it returns false.
+  /// Calls visit(τ) at each sign change in (0, horizon], until visit returns false.
   template <class Visitor>
   void each_root(const Path<T>& path, int side, T horizon, Visitor&& visit) const {
     pindrive::each_root(oscillator(), path, side, horizon, visit);
@@ -83,11 +83,11 @@ class ClosedForm {
   const Segment<T>& segment_;
 };
 
-/// A segment that is a step of a series.
+/// Trajectory of a segment that is one step of a series.
 template <class T>
 class BySeries {
  public:
-  /// Expands it anew from where it begins: nothing but its beginning is stored.
+  /// Expands the series anew from the begin of the segment; only the initial state is stored.
   BySeries(const Drive<T>& drive, const Segment<T>& segment, const InputLines<T>& lines)
       : step_(expand(drive, segment, lines)) {
     const bool at_stop = held_by_stop(drive, segment.mode);
@@ -99,7 +99,7 @@ class BySeries {
       finger_force_ = T(-1) * step_.skin;
     else if (held && segment.mode.finger == ContactState::stick && !segment.mode.both_stuck())
       finger_force_ = step_.stick_force;
-    else if (slips(segment.mode.finger))
+    else if (is_slip(segment.mode.finger))
       finger_force_ = of_finger(drive, segment.mode, lines.finger_load);
   }
 
@@ -108,7 +108,9 @@ class BySeries {
   Polynomial<T> acceleration() const { return step_.velocity.derivative(); }
   const Polynomial<T>& plate_force() const { return plate_force_; }
   const Polynomial<T>& finger_force() const { return finger_force_; }
-  const Polynomial<T>& sliding_speed() const { return step_.speed; }  ///< on the plate, across too
+  const Polynomial<T>& sliding_speed() const {
+    return step_.speed;
+  }  ///< sliding speed on the plate, with its transverse part, m/s
   Polynomial<T> line(const Line<T>& line) const {
     Polynomial<T> p;
     p.span = step_.span();
@@ -158,24 +160,24 @@ class BySeries {
     const Path<T>& v = segment.flow.velocity;
     const Path<T>& of_finger = segment.finger_force;
     // The slider of a finger that lags is slower than the pin by what the skin stretches.
-    const T skin =
-        mode.lags() ? v.start + of_finger.drift / drive.finger.stiffness : -of_finger.start;
+    const T skin = mode.has_slider_state() ? v.start + of_finger.drift / drive.finger.stiffness
+                                           : -of_finger.start;
     const SeriesState<T> start{segment.flow.position.start, v.start, skin, v.drift};
     const T span = segment.end - segment.begin;
     const SeriesEquation<T> e = mode.equation();
-    if (segment.without == FastPart::of_slider)
-      if (const SlowSliderFlow<T> slow(e, start, span, true); slow.holds()) return slow;
-    if (segment.without == FastPart::of_friction)
+    if (segment.eliminated == EliminatedPart::of_slider)
+      if (const SlowSliderFlow<T> slow(e, start, span, true); slow.is_valid()) return slow;
+    if (segment.eliminated == EliminatedPart::of_friction)
       for (const bool within_step : {true, false})
-        if (const CreepFlow<T> creep(e, start, span, within_step); creep.holds()) return creep;
+        if (const CreepFlow<T> creep(e, start, span, within_step); creep.is_valid()) return creep;
     return SeriesFlow<T>(e, start, span, true);
   }
-  /// Of a rigid finger, or skin, that slips.
+  /// Friction of a rigid finger, or of slipping skin.
   Polynomial<T> of_finger(const Drive<T>& drive, const Mode& mode, const Line<T>& load) const {
     const Branch<T> branch = drive.finger.branch(mode.finger_branch);
-    const bool lags = SeriesMode<T>(drive, mode, {}).lags();
+    const bool has_slider_state = SeriesMode<T>(drive, mode, {}).has_slider_state();
     Polynomial<T> force = Line<T>{-branch.slope * load.value, -branch.slope * load.rate} *
-                          (lags ? step_.skin : step_.velocity);
+                          (has_slider_state ? step_.skin : step_.velocity);
     const T at_rest = -along(mode.finger, branch.force - branch.slope * branch.from);
     force += Line<T>{at_rest * load.value, at_rest * load.rate};
     return force;

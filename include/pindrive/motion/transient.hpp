@@ -1,4 +1,4 @@
-/// The numbers asked of a motion (docs/theory.md, 6), from its segments, exactly; never from samples.
+/// Numbers of a motion (docs/theory.md, section 6), computed from its segments, not from samples.
 #pragma once
 
 #include <algorithm>
@@ -44,23 +44,23 @@ struct Transient {
   T swing{none};          ///< (17), m
   T return_velocity{none}, return_velocity_time{none};  ///< v_m,b at t_b: m/s, s
   T first_reversal_time{none};                          ///< t_1, s
-  T settling_time{none};                                ///< from then on within the band, s
-  T rest_time{none};  ///< from then on at rest, s; infinite if it never comes to rest
-  T last_event_time{
-      none};             ///< of the last change at a contact, s; 0 without any after the release,
-                         ///< infinite where they go on for ever
-  T steady_since{none};  ///< when a steady oscillation began, s
-  T peak_stretch{none}, peak_stretch_rate{none};  ///< largest of a compliant finger's: m, m/s
-  T end_position{none};  ///< x_end: where it rests, or the middle of the final oscillation, m
+  T settling_time{none};                                ///< start of the time within the band, s
+  T rest_time{none};        ///< start of permanent rest, s; infinite if the pin never comes to rest
+  T last_event_time{none};  ///< last contact event, s; 0 without any after the release,
+  T steady_since{none};     ///< start of a steady oscillation, s
+  T peak_stretch{none},
+      peak_stretch_rate{
+          none};         ///< largest stretch (m) and stretch rate (m/s) of a compliant finger
+  T end_position{none};  ///< x_end: position of rest, or centre of the final oscillation, m
   T end_time{none};      ///< t*: end of the transient, s
   ContactUse<T> plate, finger;  ///< in the transient; peak forces of the whole motion
 
-  SteadyNumbers<T> steady;  ///< of the final oscillation
-  T decay_energy{none};     ///< that a final decay has left to dissipate, J
+  SteadyNumbers<T> steady;  ///< numbers of the final oscillation
+  T decay_energy{none};     ///< energy that a final decay has yet to dissipate, J
   Afterwards<T> plate_afterwards, finger_afterwards;
 };
 
-/// Its numbers, by their names in the table of quantities.
+/// Numbers by their names in the table of quantities.
 template <class T>
 inline constexpr NamedNumber<T, Transient<T>> transient_numbers[] = {
     {"transient.peak_displacement", [](const Transient<T>& t) { return t.peak_displacement; }},
@@ -116,7 +116,8 @@ inline constexpr NamedNumber<T, Transient<T>> transient_numbers[] = {
     {"ending.finger.power", [](const Transient<T>& t) { return t.finger_afterwards.power; }},
 };
 
-/// Measures a motion, which outlives it, over [0, duration]; what happens later, or never, is NaN.
+/// Measures a motion over [0, duration]; the motion outlives the measurement. Numbers of later
+/// events, or of none, are NaN.
 template <class T, class GoOn = Unattended>
 class Measurement {
  public:
@@ -135,8 +136,8 @@ class Measurement {
     return result;
   }
 
-  /// Earliest time after which |x − x_end| stays within the band, a part of |x(0) − x_end|; for a
-  /// steady oscillation, when that begins.
+  /// Earliest time after which |x − x_end| stays within the band, a fraction of |x(0) − x_end|; for
+  /// a steady oscillation, its begin.
   T settling_time(T band) const {
     Transient<T> result;
     ending(result);
@@ -144,8 +145,8 @@ class Measurement {
     return result.settling_time;
   }
 
-  /// Until a motion that decays stays within a thousandth of the size of the oscillation that it
-  /// began with, or until its last event.
+  /// End of a decaying motion: within a thousandth of the initial oscillation, or at the last event
+  /// if later.
   T decayed() const {
     using std::abs;
     using std::sqrt;
@@ -179,13 +180,13 @@ class Measurement {
 
   static int sign_of(T value) { return value > 0 ? 1 : value < 0 ? -1 : 0; }
 
-  /// The direction in which the pin moves just after a segment begins; 0 at rest.
+  /// Direction of the pin just after the begin of a segment; 0 at rest.
   int heading(const Segment<T>& segment) const {
     return motion_.along(
         segment, [](const auto& along) { return along.side_after_start(along.velocity()); });
   }
 
-  /// Calls visit(time, position) at each turning point in order until it returns false.
+  /// Calls visit(time, position) at each turning point in order until visit returns false.
   template <class Visitor>
   void turning_points(Visitor&& visit) const {
     int direction = 0;
@@ -285,7 +286,7 @@ class Measurement {
                                                          : result.steady.centre;
   }
 
-  /// The three ends of a motion that are no settling: at rest, steady, without further events.
+  /// Times of endings without settling: rest, steady oscillation, last event.
   void rest_and_events(Transient<T>& result) const {
     const Outcome<T>& outcome = motion_.outcome();
     if (outcome.end == End::moving) return;
@@ -326,7 +327,7 @@ class Measurement {
     result.peak_stretch_rate = std::max(result.peak_stretch_rate, used.peak_stretch_rate);
   }
 
-  /// Numbers of what goes on after the transient, if that is over within the duration.
+  /// Numbers of the motion after the transient, if the transient ends within the duration.
   void afterwards(Transient<T>& result) const {
     const Outcome<T>& outcome = motion_.outcome();
     const Drive<T>& drive = motion_.drive();
@@ -348,7 +349,7 @@ class Measurement {
     } else if (outcome.end == End::decaying) {
       T stiffness = drive.stiffness;
       if (last.mode.finger == ContactState::elastic_stick) stiffness += drive.finger.stiffness;
-      if (touches(last.mode.stop)) stiffness += drive.stops.stiffness;
+      if (in_contact(last.mode.stop)) stiffness += drive.stops.stiffness;
       const T x = last.flow.position.value, v = last.flow.velocity.start;
       result.decay_energy = (stiffness * x * x + drive.mass * v * v) / 2;
     }
@@ -362,7 +363,7 @@ class Measurement {
     }
   }
 
-  /// Rest is one, however many segments the rows of inputs make of it.
+  /// Begin of permanent rest, which breakpoints of the inputs may divide into several segments.
   T rest_begin() const {
     const Segment<T>* segment = std::prev(motion_.end());
     const auto still = [](const Segment<T>& before) {
@@ -377,8 +378,8 @@ class Measurement {
   GoOn go_on_;
 };
 
-/// The duration that was asked for or, without one, long enough to see the ending: a decay to a
-/// thousandth and until settled within the band or the usual one, or a few periods of what lasts.
+/// Requested duration or, without one, long enough to see the ending: a decay to a thousandth and
+/// settled within the band or the default band, or a few periods of a steady motion.
 template <class T, class GoOn = Unattended>
 T duration_of(const Motion<T>& motion, T band, GoOn go_on = {}) {
   using std::isfinite;

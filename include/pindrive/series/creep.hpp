@@ -1,13 +1,14 @@
-/// Creep: the motion of a pin that a plate takes along while it also slides across beneath it.
+/// Creep: motion of a pin on a plate that also slides in the transverse direction.
 ///
-/// With a velocity w across, friction λ(F u/ρ + S u), ρ = √(u² + w²), pulls the velocity within a time
-/// ε = m ρ³/(λ F w²) onto the one that carries the force needed. Where ε is short, a Taylor series of the
-/// whole motion would have steps of a few ε. The motion without its fast part is the solution of
+/// With a transverse velocity w, friction λ(F u/ρ + S u), ρ = √(u² + w²), drives the velocity
+/// within a time ε = m ρ³/(λ F w²) to the value whose friction balances all further forces. For short
+/// ε a Taylor series of the whole motion would need steps of a few ε. The slow motion without this
+/// fast transient solves
 ///
 ///     λ (F t/√(1 + t²) + S w t) + m a + b v + k x + f y = force,   v = x' = v_p + w t,   a = v',
 ///
-/// which is the reduced creep equation where a is left out, and holds through w = 0, where v = v_p. Here a
-/// comes from the series of the round before, and what is still missing is bounded.
+/// which is the reduced creep equation if a is omitted, and holds through w = 0, where v = v_p.
+/// Here a comes from the series of the preceding iteration, and the remaining residual is bounded.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +21,7 @@
 
 namespace pindrive {
 
-/// A step of creep, if the pin creeps: if its velocity and the series are those of creep to rounding.
+/// Step of creep; valid if velocity and series agree with creep within rounding.
 template <class T>
 class CreepFlow : public SeriesStep<T> {
  public:
@@ -30,11 +31,11 @@ class CreepFlow : public SeriesStep<T> {
   using SeriesStep<T>::x_bound, SeriesStep<T>::v_bound, SeriesStep<T>::skin_bound;
   using SeriesStep<T>::speed_bound;
 
-  /// Expands it at a state, no farther than the limit (s; may be infinite), nor than where w is zero; or as
-  /// far, where that is known to be within a step.
+  /// Expands the series at a state, up to a limit (s; may be infinite) and to the zero of w;
+  /// `within_step`: the limit is known to lie within one step.
   CreepFlow(SeriesEquation<T> e, const SeriesState<T>& start, T limit, bool within_step = false) {
     using std::abs;
-    this->without = FastPart::of_friction;
+    this->eliminated = EliminatedPart::of_friction;
     if (e.across.value < 0 || (e.across.value == 0 && e.across.rate < 0))
       e.across = {-e.across.value, -e.across.rate};  // only its size counts: w >= 0
     acceleration_[0] = e.plate_velocity.rate;  // the first guess is that it moves as the plate
@@ -87,20 +88,20 @@ class CreepFlow : public SeriesStep<T> {
     if (holds_) this->trim();
   }
 
-  /// Whether the pin creeps, so that the step may be taken.
-  bool holds() const { return holds_; }
+  /// True if the pin creeps, so that the step may be used.
+  bool is_valid() const { return holds_; }
 
  private:
   using SeriesStep<T>::N, SeriesStep<T>::unit, SeriesStep<T>::beyond, SeriesStep<T>::sums_of;
   using typename SeriesStep<T>::Sums;
   static constexpr int most_rounds = 16, most_tries = 40;
   static constexpr Real shorter = 0.75;
-  /// Where the force needed is so near the most that friction gives, the layer is never thin.
+  /// Largest slope t at the start: closer to the friction limit the boundary layer is never thin.
   static constexpr Real steepest = 1e4;
 
   Polynomial<T>& inner(int i) { return this->inner_[i]; }  // t, √(1 + t²), t/√(1 + t²)
 
-  /// Finds t at the start: whether friction can balance the force needed.
+  /// Computes t at the start; true if friction can balance all further forces.
   bool balance(const SeriesEquation<T>& e, const SeriesState<T>& s) {
     using std::abs;
     using std::sqrt;
@@ -126,7 +127,7 @@ class CreepFlow : public SeriesStep<T> {
     return false;
   }
 
-  /// About the time in which creep changes.
+  /// Estimate of the time scale of creep, s.
   Real trial_step(const SeriesEquation<T>& e, const SeriesState<T>& s) const {
     using std::abs;
     using std::sqrt;
@@ -144,7 +145,8 @@ class CreepFlow : public SeriesStep<T> {
                 abs(plain(e.across.rate)) * k / (load * F) + sqrt(k / plain(e.mass)) / 64);
   }
 
-  /// One round, in the time σ = τ/step: the series of t from that of a, and from it a new a below an order.
+  /// One iteration in the time σ = τ/step: the series of t from that of a, and from t a new a below
+  /// an order.
   void expand(const SeriesEquation<T>& e, const SeriesState<T>& start, Real step, int order) {
     using std::sqrt;
     auto &x = position.c, &v = velocity.c, &y = skin.c;
@@ -198,16 +200,16 @@ class CreepFlow : public SeriesStep<T> {
     }
   }
 
-  /// How much the last round has changed a, over a part of the step.
+  /// Change of a in the last iteration, over a part of the step.
   Real change(Real part) const {
     Real sum{0}, power{1};
     for (int n = 0; n < N; ++n, power *= part) sum += changes_[n] * power;
     return sum;
   }
 
-  /// Bounds what the series leave out. The error of the velocity falls where the slope γ of friction times it
-  /// is more than what is missed and what the errors of position and skin, h and g h times it, pull.
-  /// Whether it is rounding.
+  /// Bounds the truncation error; true if within rounding. The error of the velocity decreases
+  /// where γ (the slope of friction) times the error exceeds the residual plus the forces from the
+  /// errors of position and skin, h and g h times the velocity error.
   bool bound(const SeriesEquation<T>& e, Real missed) {
     using detail::exp;
     using std::abs;
@@ -249,14 +251,14 @@ class CreepFlow : public SeriesStep<T> {
   }
   static Real rounding_of(const Sums& sums) { return 8 * unit * sums[0]; }
 
-  /// Whether the pin has the velocity of creep: what it is off by, less than rounding, fades at once.
+  /// True if the pin has the velocity of creep: a deviation within rounding decays at once.
   bool starts_from(const SeriesEquation<T>& e, const SeriesState<T>& start) const {
     using std::abs;
     return abs(plain(start.v - velocity.c[0])) <=
            16 * unit * sums_of(velocity.c)[0] + unsure(e, start);
   }
-  /// What the rounding of the forces and that of the time make of that velocity: where friction is nearly all used
-  /// much more than where it is steepest, but no more is left out than a small part of the velocity.
+  /// Error of the creep velocity from the rounding of forces and time: large near the friction
+  /// limit, but limited to a small part of the velocity.
   Real unsure(const SeriesEquation<T>& e, const SeriesState<T>& start) const {
     using std::abs;
     const Real sizes = abs(plain(e.force.value)) + abs(plain(e.mass) * plain(acceleration_[0])) +
@@ -277,19 +279,19 @@ class CreepFlow : public SeriesStep<T> {
   bool converged_{false}, holds_{false};
 };
 
-/// The step to take from a state: the Taylor series, but without its fast part where that is over: where the
-/// pin creeps, or on a slider of stiff skin.
+/// Step from a state: the Taylor series, or the slow motion where the fast transient is over, in
+/// creep or on a slider of stiff skin.
 template <class T>
 SeriesStep<T> series_step(const SeriesEquation<T>& e, const SeriesState<T>& start, T limit) {
   if (SlowSliderFlow<T>::stiff(e, start))
-    if (const SlowSliderFlow<T> slow(e, start, limit); slow.holds()) return slow;
+    if (const SlowSliderFlow<T> slow(e, start, limit); slow.is_valid()) return slow;
   if (e.held || e.side != 0) return SeriesFlow<T>(e, start, limit);
   SeriesStep<T> step;
   const bool slides = plain(start.v) != plain(e.plate_velocity.value) || plain(e.across.value) != 0;
   if (slides) step = SeriesFlow<T>(e, start, limit);
   if (slides && !(step.span() < plain(limit))) return step;
   const CreepFlow<T> creep(e, start, limit);
-  if (creep.holds() && !(slides && creep.span() < step.span())) return creep;
+  if (creep.is_valid() && !(slides && creep.span() < step.span())) return creep;
   return slides ? step : SeriesFlow<T>(e, start, limit);
 }
 

@@ -1,8 +1,8 @@
-/// The power series of the modes that have no closed form: a friction curve under a changing load, a
-/// friction curve on a compliant finger, a plate that also slides across the axis.
+/// Power series of modes without a closed form: a friction curve under a changing load, a friction
+/// curve on a compliant finger, a plate that also slides in the transverse direction.
 ///
-/// The Taylor coefficients of such a mode follow from its equation by recurrences. Order and length of a
-/// step follow from the series itself, with a proven bound of what it leaves out.
+/// The Taylor coefficients follow from the equation by recurrences. Order and length of a step
+/// follow from the series, with a proven bound of the truncation error.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 
 namespace pindrive {
 
-/// The Taylor series of a mode at a state.
+/// Taylor series of a mode at a state.
 template <class T>
 class SeriesFlow : public SeriesStep<T> {
  public:
@@ -26,8 +26,8 @@ class SeriesFlow : public SeriesStep<T> {
   using SeriesStep<T>::x_bound, SeriesStep<T>::v_bound, SeriesStep<T>::skin_bound;
   using SeriesStep<T>::speed_bound;
 
-  /// Expands the mode at a state, no farther than the limit (s; may be infinite); or as far, where that is
-  /// known to be within a step.
+  /// Expands the mode at a state, up to a limit (s; may be infinite); `within_step`: the limit is
+  /// known to lie within one step.
   SeriesFlow(const SeriesEquation<T>& equation, const SeriesState<T>& start, T limit,
              bool within_step = false) {
     const Real farthest = plain(limit), rate = linear_rate(equation);
@@ -53,8 +53,8 @@ class SeriesFlow : public SeriesStep<T> {
   using typename SeriesStep<T>::Sums;
 
  private:
-  /// So many times the time of the fastest rate at most, even where nothing changes: what rounding puts into
-  /// the start is then followed too, and remains rounding. And so often a step is made shorter.
+  /// Longest step in units of the fastest time constant, even at rest: rounding of the start then
+  /// remains rounding. Also the largest number of step reductions.
   static constexpr Real longest = 8;
   static constexpr Real farther =
       1024;  // than the step that was tried, whose powers must be numbers
@@ -64,13 +64,13 @@ class SeriesFlow : public SeriesStep<T> {
 
   Polynomial<T>& inner(int i) { return this->inner_[i]; }  // d, u
 
-  /// Of p/σ, where p begins at 0.
+  /// Coefficient sums of p/σ, where p begins at 0.
   Sums from_rest(std::array<T, N + 2> c) const {
     if (begins_ > 0) std::copy(c.begin() + 1, c.end(), c.begin());
     return sums_of(c);
   }
 
-  /// About the fastest rate of the equation without an across velocity, …
+  /// Estimate of the fastest rate of the equation without transverse velocity, 1/s.
   static Real linear_rate(const SeriesEquation<T>& e) {
     using std::abs;
     using std::sqrt;
@@ -79,14 +79,14 @@ class SeriesFlow : public SeriesStep<T> {
            (f != 0 ? abs(plain(e.skin_decay) / f) : Real(0)) +
            sqrt((plain(e.stiffness) + plain(e.skin_stiffness)) / m);
   }
-  /// … the one at which the factor of skin has grown from zero: there every solution but one is singular, so
-  /// that a longer step would make the rounding of its start grow.
+  /// Rate at which the skin factor has grown from zero, 1/s. All solutions but one are singular
+  /// there, so a longer step would amplify rounding of the start.
   static Real rising_rate(const SeriesEquation<T>& e) {
     const Real f = plain(e.skin_factor.value), rate = plain(e.skin_factor.rate);
     return f * rate > 0 ? rate / f : Real(0);
   }
-  /// Whether the plate begins to slide from here on: u and w are 0 but not their rates.
-  static bool sets_out(const SeriesEquation<T>& e, const SeriesState<T>& start) {
+  /// True if the plate begins to slide now: u and w are 0 but their rates are not.
+  static bool starts_to_slide(const SeriesEquation<T>& e, const SeriesState<T>& start) {
     return e.side == 0 && e.across.value == 0 &&
            plain(e.held ? e.surface.value : start.v) == plain(e.plate_velocity.value);
   }
@@ -94,7 +94,7 @@ class SeriesFlow : public SeriesStep<T> {
  protected:
   SeriesFlow() = default;
 
-  /// The rate at which the direction of sliding turns, 1/s.
+  /// Rate at which the sliding direction turns, 1/s.
   static Real turning_rate(const SeriesEquation<T>& e, const SeriesState<T>& s) {
     using detail::hypot;
     using std::abs;
@@ -105,7 +105,7 @@ class SeriesFlow : public SeriesStep<T> {
                       plain(e.damping) * plain(s.v) - plain(e.skin_factor.value) * plain(s.skin) -
                       plain(e.load.value) * plain(e.plate_slope) * u;
     const Real turns = abs(plain(e.plate_velocity.rate)) + abs(plain(e.across.rate));
-    if (sets_out(e, s))
+    if (starts_to_slide(e, s))
       return (e.held ? turns : (abs(pull) + friction) / m + turns) / turns * linear_rate(e);
     const Real speed = hypot(u, w), along = u / speed, across = w / speed;
     // What friction takes from the pull, and how fast it turns with the velocity.
@@ -115,7 +115,7 @@ class SeriesFlow : public SeriesStep<T> {
     return (e.held ? turns : left / m + abs(plain(e.across.rate))) / speed;
   }
 
-  /// What the truncated r and d differ from √(u² + w²) and u/√(u² + w²), and what d leaves out of the force, N.
+  /// Truncation errors of r = √(u² + w²) and d = u/r, and the resulting error of the force, N.
   struct Turning {
     bool known{true};
     Real root{0}, direction{0}, missed{0};
@@ -144,9 +144,9 @@ class SeriesFlow : public SeriesStep<T> {
     return found;
   }
 
-  /// The recurrences, in the time σ = τ/step.
+  /// Evaluates the recurrences in the time σ = τ/step.
   void expand(const SeriesEquation<T>& e, const SeriesState<T>& start, Real step) {
-    if (sets_out(e, start)) return expand_from_rest(e, start, step);
+    if (starts_to_slide(e, start)) return expand_from_rest(e, start, step);
     using std::isnan;
     using std::sqrt;
     this->begin(step);
@@ -191,8 +191,8 @@ class SeriesFlow : public SeriesStep<T> {
   }
 
  private:
-  /// The same where u and w begin at 0: the direction is that of u/σ and w/σ, so that its order n needs the
-  /// velocity of the order n + 1, in which the equation is linear.
+  /// Evaluates the recurrences where u and w begin at 0. The direction is that of u/σ and w/σ, so
+  /// that order n needs the velocity of order n + 1, in which the equation is linear.
   void expand_from_rest(const SeriesEquation<T>& e, const SeriesState<T>& start, Real step) {
     using std::sqrt;
     this->begin(step);
@@ -225,7 +225,7 @@ class SeriesFlow : public SeriesStep<T> {
       if (n == 0) {
         const T rest = others - e.mass * e.plate_velocity.rate;
         const T out = e.held ? e.surface.rate - e.plate_velocity.rate
-                             : setting_out(e.mass, strength, e.across.rate, rest);
+                             : departure_acceleration(e.mass, strength, e.across.rate, rest);
         u[1] = out * step;
         r[1] = sqrt(u[1] * u[1] + w * w);
         d[0] = u[1] / r[1];
@@ -253,9 +253,10 @@ class SeriesFlow : public SeriesStep<T> {
     }
   }
 
-  /// Bounds what the series leave out, from what they miss of the equation: the error e of a mode, with
-  /// 2 E² = m e_v² + k e_x² + (f e_y)²/K, grows by no more than the energy that this puts in, since
-  /// friction's own slope takes energy but where it falls. Whether the bound is rounding.
+  /// Bounds the truncation error from the residual of the equation; true if the bound is within
+  /// rounding. The error e of a mode, with 2 E² = m e_v² + k e_x² + (f e_y)²/K, grows at most by
+  /// the energy that the residual supplies, as the slope of friction dissipates energy unless it is
+  /// negative.
   bool bound(const SeriesEquation<T>& e) {
     using detail::exp;
     using std::abs;

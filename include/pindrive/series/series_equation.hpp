@@ -1,4 +1,4 @@
-/// The differential equation of a mode that has no closed form.
+/// Differential equation of a mode without a closed form.
 #pragma once
 
 #include <algorithm>
@@ -9,45 +9,46 @@
 
 namespace pindrive {
 
-/// The pin, and what is known of its skin: see SeriesEquation.
+/// State of the pin and its skin; see SeriesEquation.
 template <class T>
 struct SeriesState {
   T x, v;     ///< m, m/s
   T skin{0};  ///< N, or m/s
-  /// Of a pin that is not held, where it is known, so that a tangential departure is one exactly; m/s².
+  /// Acceleration of a pin that is not held, if known, so that a tangential departure is exact;
+  /// m/s².
   T acceleration{std::numeric_limits<T>::quiet_NaN()};
-  T time{0};  ///< s; its rounding is one of the inputs too
+  T time{0};  ///< time, s; its rounding is part of the input error
 };
 
-/// A mode without a closed form:
+/// Mode without a closed form:
 ///
 ///     m x'' + b x' + k x = force + R − f y,   R = −λ (F d + S u),   u = x' − v_p,   (f y)' = K x' − D y − E,
 ///
-/// where d is the sign of u or, with a velocity w across, u / √(u² + w²); u and w are then never both 0, and
-/// b, λ and f are lines. y is the state of a compliant finger of stiffness K: its force (f = 1, D = E = 0) while
-/// it sticks elastically; while it slips under a load λ_f on a branch F_c + S_c |y|, its sliding velocity
-/// (f = S_c λ_f, D = K, E = ±F_c λ_f'), and its constant part is in `force`. Where f begins at 0, y begins at
-/// its one value that stays finite. A pin that is held moves as the surface that holds it, and a stick force
-/// makes up for what is missing.
+/// where d is the sign of u or, with a transverse velocity w, u / √(u² + w²); u and w are then
+/// never both 0, and b, λ and f are linear in time. y is the state of a compliant finger of
+/// stiffness K. In elastic stick, y is the tension (f = 1, D = E = 0). In slip under a load λ_f on
+/// a branch F_c + S_c |y|, y is the slider velocity (f = S_c λ_f, D = K, E = ±F_c λ_f'), and its
+/// constant part belongs to `force`. If f begins at 0, y begins at its only finite value. A pin
+/// that is held moves with the surface that holds the pin, and a stick force balances the equation.
 template <class T>
 struct SeriesEquation {
   T mass, damping, stiffness;          ///< the damping may be negative
   T damping_rate{0};                   ///< N s/m per s
-  Line<T> force{T(0), T(0)};           ///< inertia and all that is given over time, N
+  Line<T> force{T(0), T(0)};           ///< inertial and given forces, N
   Line<T> plate_velocity{T(0), T(0)};  ///< v_p, m/s
   Line<T> load{T(1), T(0)};            ///< λ >= 0
-  T plate_force{0};                    ///< F: the branch's friction force, continued to no speed, N
+  T plate_force{0};                    ///< F: friction of the branch extrapolated to zero speed, N
   T plate_slope{0};                    ///< S, N s/m
-  int side{0};                         ///< the sign of u; 0: the plate slides across too
+  int side{0};                         ///< sign of u; 0: oblique slip
   Line<T> across{T(0), T(0)};          ///< w, m/s
   Line<T> skin_factor{T(0), T(0)};     ///< f: 1, or N s/m
   T skin_stiffness{0}, skin_decay{0};  ///< K and D, N/m
   T skin_drift{0};                     ///< E, N/s
-  const T* stretching{nullptr};        ///< the orders of (f y)', where that is known, N/s
-  bool held{false};                    ///< by a surface of this velocity, m/s
+  const T* stretching{nullptr};        ///< Taylor coefficients of (f y)' if known, N/s
+  bool held{false};                    ///< true if a surface of this velocity holds the pin, m/s
   Line<T> surface{T(0), T(0)};
 
-  /// The same with time counted from τ on.
+  /// Equation with time counted from τ on.
   SeriesEquation from(T tau) const {
     SeriesEquation later = *this;
     later.damping += damping_rate * tau;
@@ -58,8 +59,8 @@ struct SeriesEquation {
     return later;
   }
 
-  /// The order n + 1 of y from those of y and x' up to n or, where f begins at 0, the order n, in the time
-  /// τ/step.
+  /// Computes order n + 1 of y from the orders of y and x' up to n or, if f begins at 0, order n;
+  /// in the time τ/step.
   template <class Coefficients>
   void follow(Coefficients& y, const Coefficients& v, int n, T step) const {
     const T turns = skin_factor.rate * T(n + 1);
@@ -72,8 +73,8 @@ struct SeriesEquation {
       y[n] = (skin_stiffness * v[n] - (n == 0 ? skin_drift : T(0))) / (skin_decay + turns);
     }
   }
-  /// The most that y is off over a step of length h, where f y is off by no more than `pull`, x' by `faster`
-  /// and the equation of y by `missed`: f grows from 0 only.
+  /// Error bound of y over a step of length h, from the errors of f y (`pull`), of x' (`faster`)
+  /// and the residual of the equation of y (`missed`); f may grow from 0 only.
   template <class Real>
   Real skin_error(Real h, Real pull, Real faster, Real missed) const {
     using std::abs;

@@ -1,5 +1,4 @@
-/// A mode of a drive as its series have it: which modes have no closed form, their equation, what ends
-/// them, and when.
+/// Mode of a drive for its series: modes without a closed form, their equation and their guards.
 #pragma once
 
 #include <algorithm>
@@ -13,37 +12,37 @@
 
 namespace pindrive {
 
-/// The inputs from an instant on, until one has its next row.
+/// Inputs from an instant on, until the next breakpoint.
 template <class T>
 struct InputLines {
   Line<T> plate_velocity;           ///< v_p, m/s
   Line<T> plate_load{T(1), T(0)};   ///< >= 0
   Line<T> across_velocity{};        ///< w, m/s
-  Line<T> force{};                  ///< on the pin from outside, N
+  Line<T> force{};                  ///< external force, N
   Line<T> finger_load{T(1), T(0)};  ///< >= 0
 
-  bool oblique() const { return carries_across(plate_load, across_velocity); }
+  bool oblique() const { return slides_obliquely(plate_load, across_velocity); }
   InputLines from(T tau) const {
     const auto later = [&](const Line<T>& line) { return Line<T>{line.at(tau), line.rate}; };
     return {later(plate_velocity), later(plate_load), later(across_velocity), later(force),
             later(finger_load)};
   }
-  /// Those of a segment, whose plate velocity is known to be exactly the pin's where it is.
+  /// Inputs of a segment; the plate velocity is exactly that of the pin where known.
   static InputLines of(const Drive<T>& drive, const Inputs<T>& inputs, const Segment<T>& segment) {
     return {segment.plate_velocity, inputs.plate_load.from(segment.begin),
             across_from(inputs, segment.begin, segment.plate_velocity, held(drive, segment.mode)),
             inputs.force.from(segment.begin), inputs.finger_load.from(segment.begin)};
   }
-  /// A velocity across from a time on, of a plate that moves like this along the axis. Where it is within some
-  /// roundings of both, it is zero: the nearer to it, the shorter are the steps of a pin that comes to rest on
-  /// the plate at once. Where both come to zero at the next row, under a pin that is held, it is known better by the
-  /// time until there.
+  /// Transverse velocity from a time on. A velocity within rounding of both velocities is zero:
+  /// close to zero the steps of a pin that comes to rest on the plate become short. If both
+  /// velocities reach zero at the next breakpoint under a held pin, the time until then gives the
+  /// better value.
   static Line<T> across_from(const Inputs<T>& inputs, T time, const Line<T>& along, bool held) {
     using std::abs;
     Line<T> line = inputs.across_velocity.from(time);
-    const T rest =
-        std::min(inputs.across_velocity.next_row(time), inputs.mouse_velocity.next_row(time)) -
-        time;
+    const T rest = std::min(inputs.across_velocity.next_breakpoint(time),
+                            inputs.mouse_velocity.next_breakpoint(time)) -
+                   time;
     const T known = detail::rounding<T> * time * (abs(line.rate) + abs(along.rate));
     if (held && along.rate != 0 && abs(line.at(rest)) + abs(along.at(rest)) <= 4 * known)
       return {-line.rate * rest, line.rate};
@@ -52,8 +51,8 @@ struct InputLines {
   }
 };
 
-/// One mode of a drive between two events, as long as the inputs stay on their lines. Under an oblique
-/// hand the plate slips in every mode, whichever sign is given.
+/// Mode of a drive between two events, while the inputs are linear. Under an oblique hand the plate
+/// slips in every mode, whichever sign is given.
 template <class T>
 class SeriesMode {
  public:
@@ -63,97 +62,98 @@ class SeriesMode {
   /// True if flow.hpp has a mode in closed form, so that no series is needed.
   /// Under a held pin a plate of constant velocity slides across with a friction that only the load changes.
   static bool closed_form(const Drive<T>& drive, const Mode& mode, const InputLines<T>& inputs) {
-    const auto bilinear = [](ContactState does, const Contact<T>& contact, int branch,
+    const auto bilinear = [](ContactState state, const Contact<T>& contact, int branch,
                              const Line<T>& load) {
-      return slips(does) && load.rate != 0 && contact.branch(branch).slope != 0;
+      return is_slip(state) && load.rate != 0 && contact.branch(branch).slope != 0;
     };
-    const bool across = slips(mode.plate) && inputs.oblique();
+    const bool across = is_slip(mode.plate) && inputs.oblique();
     const bool steady = across && held(drive, mode) && inputs.plate_velocity.rate == 0 &&
                         inputs.across_velocity.rate == 0;
     return (steady || (!across &&
                        !bilinear(mode.plate, drive.plate, mode.plate_branch, inputs.plate_load))) &&
            !bilinear(mode.finger, drive.finger, mode.finger_branch, inputs.finger_load) &&
-           !lags(drive.finger, mode);
+           !has_slider_state(drive.finger, mode);
   }
   bool has_closed_form() const { return closed_form(drive_, mode_, inputs_); }
 
-  bool lags() const { return lags(drive_.finger, mode_); }
+  bool has_slider_state() const { return has_slider_state(drive_.finger, mode_); }
 
-  /// Its equation. The state of the skin is its force, or the sliding velocity where the finger slips on
-  /// a sloped branch of its curve.
+  /// Equation of the mode. The skin state is the tension or, if the finger slips on a sloped
+  /// branch, the slider velocity.
   SeriesEquation<T> equation() const {
     SeriesEquation<T> e{drive_.mass, drive_.damping, drive_.stiffness};
     e.force = inputs_.force;
     e.force.value += drive_.mass * inputs_.plate_velocity.rate;
     e.plate_velocity = inputs_.plate_velocity;
     e.load = inputs_.plate_load;
-    if (slips(mode_.plate)) {
+    if (is_slip(mode_.plate)) {
       e.plate_force = at_rest(plate());
       e.plate_slope = plate().slope;
     }
     e.side = sign(mode_.plate) < 0 ? -1 : 1;
-    if (slips(mode_.plate) && inputs_.oblique()) {
+    if (is_slip(mode_.plate) && inputs_.oblique()) {
       e.side = 0;
       e.across = inputs_.across_velocity;
     }
-    if (slips(mode_.finger)) {
+    if (is_slip(mode_.finger)) {
       const T friction = along(mode_.finger, at_rest(finger()));
       e.force.value -= friction * inputs_.finger_load.value;
       e.force.rate -= friction * inputs_.finger_load.rate;
     }
     const Line<T>& load = inputs_.finger_load;
-    if (lags()) {
+    if (has_slider_state()) {
       e.skin_factor = {finger().slope * load.value, finger().slope * load.rate};
       e.skin_stiffness = e.skin_decay = drive_.finger.stiffness;
       e.skin_drift = along(mode_.finger, at_rest(finger())) * load.rate;
     } else if (mode_.finger == ContactState::elastic_stick) {
       e.skin_factor.value = T(1);
       e.skin_stiffness = drive_.finger.stiffness;
-    } else if (slips(mode_.finger)) {
+    } else if (is_slip(mode_.finger)) {
       e.damping += finger().slope * load.value;
       e.damping_rate = finger().slope * load.rate;
     }
     e.held = held(drive_, mode_);
-    if (touches(mode_.stop) && !drive_.stops.rigid()) {
+    if (in_contact(mode_.stop) && !drive_.stops.rigid()) {
       e.damping += drive_.stops.damping;
       e.stiffness += drive_.stops.stiffness;
-      e.force.value += side(mode_.stop) * drive_.stops.stiffness * drive_.stops.travel;
+      e.force.value += stop_sign(mode_.stop) * drive_.stops.stiffness * drive_.stops.travel;
     }
     if (mode_.plate == ContactState::stick) e.surface = inputs_.plate_velocity;
     return e;
   }
 
-  /// The force that stretches the skin, from the state of the skin; 0 of a rigid finger, N.
+  /// Skin tension from the skin state, N; 0 for a rigid finger.
   T skin_force(T skin) const {
     if (drive_.finger.rigid()) return T(0);
-    if (!slips(mode_.finger)) return skin;
-    const T friction = lags() ? at_rest(finger()) : finger().force;
+    if (!is_slip(mode_.finger)) return skin;
+    const T friction = has_slider_state() ? at_rest(finger()) : finger().force;
     return inputs_.finger_load.value *
-           (along(mode_.finger, friction) + (lags() ? finger().slope * skin : T(0)));
+           (along(mode_.finger, friction) + (has_slider_state() ? finger().slope * skin : T(0)));
   }
 
-  /// Where the mode begins exactly: the bounds of the speeds, and the side of a stick force at its limit.
+  /// Guards that are exactly zero at the begin: of the speeds, and the side of a stick force at its
+  /// limit.
   struct Reached {
-    detail::Bound plate{detail::Bound::none}, finger{detail::Bound::none};
+    detail::ActiveGuard plate{detail::ActiveGuard::none}, finger{detail::ActiveGuard::none};
     int limit{0};
-    bool push{false};  ///< a stop's
+    bool push{false};  ///< the push of a stop
   };
 
-  /// What stays positive while the mode lasts, along a step of it: the distance of a sliding speed from a
-  /// bound, or (none) what a stick could carry beyond what it does, to a side.
+  /// Quantity that is positive during the mode, along a step: distance of a sliding speed from the
+  /// end of its branch or (none) margin of a stick force on one side.
   struct Guard {
     Polynomial<T> path;
-    detail::Bound bound;
+    detail::ActiveGuard bound;
     bool plate;
     int side;
-    T zero;  ///< where it is first negative, s; infinity without
+    T zero;  ///< time at which the guard becomes negative, s; infinite if never
   };
 
   class Guards {
    public:
     const Guard* begin() const { return list_.data(); }
     const Guard* end() const { return list_.data() + count_; }
-    /// The earliest; null without one.
+    /// Guard with the earliest zero; null without one.
     const Guard* earliest() const {
       const Guard* first = nullptr;
       for (const Guard& guard : *this)
@@ -163,16 +163,16 @@ class SeriesMode {
 
    private:
     friend class SeriesMode;
-    void add(Polynomial<T> path, bool at_zero, detail::Bound bound, bool plate, int side) {
+    void add(Polynomial<T> path, bool at_zero, detail::ActiveGuard bound, bool plate, int side) {
       if (at_zero) leave_zero(path.c);
       // A step that begins beyond the bound by rounding, and goes on there, ends at once.
-      const bool speed = bound == detail::Bound::lower || bound == detail::Bound::upper;
+      const bool speed = bound == detail::ActiveGuard::lower || bound == detail::ActiveGuard::upper;
       const bool beyond = speed && !at_zero && path.c[0] < 0 && path.c[1] < 0;
       const T zero = beyond ? T(0) : first_zero(path);
       list_[count_++] = {path, bound, plate, side, zero};
     }
-    /// Makes exact what the selection of the mode has judged: coefficients to the other side are rounding, or
-    /// the start is and the path turns back within that.
+    /// Makes exact the start that the selection of the mode implies: coefficients of the wrong sign
+    /// are rounding, or the path turns back within the rounding of its start.
     template <class Coefficients>
     static void leave_zero(Coefficients& c) {
       const bool turns = c[1] < 0 && c[2] > -c[1];
@@ -182,12 +182,12 @@ class SeriesMode {
     std::array<Guard, 8> list_;
     int count_{0};
   };
-  /// Those of a stick force come first.
+  /// Guards of the mode; guards of a stick force come first.
   Guards guards(const SeriesStep<T>& step, const Reached& at = {}) const {
     Guards found;
     if (held_by_stop(drive_, mode_)) {
-      const int end = side(mode_.stop);
-      found.add(T(-end) * step.stick_force, at.push, detail::Bound::push, false, end);
+      const int end = stop_sign(mode_.stop);
+      found.add(T(-end) * step.stick_force, at.push, detail::ActiveGuard::push, false, end);
     } else if (mode_.stuck()) {
       Line<T> most{T(0), T(0)};
       if (mode_.plate == ContactState::stick)
@@ -199,14 +199,17 @@ class SeriesMode {
       }
       within(found, step.stick_force, most, at.limit, mode_.plate == ContactState::stick);
     }
-    if (slips(mode_.plate)) between(found, step.speed, plate(), at.plate, true, inputs_.oblique());
-    if (slips(mode_.finger)) {
-      Polynomial<T> speed = along(mode_.finger, T(1)) * (lags() ? step.skin : step.velocity);
-      if (!lags() && !drive_.finger.rigid()) speed += Line<T>{-follows(finger().force), T(0)};
+    if (is_slip(mode_.plate))
+      between(found, step.speed, plate(), at.plate, true, inputs_.oblique());
+    if (is_slip(mode_.finger)) {
+      Polynomial<T> speed =
+          along(mode_.finger, T(1)) * (has_slider_state() ? step.skin : step.velocity);
+      if (!has_slider_state() && !drive_.finger.rigid())
+        speed += Line<T>{-follows(finger().force), T(0)};
       between(found, speed, finger(), at.finger, false, false);
     }
     if (mode_.finger == ContactState::elastic_stick) {
-      const int limit = at.finger == detail::Bound::none ? 0 : begins_with(step.skin);
+      const int limit = at.finger == detail::ActiveGuard::none ? 0 : begins_with(step.skin);
       within(found, step.skin,
              {drive_.finger.static_limit * inputs_.finger_load.value,
               drive_.finger.static_limit * inputs_.finger_load.rate},
@@ -219,50 +222,52 @@ class SeriesMode {
  private:
   static constexpr T never = std::numeric_limits<T>::infinity();
 
-  /// Whether the slider of a compliant finger lags behind the pin: it slips on a sloped branch.
-  static bool lags(const Contact<T>& finger, const Mode& mode) {
-    return finger.may_lag() && slips(mode.finger) && finger.branch(mode.finger_branch).slope != 0;
+  /// True if the slider of a compliant finger has a velocity of its own, in slip on a sloped
+  /// branch.
+  static bool has_slider_state(const Contact<T>& finger, const Mode& mode) {
+    return finger.may_lag() && is_slip(mode.finger) && finger.branch(mode.finger_branch).slope != 0;
   }
   Branch<T> plate() const { return drive_.plate.branch(mode_.plate_branch); }
   Branch<T> finger() const { return drive_.finger.branch(mode_.finger_branch); }
-  /// The velocity at which the skin of a friction stretches as its load changes, m/s.
+  /// Rate at which the skin stretches at a friction as the load changes, m/s.
   T follows(T friction) const {
     return inputs_.finger_load.rate * friction / drive_.finger.stiffness;
   }
   static T at_rest(const Branch<T>& branch) { return branch.force - branch.slope * branch.from; }
 
-  /// The sign of what a series begins with.
+  /// Sign of the first coefficient that is not zero.
   static int begins_with(const Polynomial<T>& series) {
     for (const T& c : series.c)
       if (c != 0) return c < 0 ? -1 : 1;
     return 1;
   }
 
-  void between(Guards& found, const Polynomial<T>& speed, const Branch<T>& range, detail::Bound at,
-               bool is_plate, bool oblique) const {
-    using detail::Bound;
+  void between(Guards& found, const Polynomial<T>& speed, const Branch<T>& range,
+               detail::ActiveGuard at, bool is_plate, bool oblique) const {
+    using detail::ActiveGuard;
     Polynomial<T> above = speed, below = T(-1) * speed;
     above += Line<T>{-range.from, T(0)};
     below += Line<T>{range.to, T(0)};
     if (!oblique || range.from > 0)  // else the plate slides across at least
-      found.add(above, at == Bound::lower, Bound::lower, is_plate, 0);
-    if (range.to < never) found.add(below, at == Bound::upper, Bound::upper, is_plate, 0);
+      found.add(above, at == ActiveGuard::lower, ActiveGuard::lower, is_plate, 0);
+    if (range.to < never)
+      found.add(below, at == ActiveGuard::upper, ActiveGuard::upper, is_plate, 0);
   }
   void stops(Guards& found, const SeriesStep<T>& step, const Reached& at) const {
-    using detail::Bound;
+    using detail::ActiveGuard;
     const Stops<T>& stops = drive_.stops;
     const auto beyond = [&](int end, int sense) {
       Polynomial<T> path = T(sense * end) * step.position;
       path += Line<T>{-sense * stops.travel, T(0)};
       const bool exact = end * step.position.c[0] == stops.travel;
-      found.add(path, exact, Bound::edge, false, end);
+      found.add(path, exact, ActiveGuard::edge, false, end);
     };
     if (mode_.stop == StopState::apart) {
       beyond(1, -1);
       beyond(-1, -1);
       return;
     }
-    const int end = side(mode_.stop), sense = touches(mode_.stop) ? 1 : -1;
+    const int end = stop_sign(mode_.stop), sense = in_contact(mode_.stop) ? 1 : -1;
     if (stops.damping == 0 || sense < 0) beyond(end, 1);
     if (stops.damping == 0) return;
     Polynomial<T> push = T(sense * end) * stops.stiffness * step.position;
@@ -270,14 +275,14 @@ class SeriesMode {
     // Not by the sum, whose rounding may be more.
     push.c[0] = sense * (stops.stiffness * (end * step.position.c[0] - stops.travel) +
                          stops.damping * end * step.velocity.c[0]);
-    found.add(push, at.push, Bound::push, false, end);
+    found.add(push, at.push, ActiveGuard::push, false, end);
   }
   void within(Guards& found, const Polynomial<T>& force, Line<T> most, int at_limit,
               bool is_plate) const {
     for (const int side : {1, -1}) {
       Polynomial<T> left = T(-side) * force;
       left += most;
-      found.add(left, side == at_limit, detail::Bound::none, is_plate, side);
+      found.add(left, side == at_limit, detail::ActiveGuard::none, is_plate, side);
     }
   }
 

@@ -1,5 +1,5 @@
-/// One step of a series: the quantities of a mode as polynomials, what they leave out, and how long and of
-/// what order the step has to be.
+/// Step of a series: polynomials of all quantities, truncation errors, length and order of the
+/// step.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace pindrive {
 
-/// One step of a mode without a closed form, for as long as its series holds to rounding.
+/// Step of a mode without a closed form, over the time for which its series holds to rounding.
 template <class T>
 class SeriesStep {
  public:
@@ -21,11 +21,12 @@ class SeriesStep {
 
   Polynomial<T> position, velocity, skin;
   Polynomial<T> plate_force;  ///< R, N
-  Polynomial<T> stick_force;  ///< of the surface that holds the pin, N; else 0
-  Polynomial<T> speed;        ///< of sliding on the plate, across too: s u or √(u² + w²), m/s
-  /// Bounds of what is left out: |position|, |velocity|, |skin| and |speed| differ by no more over the step.
+  Polynomial<T> stick_force;  ///< stick force of the surface that holds the pin, N; else 0
+  Polynomial<T> speed;        ///< sliding speed on the plate: s u or √(u² + w²), m/s
+  /// Truncation errors: bounds of the errors of position, velocity, skin state and sliding speed
+  /// over the step.
   Real x_bound{0}, v_bound{0}, skin_bound{0}, speed_bound{0};
-  FastPart without{FastPart::none};  ///< what it leaves out
+  EliminatedPart eliminated{EliminatedPart::none};  ///< eliminated fast transient
 
   Real span() const { return velocity.span; }
   SeriesState<T> at(T tau) const { return {position.at(tau), velocity.at(tau), skin.at(tau)}; }
@@ -34,7 +35,7 @@ class SeriesStep {
   static constexpr int N = series_order;
   static constexpr Real unit = std::numeric_limits<Real>::epsilon();
 
-  /// Makes them series of the order N over a length of time.
+  /// Sets all polynomials to order N over a length of time.
   void begin(Real step) {
     each([&](Polynomial<T>& p) {
       p.span = step;
@@ -43,7 +44,7 @@ class SeriesStep {
     position.degree = N + 1;
   }
 
-  /// The part of the step at which the last terms are rounding of the first ones.
+  /// Part of the step at which the last terms are within the rounding of the first terms.
   Real suggested_part() const {
     using detail::exp;
     using detail::log;
@@ -70,28 +71,28 @@ class SeriesStep {
     });
   }
 
-  /// Sums of the sizes of coefficients, from each on to the last.
+  /// Tail sums of the absolute coefficients.
   using Sums = std::array<Real, N + 2>;
   static Sums sums_of(const std::array<T, N + 2>& c) {
     Sums sums{};
     for (int n = N; n >= 0; --n) sums[n] = sums[n + 1] + std::abs(plain(c[n]));
     return sums;
   }
-  /// The sum of the sizes of all over a part of the step.
+  /// Sum of the absolute coefficients over a part of the step.
   static Real size_of(const Polynomial<T>& p, Real part) {
     Real sum{0}, power{1};
     for (int n = 0; n <= N; ++n, power *= part) sum += std::abs(plain(p.c[n])) * power;
     return sum;
   }
-  /// The most that a product of two series comes to beyond its order N.
+  /// Bound of the terms of a product of two series beyond order N.
   static Real beyond(const Sums& p, const Sums& q) {
     Real sum{0};
     for (int i = 1; i <= N; ++i) sum += (p[i] - p[i + 1]) * q[N + 1 - i];
     return sum;
   }
 
-  /// Leaves out the last terms that are rounding of what they are added to, as a short step needs fewer: of
-  /// the velocity and of skin those that are rounding of their rates.
+  /// Removes the last terms that are within rounding of the sums that they enter: for velocity and
+  /// skin, within rounding of their rates.
   void trim() {
     using std::abs;
     int needed = 1;

@@ -1,12 +1,13 @@
-/// The slider of stiff skin without its fast part.
+/// Slow motion of a slider on stiff skin.
 ///
-/// The velocity y of a slider comes within a time ε = φ/D to the one at which the skin stretches as it has to.
-/// Where ε is short, a Taylor series of the whole motion would have steps of a few ε. The motion without its fast
-/// part is the solution of
+/// The slider velocity y reaches its stationary value within a time ε = φ/D. For short ε a Taylor
+/// series of the whole motion would need steps of a few ε. The slow motion without this fast
+/// transient solves
 ///
 ///     D y = K v − E − (φ y)',
 ///
-/// in which (φ y)' comes from the series of the round before, and what is still missing is bounded.
+/// in which (φ y)' comes from the series of the preceding iteration, and the remaining residual is
+/// bounded.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +19,8 @@
 
 namespace pindrive {
 
-/// A step of a pin on such a slider, if that has the velocity of the slow motion, to rounding.
+/// Step of a pin on a slow slider; valid if the slider has the velocity of the slow motion within
+/// rounding.
 template <class T>
 class SlowSliderFlow : public SeriesFlow<T> {
  public:
@@ -27,18 +29,19 @@ class SlowSliderFlow : public SeriesFlow<T> {
   using SeriesStep<T>::x_bound, SeriesStep<T>::v_bound, SeriesStep<T>::skin_bound;
   using SeriesStep<T>::speed_bound, SeriesStep<T>::span;
 
-  /// Whether the fast part of an equation is so much faster than the rest that the rounds converge quickly.
+  /// True if the fast transient is so much faster than the remaining motion that the iteration
+  /// converges quickly.
   static bool stiff(const SeriesEquation<T>& e, const SeriesState<T>& start) {
     const Real decay = plain(e.skin_decay), f = plain(e.skin_factor.value);
     return f > 0 && decay > 4 * N * std::abs(plain(e.skin_factor.rate)) &&
            decay > 4 * N * f * slow_rate(e, start);
   }
 
-  /// Expands it at a state, no farther than the limit (s; may be infinite); or as far, where that is known to be
-  /// within a step.
+  /// Expands the series at a state, up to a limit (s; may be infinite); `within_step`: the limit is
+  /// known to lie within one step.
   SlowSliderFlow(SeriesEquation<T> e, const SeriesState<T>& start, T limit,
                  bool within_step = false) {
-    this->without = FastPart::of_slider;
+    this->eliminated = EliminatedPart::of_slider;
     if (!stiff(e, start)) return;
     const Real step = 1 / slow_rate(e, start), left = plain(limit) / step;
     e.stretching = stretching_.data();
@@ -66,8 +69,8 @@ class SlowSliderFlow : public SeriesFlow<T> {
     if (holds_) this->trim();
   }
 
-  /// Whether the slider moves so, so that the step may be taken.
-  bool holds() const { return holds_; }
+  /// True if the slider follows the slow motion, so that the step may be used.
+  bool is_valid() const { return holds_; }
 
  private:
   using SeriesStep<T>::N, SeriesStep<T>::unit, SeriesStep<T>::sums_of;
@@ -75,7 +78,7 @@ class SlowSliderFlow : public SeriesFlow<T> {
   static constexpr int most_rounds = 16, most_tries = 40;
   static constexpr Real longest = 8, shorter = 0.75;
 
-  /// About the fastest rate of the equation without its fast part: there the skin is a damper φ.
+  /// Estimate of the fastest rate of the slow motion, 1/s; the skin acts as a damper φ.
   static Real slow_rate(const SeriesEquation<T>& e, const SeriesState<T>& start) {
     using std::abs;
     using std::sqrt;
@@ -87,7 +90,7 @@ class SlowSliderFlow : public SeriesFlow<T> {
            SeriesFlow<T>::turning_rate(e, start);
   }
 
-  /// Takes (φ y)' from the series.
+  /// Sets (φ y)' from the series.
   void follow(const SeriesEquation<T>& e, Real step) {
     for (int n = 0; n <= N; ++n) {
       const T grows = n < N ? e.skin_factor.value * skin.c[n + 1] / T(step) : T(0);
@@ -96,16 +99,16 @@ class SlowSliderFlow : public SeriesFlow<T> {
       stretching_[n] = now;
     }
   }
-  /// How much the last round has changed that over a part of the step: what the series of y misses.
+  /// Change of (φ y)' in the last iteration over a part of the step: the residual of the series of
+  /// y.
   Real change(Real part) const {
     Real sum{0}, power{1};
     for (int n = 0; n <= N; ++n, power *= part) sum += changes_[n] * power;
     return sum;
   }
 
-  /// Bounds what the series leave out, from what they miss of the equation: the error of y is at most what pulls it
-  /// back after those of the velocity and of its own equation, and that of the velocity what they pull.
-  /// Whether it is rounding.
+  /// Bounds the truncation errors; true if within rounding. The error of y is at most the restoring
+  /// effect of the velocity error and of the residual of its equation, and conversely.
   bool bound(const SeriesEquation<T>& e, T time, Real missed_skin) {
     using std::abs;
     using std::max;
@@ -141,7 +144,7 @@ class SlowSliderFlow : public SeriesFlow<T> {
            skin_bound <= 8 * unit * sums_of(skin.c)[0];
   }
 
-  /// Whether the slider has that velocity: what it is off by fades at once.
+  /// True if the slider starts with the slow velocity: a deviation decays at once.
   bool starts_from(const SeriesState<T>& start) const {
     using std::abs;
     const Real changes = abs(plain(velocity.c[1])) / span() + abs(plain(skin.c[1])) / span();
