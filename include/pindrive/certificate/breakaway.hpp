@@ -1,4 +1,5 @@
-/// Whether contacts that slip from rest had to: what they would have had to carry to stick.
+/// Check of contacts that start to slip from rest: margin of the stick force that they would have
+/// had.
 #pragma once
 
 #include <algorithm>
@@ -11,20 +12,20 @@
 
 namespace pindrive {
 
-/// The instant at which a segment begins: the pin, the friction on it and the inputs, and which
-/// rigid contacts it is at rest against, to rounding.
+/// Instant at the begin of a segment: pin, friction, inputs, and the rigid contacts with zero
+/// relative velocity within rounding.
 template <class T>
 struct Beginning {
   T x, v, plate_force, finger_force;
   Line<T> plate_velocity;
   T plate_load, finger_load, force;
   bool rests_on_plate, rests_on_finger;
-  bool plate_began, finger_began;  ///< to do what they do
+  bool plate_began, finger_began;  ///< the contact changed its state at this instant
 };
 
-/// What contacts that slip from rest could have carried beyond what they would have had to, N; 0 where
-/// they could not stick. Where the law allows several modes none is preferred: a contact that slips
-/// while the other sticks is not asked.
+/// Margin to the stick limit of contacts that slip from rest, N; 0 if they could not stick. Where
+/// the law allows several modes none is preferred: a contact that slips beside a sticking contact
+/// is not checked.
 template <class T>
 T spare_stick_limit(const Drive<T>& drive, const Mode& mode, const Beginning<T>& now) {
   using std::abs;
@@ -51,12 +52,12 @@ T spare_stick_limit(const Drive<T>& drive, const Mode& mode, const Beginning<T>&
 
 namespace detail {
 
-/// Asks it of the segments of a motion, one after another. Those in which nothing has time to change are one
-/// instant with the next, but for what sticks within its limit however briefly.
+/// Checks the segments of a motion in order. Segments too short for any change count as one instant
+/// with the next segment, except for sticking within the limit.
 template <class T>
 class Breakaways {
  public:
-  /// What contacts that slip from rest as a segment begins could have carried beyond what they had to, N.
+  /// Margin to the stick limit of contacts that slip from rest at the begin of a segment, N.
   template <class Trajectory>
   T spare(const EvaluatedSegment<T, Trajectory>& segment) {
     const Mode& mode = segment.mode();
@@ -71,13 +72,13 @@ class Breakaways {
   }
 
  private:
-  /// What a contact does, and since when.
+  /// State of a contact, and the time since.
   struct Doing {
     ContactState state{ContactState::absent};
     T since{0};
   };
 
-  /// Whether a contact began what it does at this instant.
+  /// True if a contact changed its state at this instant.
   bool began(Doing& doing, ContactState does, T time) const {
     const bool slides_on = doing.state == ContactState::slip_oblique && is_slip(does);
     if (does != doing.state && !slides_on) doing.since = time;
@@ -101,7 +102,7 @@ class Breakaways {
            !(segment.oblique() && turned());
   }
 
-  /// How far within its limit the force is of what sticks, N; 0 where nothing does.
+  /// Margin of the stick force to its limit, N; 0 without stick.
   template <class Trajectory>
   static T within_limit(const EvaluatedSegment<T, Trajectory>& segment, const PinState<T>& s) {
     using std::abs;
@@ -118,7 +119,7 @@ class Breakaways {
     return most - abs(force);
   }
 
-  /// Of a pin in a state, where the plate or the finger has just begun to do what it does.
+  /// Margin at a state of the pin, where plate or finger has just changed its state.
   template <class Trajectory>
   static T spare_at(const EvaluatedSegment<T, Trajectory>& segment, PinState<T> s, bool plate,
                     bool finger) {
@@ -154,7 +155,7 @@ class Breakaways {
   }
 
   Doing plate_{}, finger_{};
-  T instant_{0};  ///< when the instant began that ends where the segment begins
+  T instant_{0};  ///< begin of the instant that ends at the begin of the segment
   bool brief_{false};
 };
 

@@ -1,4 +1,4 @@
-/// What is found of a motion that is held against its laws: the worst violation of each.
+/// Certificate of a motion: largest violation of each law.
 #pragma once
 
 #include <algorithm>
@@ -7,23 +7,23 @@
 
 namespace pindrive {
 
-/// The worst violation of each law, as a part of the largest force, velocity, displacement or
+/// Largest violation of each law, as a fraction of the largest force, velocity, displacement or
 /// energy in the motion.
 template <class T>
 struct Certificate {
   T motion_law{0};  ///< m x'' + b x' + k x = R_plate + R_finger + m v_p'
-  T kinematics{
-      0};  ///< x' and x'' are the derivatives of x; an elastic stick stretches with the pin
+  /// x' and x'' are the derivatives of x; an elastic stick stretches with the pin
+  T kinematics{0};
   T friction_law{0};  ///< a sliding contact carries its kinetic friction
   T force_bound{0};   ///< a stuck contact carries no more than its static friction
   T sliding_sign{0};  ///< friction opposes the sliding; no guard came to zero unseen
   T sticking{0};      ///< a stuck contact does not slide
   T continuity{0};    ///< x and x' do not jump, nor the skin but where it breaks away
   T transitions{0};   ///< a contact slips from rest only where it cannot stick
-  T energy{0};        ///< what goes in, is stored and is dissipated adds up
+  T energy{0};        ///< input, stored and dissipated energy balance
   T dissipation{0};   ///< friction and damper take energy, never give
   T period{0};        ///< a steady motion repeats: difference of x beyond 2 `repeat_tolerance`
-  T steady_since{0};  ///< it did not repeat before: periods that it began too late by, beyond one
+  T steady_since{0};  ///< the steady motion does not begin earlier: delay in periods, beyond one
 
   T worst() const {
     return std::max({motion_law, kinematics, friction_law, force_bound, sliding_sign, sticking,
@@ -31,7 +31,7 @@ struct Certificate {
   }
 };
 
-/// Its laws, by their names in the table of quantities, after "certificate.".
+/// Laws by their names in the table of quantities, after "certificate.".
 template <class T>
 inline constexpr NamedNumber<T, Certificate<T>> certificate_numbers[] = {
     {"motion_law", [](const Certificate<T>& c) { return c.motion_law; }},

@@ -1,8 +1,10 @@
-/// Checks a finished motion against the laws it must obey, without using the solver: no mode is
-/// chosen here and no event looked for; the motion is evaluated and held against docs/theory.md, 1 and 4.
+/// Certifier: checks a finished motion against the laws of motion, without the solver. No mode is
+/// selected and no event located; the motion is evaluated and compared with docs/theory.md,
+/// sections 1 and 4.
 ///
-/// Each segment is walked once. At Gauss nodes the laws are held against the state, and sums over
-/// the nodes give the integrals; between the nodes a bound proves that no guard dips unseen.
+/// Each segment is traversed once. At Gauss nodes the laws are compared with the state, and sums
+/// over the nodes give the integrals; between the nodes a bound proves that no guard becomes
+/// negative unnoticed.
 #pragma once
 
 #include <algorithm>
@@ -59,7 +61,7 @@ class Certifier {
   }
 
  private:
-  /// Holds the samples of a steady motion against its period and its begin.
+  /// Compares the samples of a steady motion with its period and its begin.
   void repetition() {
     using std::abs;
     if (!motion_.outcome().steady()) return;
@@ -79,8 +81,8 @@ class Certifier {
     raise(result_.steady_since, std::max((since - begin) / outcome.period - T(1), T(0)));
   }
 
-  /// How deep, as a part of the largest, a guard may dip between two nodes unseen; and how many
-  /// panels are walked at each end of a segment before what lies between is leapt over.
+  /// Depth, as a fraction of the largest value, to which a guard may be negative between two nodes
+  /// unnoticed; and number of panels at each end of a segment before its middle is skipped.
   static constexpr T unseen = T(1e-10);
   static constexpr int walked = 2048;
 
@@ -109,7 +111,7 @@ class Certifier {
            motion_.stop_energy(s.x);
   }
 
-  /// Keeps the larger of what was found and |error|; infinity for what is not a number.
+  /// Raises a maximum to |error|; infinity for NaN.
   static void raise(T& most, T error) {
     using std::abs;
     const T size = abs(error);
@@ -119,8 +121,8 @@ class Certifier {
     raise(residual, scale > 0 ? error / scale : error);
   }
 
-  /// The largest displacement, velocity and force: where segments begin and end, and within, where
-  /// no wave is that begins and ends at nothing.
+  /// Updates the largest displacement, velocity and force: at the ends of segments, and within
+  /// where needed.
   void scales(const Segment<T>& segment) {
     using std::abs;
     using std::sqrt;
@@ -147,17 +149,17 @@ class Certifier {
 
   // ---- along a segment ---------------------------------------------------------------------------
 
-  /// The largest error of each law in a segment, in its own unit.
+  /// Largest error of each law in a segment, in its own unit.
   struct Errors {
     T law{0}, velocity{0}, friction{0}, sticking{0};
   };
 
-  /// Powers, and the sums of them and of v and a over a panel.
+  /// Powers; sums of the powers and of v and a over a panel.
   struct Sums {
     T v{0}, a{0}, input{0}, damper{0}, plate{0}, finger{0}, stop{0};
   };
 
-  /// Holds the laws all along a segment; its last state.
+  /// Compares the laws along a segment; returns its last state.
   Numbers walk(const Closed& evaluated) {
     const Oscillator<T>& oscillator = evaluated.segment.flow.oscillator;
     const T alpha = oscillator.alpha(), fastest = oscillator.fastest_rate();
@@ -186,7 +188,7 @@ class Certifier {
     return from;
   }
 
-  /// The same for a step of a series, of which all is smooth.
+  /// Compares the laws along a step of a series, whose quantities are all smooth.
   Numbers walk(const Evaluated<BySeries<T>>& evaluated) {
     Errors errors;
     const auto from = evaluated.at(T(0)), to = evaluated.at(evaluated.span);
@@ -250,7 +252,7 @@ class Certifier {
     balance(evaluated, from, to, sums);
   }
 
-  /// Changes against the sums of their rates.
+  /// Compares changes with the sums of their rates.
   template <class Trajectory>
   void balance(const Evaluated<Trajectory>& evaluated, const Numbers& from, const Numbers& to,
                const Sums& sums) {
@@ -262,7 +264,8 @@ class Certifier {
     account(energy(from), energy(to), sums);
   }
 
-  /// The same over the middle of a very long oscillation, in closed form and without guards.
+  /// Compares changes over the middle of a very long oscillation, in closed form and without
+  /// guards.
   void leap(const Closed& evaluated, const ClosedState& from, const ClosedState& to) {
     const Segment<T>& segment = evaluated.segment;
     const Path<T>&v = segment.flow.velocity, plate = segment.plate_force;
@@ -404,8 +407,8 @@ class Certifier {
     raise(gained_, std::min(energy(left) - energy(right), T(0)));
   }
 
-  /// Whether a load that falls to zero is so near to that that the times in which skin follows it are within
-  /// the rounding of the time: those of its slider or of the rounds in which it grips and slips.
+  /// True if a load that falls to zero is so close to zero that the time constants of the skin are
+  /// within the time resolution: of its slider or of its alternations of stick and slip.
   bool lifts_off(const Mode& mode, T v, T time) const {
     using std::abs;
     const Contact<T>& finger = drive_.finger;
@@ -418,8 +421,8 @@ class Certifier {
     return load.value <= known * (finger.stiffness * follows - load.rate);
   }
 
-  /// The largest friction of the finger from a branch of its curve on, under a load of 1: skin becomes
-  /// shorter at once only where no speed carries what it asks.
+  /// Largest friction of the finger from a branch of its curve on, for a load factor of 1, N: skin
+  /// shortens at once only where no speed has the required friction.
   T most_from(int index) const {
     const Contact<T>& finger = drive_.finger;
     if (finger.branches == 0) return finger.kinetic;
@@ -435,8 +438,10 @@ class Certifier {
   T duration_;
   GoOn go_on_;
   detail::Scales<T> scales_{};
-  T balance_{0}, unaccounted_{0}, gained_{0};  ///< J: of the ledger so far, at its worst …
-  T stored_{0}, input_{0}, dissipated_{0};     ///< … and what it is measured against
+  T balance_{0}, unaccounted_{0},
+      gained_{0};  ///< energy balance so far, its largest error and gain, J
+  T stored_{0}, input_{0},
+      dissipated_{0};  ///< scales of the balance: stored, input and dissipated energy, J
   detail::Breakaways<T> breakaways_{};
   Certificate<T> result_{};
 };

@@ -1,5 +1,5 @@
-/// What the mode of a segment keeps positive all along it: speeds against the ends of a branch, stick limits
-/// against forces, the way to a stop or the push of one.
+/// Guards of a segment for the certificate: speeds against the ends of a branch, stick forces
+/// against their limits, distance to a stop or its push.
 #pragma once
 
 #include <algorithm>
@@ -31,12 +31,12 @@ class SegmentGuards {
  public:
   static constexpr int capacity = 6;
 
-  /// A quantity, and the law that is broken where it is negative.
+  /// Guard, and the law that is violated where the guard is negative.
   struct Watch {
     decltype(positive(std::declval<Trajectory>(), std::declval<Quantity>())) guard;
     T Certificate<T>::* law;
     T scale;
-    T known{0};  ///< how well, by the rounding of the time
+    T known{0};  ///< error from the time resolution
   };
 
   explicit SegmentGuards(const Evaluated& segment) : evaluated_(segment), along_(segment.along) {
@@ -86,7 +86,8 @@ class SegmentGuards {
     watches_[count_++] = {positive(along_, path), law, scale, T(0)};
   }
 
-  /// A speed within its branch, whose begin it cannot come to at rest where it has no direction.
+  /// Adds the distance of a speed from the ends of its branch; at the begin of the first branch, a
+  /// speed without a direction is excluded.
   template <class Path>
   void within(const Branch<T>& branch, const Path& speed, bool directed) {
     const T scale = evaluated_.scales.v;
@@ -108,7 +109,7 @@ class SegmentGuards {
     watch(most + force, &Certificate<T>::force_bound, scale);
     watch(most + T(-1) * force, &Certificate<T>::force_bound, scale);
   }
-  /// The way to the end stops or, of an elastic one, its depth and its push.
+  /// Adds the distance to the end stops or, for an elastic stop, its depth and its push.
   void beyond_stops(const Stops<T>& stops, StopState does) {
     if (!stops.present()) return;
     const auto beyond = [&](int end, int sense) {

@@ -28,7 +28,7 @@ void end_with(const Segment<T>& last, Outcome<T>& outcome) {
   } else if (alpha < 0) {
     outcome.end = End::decaying;
   } else if (alpha == 0) {
-    // Released without a relative acceleration it touches the plate's velocity once a period.
+    // After a release with zero relative acceleration, the velocity touches that of the plate once a period.
     const bool grazes = is_slip(last.mode.plate) && flow.velocity.slope == 0 &&
                         flow.velocity.start == last.plate_velocity.value;
     outcome.end = grazes ? End::grazing : End::free;
@@ -146,7 +146,8 @@ class CycleDetector {
     };
     const State<T>&one = earlier.state, &other = now.state;
     const T displaced = apart(one.x, other.x, rounded, length);
-    if (!(displaced < near_return)) return never;  // most events: the rest need not be compared
+    if (!(displaced < near_return))
+      return never;  // most events: the remaining scales need no comparison
     const T omega0 = sqrt(drive_.stiffness / drive_.mass);
     const T speed = earlier.extent.speed();
     T most = std::max(displaced, apart(one.v, other.v, rounded * omega0, speed));
@@ -226,7 +227,7 @@ class CycleDetector {
 
   bool close(const Visit& begin, const Event& now, Outcome<T>& outcome) const {
     outcome.period = (now.time - begin.time) + (now.time_error - begin.time_error);
-    const bool sticks = begin.stuck > T(repeat_tolerance) * outcome.period;  // it does not graze
+    const bool sticks = begin.stuck > T(repeat_tolerance) * outcome.period;  // sticks, not grazes
     outcome.end = sticks ? End::stick_slip : End::limit_cycle;
     outcome.cycle_begin = begin.time;
     return true;

@@ -60,7 +60,7 @@ class SeriesSegment {
     stops_ = equation.held && equation.side == 0 &&
              left <= 4 * rounding<T> * (segment.begin + span) * turns;
     first_ = guards.earliest_known(step.span());
-    // What ends it at once may do so as late as where its step ends, as at a row.
+    // An immediate end may be deferred to the end of the step, as to a breakpoint.
     const T breakpoint = step.span() < span && first_ > 0 ? never : step.span();
     const auto speed_of = [&](bool on_plate) {
       return abs((on_plate ? step.speed : has_slider_state ? step.skin : step.velocity).c[0]);
@@ -82,7 +82,7 @@ class SeriesSegment {
     segment.flow = {{}, {state.x, T(0), T(0)}, {step.velocity.c[0], T(0), T(0), rate}};
     segment.plate_force = {of_plate, T(0), T(0)};
     segment.finger_force = {of_finger, T(0), T(0)};
-    // Of skin whose slider lags, with the rate at which it stretches.
+    // With the stretch rate of skin that has a slider velocity.
     if (has_slider_state) segment.finger_force.drift = finger.force_rate(state.v, T(0)).value;
   }
 
@@ -117,8 +117,8 @@ class SeriesSegment {
     if (finger.elastic()) state.skin = now.skin;
     if (!finger.has_slider_state()) return;
     state.slider_velocity = now.skin;
-    // A pin and a slider whose velocities have faded into the rounding of the position are at rest, which is
-    // known no better than by what these still carry.
+    // Pin and slider are at rest once their velocities are within the rounding of the position; the error of the
+    // position of rest then follows from the remaining forces.
     const T size = std::max(abs(state.x), abs(step.position.c[0]));
     const T still = rounding<T> * size * sqrt(drive.stiffness / drive.mass);
     const T pull = drive.mass * step.velocity.derivative().at(tau) + drive.damping * state.v +

@@ -197,13 +197,13 @@ class Simulation : private Selection<T> {
     pull += stop_.spring_force(s);
     Oscillator<T> oscillator = plain_;
     if (!linear()) {
-      // A damper that falling friction cancels to rounding neither damps nor drives.
+      // Damping cancelled by falling friction within rounding is zero.
       const T known =
           2 * std::numeric_limits<T>::epsilon() * drive_.damping + plate.rounding + finger.rounding;
       if (abs(damping) <= known) damping -= plain(damping);
       oscillator = Oscillator<T>(drive_.mass, damping, stiffness);
     }
-    // A pin without speed on which forces act that cancel, to rounding or to the rest criterion, is at rest.
+    // A pin with zero speed and balanced forces, within rounding or the rest criterion, is at rest.
     const T balanced = std::max(s.force_error, T(rest_tolerance) * drive_.stiffness * abs(s.x));
     if (abs(pull) <= balanced && s.v == 0 && rate == 0)
       return Flow<T>::free(oscillator, s.x, s.v, T(0), T(0), T(0));
@@ -213,7 +213,7 @@ class Simulation : private Selection<T> {
     return Flow<T>::free(oscillator, s.x, s.v, acceleration_, -from_rest / stiffness, drift);
   }
 
-  bool linear() const {  // no contact damps or stiffens
+  bool linear() const {  // no contact adds damping or stiffness
     return !finger_.elastic() && !stop_.is_pushing() && drive_.plate.branches == 0 &&
            drive_.finger.branches == 0;
   }
@@ -268,7 +268,7 @@ class Simulation : private Selection<T> {
     if (breakpoint) come_to_rest();
     bool on_plate = plate_.stuck(), on_finger = finger_.stuck() || stop_.is_holding(),
          known = on_finger;
-    T rest{0};  // velocity of what is on the finger, or at an end of a branch there, if known
+    T rest{0};  // velocity at the finger or at an end of its branch, if known
     for (const Guard<T>& guard : guards_) {
       if (!(guard.zero <= coincident) || apply_stop_guard(guard, breakpoint)) continue;
       ContactPoint& side = guard.plate ? plate_ : finger_;

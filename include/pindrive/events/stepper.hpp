@@ -255,7 +255,7 @@ class Stepper {
       simulation_.plate_.surface.rate = inputs_.mouse_velocity.held().line.rate;
       take_inputs(now_);
       simulation_.stick_limit_side_ = 0;
-      if (simulation_.stop_.rigid()) simulation_.stop_.released = false;  // its push may jump
+      if (simulation_.stop_.rigid()) simulation_.stop_.released = false;  // the push may jump
     } else {
       simulation_.breakpoint_ = now_;
       before_ = segment_.mode;
@@ -325,7 +325,7 @@ class Stepper {
              {},
              {},
              {}};
-    // A quantity that follows a line is looked at for a finite time.
+    // Linear quantities are evaluated over a finite time.
     const bool steady = plate.surface.rate == 0 && plate.load.rate == 0 && finger.load.rate == 0 &&
                         simulation_.force_.rate == 0;
     simulation_.breakpoint_ = std::min({inputs_.plate_load.next_breakpoint(simulation_.time_),

@@ -1,5 +1,5 @@
-/// A quantity along a step as a polynomial, and its first zero with certainty: by its Bernstein
-/// coefficients, which enclose it. Nothing is sampled and nothing can be stepped over.
+/// Polynomial of a quantity along a step, and its first zero with certainty: Bernstein coefficients
+/// enclose the values, so that no zero can be stepped over.
 #pragma once
 
 #include <algorithm>
@@ -11,10 +11,10 @@
 
 namespace pindrive {
 
-/// The highest order of a series. A step is then about a fifth of the radius of convergence.
+/// Highest order of a series. A step is then about a fifth of the radius of convergence.
 inline constexpr int series_order = 24;
 
-/// A quantity along a step: c₀ + c₁ σ + … of σ = τ/span, 0 <= σ <= 1.
+/// Quantity along a step: c₀ + c₁ σ + … with σ = τ/span, 0 <= σ <= 1.
 template <class T>
 struct Polynomial {
   using Real = detail::Real<T>;
@@ -23,21 +23,21 @@ struct Polynomial {
   int degree{0};
   Real span{1};  ///< s
 
-  /// Its value τ after the step began.
+  /// Value τ after the begin of the step.
   T at(T tau) const {
     const T s = tau / span;
     T sum = c[degree];
     for (int n = degree; n-- > 0;) sum = sum * s + c[n];
     return sum;
   }
-  /// A bound of it over the step.
+  /// Bound of the absolute value over the step.
   T size() const {
     using std::abs;
     T sum{0};
     for (int n = 0; n <= degree; ++n) sum += abs(c[n]);
     return sum;
   }
-  /// Its rate, per second.
+  /// Derivative by time, per second.
   Polynomial derivative() const {
     Polynomial rate;
     rate.span = span;
@@ -62,7 +62,7 @@ struct Polynomial {
     for (int n = 0; n <= p.degree; ++n) p.c[n] *= factor;
     return p;
   }
-  /// Its degree is below the highest that there is.
+  /// Product with a line; the degree of the polynomial is below the highest order.
   friend Polynomial operator*(const Line<T>& line, Polynomial p) {
     if (line.rate != 0) p.c[++p.degree] = T(0);
     for (int n = p.degree; n >= 0; --n)
@@ -73,8 +73,8 @@ struct Polynomial {
 
 namespace detail {
 
-/// The Bernstein coefficients on [0, 1] of a polynomial in powers: its values lie between the least and the
-/// largest of them, and at both ends it is the first and the last.
+/// Bernstein coefficients on [0, 1] of a polynomial in powers. The values lie between the smallest
+/// and the largest coefficient; the first and the last are the values at the ends.
 template <class Real>
 std::array<Real, series_order + 2> bernstein(const std::array<Real, series_order + 2>& powers,
                                              int degree) {
@@ -89,7 +89,7 @@ std::array<Real, series_order + 2> bernstein(const std::array<Real, series_order
   return b;
 }
 
-/// Makes of those of an interval those of its halves, by de Casteljau's scheme.
+/// Subdivides an interval into halves by its Bernstein coefficients (de Casteljau).
 template <class Real>
 void halve(std::array<Real, series_order + 2>& upper, std::array<Real, series_order + 2>& lower,
            int degree) {
@@ -99,8 +99,8 @@ void halve(std::array<Real, series_order + 2>& upper, std::array<Real, series_or
   }
 }
 
-/// The lowest value found on an interval, or at its ends; it dips no deeper below zero than that, or than
-/// `unseen`. What is not proven by so many halvings may dip as deep as its lowest coefficient.
+/// Lowest value found on an interval, or at its ends. The true minimum is no lower below zero than
+/// this value or `unseen`; after the last bisection the lowest coefficient bounds the minimum.
 template <class Real>
 Real lowest(const std::array<Real, series_order + 2>& b, int degree, Real unseen, int halvings) {
   const Real ends = std::min(b[0], b[degree]);
@@ -113,18 +113,19 @@ Real lowest(const std::array<Real, series_order + 2>& b, int degree, Real unseen
                   lowest(upper, degree, unseen, halvings - 1));
 }
 
-/// Where a polynomial on [0, 1] changes its sign, by its Bernstein coefficients, which enclose its values:
-/// nowhere while they have one sign, once where they change it once; else the interval is halved.
+/// Sign changes of a polynomial on [0, 1] from its Bernstein coefficients, which enclose the
+/// values: none for coefficients of one sign, one for one change of sign; else the interval is
+/// bisected.
 template <class Real>
 class SignIsolation {
  public:
   using Coefficients = std::array<Real, series_order + 2>;
 
-  /// The powers' coefficients of a polynomial, and its sign just after 0.
+  /// Takes the coefficients of a polynomial, and its sign just after 0.
   SignIsolation(const Coefficients& powers, int degree, int side)
       : powers_(powers), degree_(degree), side_(side) {}
 
-  /// Calls visit(σ) at each change in order, until it returns false.
+  /// Calls visit(σ) at each change in order, until visit returns false.
   template <class Visitor>
   void each(Visitor&& visit) {
     Real rest{0};
@@ -145,7 +146,8 @@ class SignIsolation {
     return visit(at);
   }
 
-  /// In [low, low + width]; at `left_`, at most `low`, the polynomial was last known to be on its side.
+  /// Isolates in [low, low + width]; at `left_`, at most `low`, the polynomial was last on its
+  /// side.
   template <class Visitor>
   bool search(const Coefficients& b, Real low, Real width, Visitor& visit) {
     if (beyond(b[0]) && !change(left_ < low ? root(left_, low) : low, low, visit)) return false;
@@ -162,7 +164,7 @@ class SignIsolation {
     return true;
   }
 
-  /// The zero in a bracket, beyond at `high` alone: Newton's iteration, kept inside.
+  /// Zero in a bracket, by Newton's iteration, kept inside.
   Real root(Real low, Real high) const {
     Real s = low + (high - low) / 2;
     for (int tries = 0; tries < 200 && low < s && s < high; ++tries) {
@@ -189,9 +191,9 @@ class SignIsolation {
 
 }  // namespace detail
 
-/// Calls visit(τ) where a polynomial changes its sign in (0, span], in order, until it returns false.
-/// `side` is its sign just after τ = 0: a start at zero, or put beyond it by rounding, is left to that
-/// side and is no change, and so is one at which the rate is zero or beyond, too.
+/// Calls visit(τ) at each sign change of a polynomial in (0, span], in order, until visit returns
+/// false. `side` is the sign just after τ = 0: a start at zero, or beyond zero by rounding, belongs
+/// to this side and is no change; neither is a start with a rate of zero or of the wrong sign.
 template <class T, class Visitor>
 void sign_changes(const Polynomial<T>& p, int side, Visitor&& visit) {
   using Real = detail::Real<T>;
@@ -209,14 +211,14 @@ void sign_changes(const Polynomial<T>& p, int side, Visitor&& visit) {
   });
 }
 
-/// The lowest value of a polynomial over its span, for a quantity that must not be negative: it dips no
-/// deeper below zero than that, or than `unseen`.
+/// Lowest value of a polynomial over its span, for a quantity that must not be negative: the true
+/// minimum is no lower below zero than this value or `unseen`.
 template <class T>
 T lowest(const Polynomial<T>& p, T unseen) {
   return detail::lowest(detail::bernstein(p.c, p.degree), p.degree, unseen, 40);
 }
 
-/// What its size stays below over its span: its values lie among its Bernstein coefficients.
+/// Bound of the absolute value over the span, from the Bernstein coefficients.
 template <class T>
 T largest_size(const Polynomial<T>& p) {
   const auto b = detail::bernstein(p.c, p.degree);
@@ -225,8 +227,8 @@ T largest_size(const Polynomial<T>& p) {
   return most;
 }
 
-/// The earliest τ in (0, span] at which a guard becomes negative; infinity if there is none. It is
-/// positive just after τ = 0, as the mode has chosen.
+/// Earliest τ in (0, span] at which a guard becomes negative; infinity if none. The guard is
+/// positive just after τ = 0, by the choice of the mode.
 template <class T>
 T first_zero(const Polynomial<T>& guard) {
   T first = std::numeric_limits<T>::infinity();

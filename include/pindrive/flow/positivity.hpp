@@ -1,4 +1,4 @@
-/// Proves that a quantity of a mode does not become negative, without looking for its roots.
+/// Proof that a quantity of a mode does not become negative, without its roots.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,8 @@
 
 namespace pindrive {
 
-/// What must stay positive along a mode: a speed against a bound, a stick limit against a force.
+/// Quantity that must stay positive along a mode: distance of a speed from the end of its branch,
+/// margin to the stick limit.
 template <class T>
 class PositivityBound {
  public:
@@ -17,7 +18,7 @@ class PositivityBound {
   PositivityBound(const Oscillator<T>& oscillator, const Path<T>& path)
       : path_(path), rate_(path.derivative(oscillator)) {}
 
-  /// Its value and slope at a time.
+  /// Value and slope at a time.
   struct Sample {
     T tau, value, slope;
   };
@@ -25,14 +26,15 @@ class PositivityBound {
     return {moved.tau, path_.at(moved), rate_.at(moved)};
   }
 
-  /// The largest size of its third and fourth derivatives.
+  /// Bounds of the third and fourth derivative.
   struct Flatness {
     T third{0}, fourth{0};
   };
-  /// Over a length from a time on. Both derivatives oscillate freely, and a free oscillation y stays
-  /// below (|y| + |y'| min(τ, 1/ω₀)) e^(2ατ), without the growth where α <= 0: its energy
-  /// (y'² + ω₀² y²)/2 changes by 2α y'². Where two real rates lie far apart, each wave is bounded by
-  /// itself: the rounding of their sum would count as much of the fast one.
+  /// Bounds over a length from a time on. Both derivatives are free oscillations, and a free
+  /// oscillation y stays below (|y| + |y'| min(τ, 1/ω₀)) e^(2ατ), without the growth where α <= 0:
+  /// its energy (y'² + ω₀² y²)/2 changes by 2α y'². Where two real rates lie far apart, each
+  /// exponential is bounded separately, as rounding of their sum would be amplified by the fast
+  /// one.
   Flatness flatness(const Oscillator<T>& oscillator, const Propagator<T>& moved, T from,
                     T length) const {
     using detail::exp;
@@ -61,10 +63,10 @@ class PositivityBound {
     return {(abs(y3) + abs(y4) * reach) * growth, (abs(y4) + abs(y5) * reach) * growth};
   }
 
-  /// The lowest value found between two times, or at either; it dips no deeper below zero than
-  /// that, or than `unseen`. Proven where it is monotone, or where the cubic through both ends (by
-  /// its Bernstein coefficients), less what the guard can differ from it, stays above; else halved, so
-  /// many times in all. What is not proven by then may dip as deep as that bound.
+  /// Lowest value found between two times, or at either. The true minimum is no lower below zero
+  /// than this value or `unseen`. Proven if the quantity is monotone, or if the cubic through both
+  /// ends (by its Bernstein coefficients) minus the interpolation error is above; else bisected.
+  /// After the last bisection that bound is returned.
   T lowest(const Oscillator<T>& oscillator, const Sample& a, const Sample& b,
            const Flatness& flatness, T unseen) const {
     int halvings = most_halvings;

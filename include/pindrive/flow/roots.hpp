@@ -1,8 +1,8 @@
-/// Every root of a damped sinusoid plus a line, in order and with certainty: by isolation.
+/// Roots of a damped sinusoid plus a line, all, in order and with certainty, by isolation.
 ///
-/// A guard  G(τ) = oscillation + constant + D τ  is monotone between the zeros of G', G' is monotone
-/// between the zeros of G'', and the zeros of G'' are known in closed form. So each root lies alone
-/// in a bracket whose ends differ in sign; nothing is sampled and nothing can be stepped over.
+/// A guard  G(τ) = oscillation + constant + D τ  is monotone between the zeros of G', G' is
+/// monotone between the zeros of G'', and the zeros of G'' are known in closed form. So each root
+/// lies alone in a bracket with different signs at its ends; no root can be stepped over.
 #pragma once
 
 #include <algorithm>
@@ -14,13 +14,13 @@
 
 namespace pindrive {
 
-/// How a root depends on what the path depends on; of plain numbers there is nothing to say.
+/// Derivative of a root; plain numbers have none.
 template <class T>
 struct Rooted {
   static T at(const Oscillator<T>&, const Path<T>&, T root) { return root; }
 };
 
-/// A root moves so that its path stays at zero, however it was found: dτ = −dG / G'.
+/// Derivative of a root from its path: dτ = −dG / G'.
 template <class T>
 struct Rooted<Dual<T>> {
   static Dual<T> at(const Oscillator<Dual<T>>& oscillator, const Path<Dual<T>>& path,
@@ -32,9 +32,9 @@ struct Rooted<Dual<T>> {
   }
 };
 
-/// The one root in a bracket where the path is monotone, of sign `side` at `low`, not at `high`, by
-/// Newton's iteration and, where it is near, Householder's: beside the value of a damped sinusoid
-/// its derivatives cost next to nothing. Such a step leaves of an error its fourth power.
+/// Root in a bracket where the path is monotone, with sign `side` at `low` and not at `high`, by
+/// Newton's iteration and, close to the root, Householder's of order 3: the derivatives of a damped
+/// sinusoid are cheap beside its value.
 template <class T>
 T root_between(const Oscillator<T>& oscillator, const Path<T>& path, T low, T high, int side,
                T guess) {
@@ -74,8 +74,8 @@ T root_between(const Oscillator<T>& oscillator, const Path<T>& path, T low, T hi
   return root_between(oscillator, path, low, high, side, low);
 }
 
-/// The path with the zeros that its side declares made exact, changed as little as that takes: a slope to
-/// the other side was rounded, or the start was and the path turns back within its rounding.
+/// Path with exact zeros as its side implies, with the least change: a slope of the wrong sign is
+/// rounding, or the start is and the path turns back within its rounding.
 template <class T>
 Path<T> exact_at_start(const Oscillator<T>& oscillator, Path<T> path, int side) {
   using std::sqrt;
@@ -92,8 +92,8 @@ Path<T> exact_at_start(const Oscillator<T>& oscillator, Path<T> path, int side) 
   return path;
 }
 
-/// The path with a centre that is rounding made exact: a wave that dies out towards its zero does not
-/// end on one side of it by chance.
+/// Path with a zero centre if the centre is within rounding: a wave that decays towards zero does
+/// not end on one side by chance.
 template <class T>
 Path<T> exact_at_centre(Path<T> path) {
   using std::abs;
@@ -103,7 +103,7 @@ Path<T> exact_at_centre(Path<T> path) {
   return path;
 }
 
-/// The earliest τ > 0 at which start + drift·τ + curvature·τ²/2, on its side before, leaves it.
+/// Earliest τ > 0 at which start + drift·τ + curvature·τ²/2 leaves its side.
 template <class T>
 T parabola_root(Path<T> path, int side) {
   using std::sqrt;
@@ -117,12 +117,12 @@ T parabola_root(Path<T> path, int side) {
   return root > 0 ? root : never;
 }
 
-/// The sign changes of a path in (0, horizon], one by one; infinity when there are no more.
-/// Degree 1: an oscillation with a constant; 2: with a line too (the horizon is finite then).
+/// Sign changes of a path in (0, horizon], one by one; infinity after the last. Degree 1: an
+/// oscillation with a constant; 2: with a line too (finite horizon).
 ///
-/// `side` is the sign of the path just after τ = 0, which the mode has chosen: a path that starts
-/// at its zero, or tangentially to it, leaves it to that side, and that zero is no root. Where
-/// rounded numbers contradict the side, they are rounding.
+/// `side` is the sign of the path just after τ = 0, given by the mode: a path that starts at zero,
+/// or tangentially, leaves zero to this side, and its start is no root. Rounded numbers that
+/// contradict the side are corrected.
 template <class T, int Degree>
 class Roots {
  public:
@@ -176,7 +176,7 @@ class Roots {
 
   bool shrinks() const { return Degree == 1 && oscillator_.alpha() <= 0; }
 
-  /// Whether it moves away from zero until its next extremum, whose time is a closed form.
+  /// True if the path moves away from zero until its next extremum, whose time is a closed form.
   bool recedes() const { return Degree == 1 && !approaching_; }
 
   T slope() const { return path_.slope + path_.drift; }
@@ -187,7 +187,7 @@ class Roots {
     return oscillator_.bend(path_.value, path_.slope) > 0 ? 1 : -1;
   }
 
-  /// The last extremum of a growing oscillation that still turns back before zero.
+  /// Last extremum of a growing oscillation that turns back before zero.
   T skip_short_swings(T value) {
     using detail::log;
     using std::abs;
@@ -201,9 +201,8 @@ class Roots {
     return std::min(extremum_, horizon_);
   }
 
-  /// The path is monotone up to here: to its next extremum, to the horizon or, where there is
-  /// neither, as far as shows whether it comes to zero. A growing one is followed in strides that
-  /// do not overflow.
+  /// End of the monotone bracket: next extremum, horizon or, without either, a time that decides
+  /// whether the path reaches zero. A growing path is evaluated in strides that do not overflow.
   T end_of_bracket() {
     const T right = std::min(extremum_, horizon_);
     if (recedes()) return right < never ? right : left_;
@@ -226,7 +225,7 @@ class Roots {
   bool exhausted_;
 };
 
-/// Degree 0, a pure oscillation: its zeros are known in closed form.
+/// Degree 0, a pure oscillation: zeros in closed form.
 template <class T>
 class Roots<T, 0> {
  public:
@@ -239,7 +238,7 @@ class Roots<T, 0> {
     count_ += 1;
     return zero <= horizon_ ? zero : std::numeric_limits<T>::infinity();
   }
-  /// Passes over so many zeros, an even number, from the last one returned to the one returned now.
+  /// Skips an even number of zeros after the last zero returned.
   T skip(T zeros) {
     count_ += zeros - 1;
     return next();
@@ -252,8 +251,8 @@ class Roots<T, 0> {
   T count_{0};
 };
 
-/// How long an oscillation cannot bring a path, whose line is on its side, to zero. A growing one is
-/// given half of the way between them, the line the other half.
+/// Time during which an oscillation cannot bring a path, whose line is on its side, to zero. A
+/// growing oscillation gets half of the distance, the line the second half.
 template <class T>
 T out_of_reach(const Oscillator<T>& oscillator, const Path<T>& path, int side) {
   using detail::hypot;
@@ -268,7 +267,7 @@ T out_of_reach(const Oscillator<T>& oscillator, const Path<T>& path, int side) {
   return approach > 0 ? std::min(grown, distance / (2 * approach)) : grown;
 }
 
-/// Whether a decaying oscillation about a constant on its side is too small to bring it to zero.
+/// True if a decaying oscillation about a constant on its side is too small to reach zero.
 template <class T>
 bool too_small(const Oscillator<T>& oscillator, const Path<T>& path, int side) {
   const T sine = path.slope - oscillator.alpha() * path.value;
@@ -277,7 +276,7 @@ bool too_small(const Oscillator<T>& oscillator, const Path<T>& path, int side) {
   return side * distance > 0 && sine * sine + cosine * cosine < distance * distance;
 }
 
-/// Calls visit(τ) at each sign change of a path in (0, horizon], until it returns false.
+/// Calls visit(τ) at each sign change of a path in (0, horizon], until visit returns false.
 template <class T, class Visitor>
 void each_root(const Oscillator<T>& oscillator, const Path<T>& given, int side, T horizon,
                Visitor&& visit) {
@@ -303,7 +302,7 @@ void each_root(const Oscillator<T>& oscillator, const Path<T>& given, int side, 
   }
 }
 
-/// The earliest τ in (0, horizon] at which the path leaves its side, else infinity.
+/// Earliest τ in (0, horizon] at which the path leaves its side, else infinity.
 template <class T>
 T first_root(const Oscillator<T>& oscillator, const Path<T>& path, int side, T horizon) {
   constexpr T never = std::numeric_limits<T>::infinity();
@@ -340,8 +339,8 @@ T first_root(const Oscillator<T>& oscillator, const Path<T>& path, int side, T h
   }
 }
 
-/// The sign of a path just after τ = 0; 0 if it stays zero. A second derivative that is the rounding
-/// of its terms is none: then the third decides.
+/// Sign of a path just after τ = 0; 0 if the path stays zero. A second derivative within the
+/// rounding of its terms is zero; the third derivative then decides.
 template <class T>
 int side_after_start(const Oscillator<T>& oscillator, const Path<T>& path) {
   using std::abs;

@@ -1,19 +1,20 @@
-/// Many plain releases at once: rigid Coulomb contacts at both surfaces, a mouse of constant velocity,
-/// less than critical damping. The same text follows one drive, a pack of drives, or is a GPU thread.
+/// Kernel for many standard releases at once: rigid Coulomb contacts at both surfaces, constant
+/// mouse velocity, less than critical damping. One text serves a drive, a pack of drives, and a GPU
+/// thread.
 ///
-/// Between two events the pin turns about a fixed centre: c_A, c_B or c_C = (∓F_p ∓ F_f)/k, while it is
-/// faster than the plate, between plate and finger, or moves backward. From one rest to the next it
-/// takes half a turn, which costs one multiplication: x − c becomes −q (x − c). Where a half turn comes
-/// up to the plate's velocity, the pin passes the plate or is carried by it.
+/// Between two events the pin oscillates about a fixed centre: c_A, c_B or c_C = (∓F_p ∓ F_f)/k
+/// while the pin is faster than the plate, between plate and finger, or moves backward. From one
+/// turning point to the next takes half a period, which costs one multiplication: x − c becomes −q
+/// (x − c). If the velocity reaches that of the plate within half a period, the pin overtakes the
+/// plate or sticks to it.
 ///
-/// A motion is followed in rounds. The first one begins at the release, each later one as the pin comes
-/// up to the plate, or is faster from the start; a round ends as the pin stays at rest, or before it
-/// comes up to the plate again. Those that need another round are gathered beforehand, so that no pack
-/// works for one of them alone.
+/// A motion is divided into rounds. The first round begins at the release, each later one as the
+/// velocity of the pin reaches that of the plate, or exceeds it from the start; a round ends at
+/// permanent rest, or before the velocity of the plate is reached again. Releases that need another
+/// round are gathered first, so that packs stay full.
 ///
-/// A release is given up, and left to the general core, where it is not plain, where rounding could
-/// decide what comes next, where it repeats a cycle of carrying and sliding for ever, and where it
-/// takes too many half turns or rounds.
+/// A release is left to the general core if it is not standard, if rounding could decide the next
+/// event, if a stick-slip cycle repeats for ever, and if it needs too many half periods or rounds.
 #pragma once
 
 #include "pindrive/kernel/kernel_progress.hpp"
@@ -21,25 +22,25 @@
 namespace pindrive::detail {
 inline namespace PINDRIVE_TARGET {
 
-/// How close to the plate's velocity, as a part of it, an extremum of the velocity may come: closer,
-/// and the time of the event hangs on less than half of the digits.
+/// Smallest distance of an extremum of the velocity from the plate velocity, relative to the
+/// latter: closer, the time of the event has less than half of the digits.
 inline constexpr double near_grazing = 1e-9;
-/// Half turns that are followed; each costs a few operations, of a whole pack if one drive needs it.
+/// Half periods evaluated; each costs a few operations, of a whole pack if one drive needs it.
 inline constexpr int most_half_turns = 4096;
-/// Rounds that are followed before a release is left to the general core.
+/// Rounds evaluated before a release is left to the general core.
 inline constexpr int most_rounds = 1 << 18;
 
-/// A round, from and to a progress. `Later`: not the first one.
+/// Round, from one progress to the next. `Later`: not the first round.
 template <class V, bool Later, bool Measured>
 class Round {
  public:
   using Mask = MaskOf<V>;
 
-  /// From the release, unless its progress is changed.
+  /// Starts from the release, unless the progress is changed.
   explicit Round(const ForwardRelease<V>& release)
       : r_(release), w_(release.swing), progress_(release), given_up_(!release.plain) {}
 
-  /// As far as it takes to be at rest the first time, where it then stays or turns.
+  /// Advances to the first turning point, where the pin rests or turns.
   void to_first_rest() {
     x_ = progress_.standing.position;
     v_ = progress_.standing.velocity;
@@ -53,7 +54,7 @@ class Round {
     if (any(carried_)) carry();
     if (any(falling_)) come_to_rest();
   }
-  /// From there to the end of the round.
+  /// Advances to the end of the round.
   void to_end() {
     if (any(still_)) decay();
     if (any(late_)) finish();
@@ -65,7 +66,7 @@ class Round {
 
   Progress<V, Measured>& progress() { return progress_; }
   Mask given_up() const { return given_up_; }
-  /// Those that need another round; the others are where they end.
+  /// Releases that need another round; all further releases have ended.
   Mask goes_on() const { return goes_on_ & !given_up_; }
   Mask resting() const { return resting_; }
   const LastTurns<V>& last_turns() const { return last_; }
@@ -100,7 +101,7 @@ class Round {
     }
   }
 
-  /// The same of those whose velocity is not the plate's.
+  /// Starts releases whose velocity differs from that of the plate.
   void start_off_plate(const Mask& plain, const Mask& at_plate) {
     const V zero(0.0), vp = r_.vp;
     const Mask faster = plain & (vp < v_), backward = plain & (v_ < zero);
@@ -125,7 +126,7 @@ class Round {
 
   // ---- from event to event -----------------------------------------------------------------------
 
-  /// Sliding forward, it comes up to the plate.
+  /// Advances a pin that slides forward to the plate velocity.
   void meet_plate() {
     const PastTurn<V> before = past_turn(r_.vp / rise_.velocity, V(0.0) - w_.rho);
     const V carrying = slide_to_plate(rising_, rise_, rise_.angle - before.angle,
@@ -140,7 +141,7 @@ class Round {
     acceleration_ = select(passes, (V(0.0) - r_.fp - carrying) * r_.per_mass, acceleration_);
   }
 
-  /// Faster than the plate, it comes back to its velocity.
+  /// Advances a pin faster than the plate back to the plate velocity.
   void outrun_plate() {
     const Extreme most = w_.extreme_velocity(v_, acceleration_, V(1.0));
     const PastTurn<V> past = past_turn(r_.vp / most.velocity, w_.rho);
@@ -158,7 +159,7 @@ class Round {
     falls(on & !held & !given_up_, (r_.fp - carrying) * r_.per_mass);
   }
 
-  /// The plate carries it until the force is at its limit.
+  /// Advances a pin stuck to the plate until its stick force reaches the limit.
   void carry() {
     const Mask now = carried_;
     const V to = (r_.sp - r_.drag - r_.ff) * r_.flexibility;
@@ -180,7 +181,7 @@ class Round {
     falls(on & !given_up_, (r_.fp - r_.sp) * r_.per_mass);
   }
 
-  /// Sliding slower than the plate or backward, its velocity comes to zero.
+  /// Advances a pin slower than the plate, or moving backward, to zero velocity.
   void come_to_rest() {
     const auto turn = w_.next_turn(v_, acceleration_);
     const V time = turn.angle * w_.per_omega;
@@ -195,8 +196,8 @@ class Round {
     still_ = still_ | on;
   }
 
-  /// From rest to rest, each half turn shorter than the one before by the same linear law, until it
-  /// stays, the time is over, or it comes up to the plate.
+  /// Advances from turning point to turning point, each half period shorter by one linear law,
+  /// until rest, the end of the duration, or the plate velocity.
   void decay() {
     const V zero(0.0), one(1.0), infinite(__builtin_inf());
     // Distances from where the plate's friction and the spring cancel.
@@ -272,7 +273,7 @@ class Round {
     goes_on_ = goes_on_ | (moves_on & !late);
   }
 
-  /// Where it is at the end of the duration.
+  /// Sets the state at the end of the duration.
   void finish() {
     const Mask slides = late_ & !carried_late_;
     const V left = r_.until - t_;
@@ -300,7 +301,7 @@ class Round {
   Mask grazes(const V& fastest) const {
     return !(V(near_grazing) * r_.vp < absolute(fastest - r_.vp));
   }
-  /// Which of those that are followed do not come to their event before the end of the duration.
+  /// Mask of releases whose next event is after the end of the duration.
   Mask too_late(const Mask& which, const V& time) {
     const V event = t_ + time;
     give_up(which & !(V(near_tie) * event < absolute(r_.until - event)));
@@ -309,8 +310,8 @@ class Round {
     return late | (which & given_up_);
   }
 
-  /// To the plate's velocity, an angle on and with an acceleration there; `most` is the extreme of the
-  /// velocity on the way. The force on the plate if it carries the pin.
+  /// Slides to the plate velocity over an angle, with an acceleration there; `most` is the extreme
+  /// of the velocity in between. Returns the stick force of a pin that sticks to the plate.
   V slide_to_plate(const Mask& which, const Extreme& most, const V& angle, const V& acceleration) {
     const V time = angle * w_.per_omega;
     const Mask on = which & !too_late(which, time);
@@ -328,7 +329,7 @@ class Round {
     }
     return r_.carrying(x_);
   }
-  /// Down from the plate's velocity.
+  /// Slides with falling velocity from the plate velocity.
   void falls(const Mask& which, const V& acceleration) {
     falling_ = falling_ | which;
     centre_ = select(which, r_.between, centre_);
@@ -340,13 +341,13 @@ class Round {
     x_ = select(which, position, x_);
     pass_time(which, time);
   }
-  /// Adds to the time and keeps what its rounding leaves out (Kahan 1965).
+  /// Adds to the time with its rounding error (Kahan 1965).
   void pass_time(const Mask& which, const V& time) {
     const V passed = time + t_error_, sum = t_ + passed;
     t_error_ = select(which, passed - (sum - t_), t_error_);
     t_ = select(which, sum, t_);
   }
-  /// The velocities of a slide that lasts for a time from now on: where it starts, and its extreme.
+  /// Records the velocities of a slide of a given duration: start and extreme.
   void watch(const Mask& which, const V& time) {
     progress_.numbers.consider(which, t_, v_);
     const V heading = select(v_ == V(0.0), acceleration_, v_), side = with_sign(V(1.0), heading);
@@ -360,7 +361,7 @@ class Round {
   Progress<V, Measured> progress_;
 
   V x_, v_, t_, t_error_, centre_{0.0}, acceleration_{0.0};
-  Extreme rise_{V(1.0), V(1.0)};  ///< of a velocity that comes up to the plate's
+  Extreme rise_{V(1.0), V(1.0)};  ///< extreme of a velocity that reaches that of the plate
   Mask still_{false}, rising_{false}, above_{false}, carried_{false}, falling_{false};
   Mask resting_{false}, late_{false}, carried_late_{false}, goes_on_{false};
   Mask given_up_{false};

@@ -1,22 +1,22 @@
-/// Blocks of plain releases, followed in packs, round by round: those that need another round are
-/// gathered for it, so that packs stay full.
+/// Blocks of standard releases, simulated in packs, round by round. Releases that need another
+/// round are gathered, so that packs stay full.
 #pragma once
 
 #include "pindrive/kernel/kernel.hpp"
 
 namespace pindrive::detail {
 
-/// What is asked of the releases of a block.
+/// Requested output of a block.
 enum class Asked : signed char { state, numbers, settling };
 
-/// Releases and what became of them, one in each slot; columns as in PlainRelease, and these.
+/// Releases and results, one per slot; columns as in PlainRelease, followed by these.
 struct KernelBlock {
-  static constexpr int capacity = 1024, widest = 16;  ///< slots; those of a pack
-  /// From a column to the next: not a power of two, which would put all columns in the same few sets
-  /// of the processor's cache.
+  static constexpr int capacity = 1024, widest = 16;  ///< number of slots; largest number in a pack
+  /// Distance between columns: not a power of two, which would map all columns to few sets of the
+  /// cache.
   static constexpr int stride = capacity + widest;
   static constexpr int inputs = 14, most_progress = 26;
-  /// Of the output: a PlainNumber, or of the state.
+  /// Columns of the output for the state; else PlainNumber.
   enum State : signed char {
     rest_position = PlainNumber::count,
     final_position,
@@ -26,16 +26,16 @@ struct KernelBlock {
   };
 
   double input[inputs][stride];
-  double* output[columns];  ///< where each goes, slot by slot; null where it is not asked for
-  bool given_up[capacity];  ///< left to the general core
-  bool unsure[capacity];    ///< the same of the settling time alone, where that is asked for
+  double* output[columns];  ///< destination of each column, slot by slot; null if not requested
+  bool given_up[capacity];  ///< true: left to the general core
+  bool unsure[capacity];    ///< true: settling time left to the general core, if requested
 
-  double progress[most_progress][stride];  ///< of those that need another round
-  double rest[stride];                     ///< of those that are followed again, knowing it
+  double progress[most_progress][stride];  ///< progress of releases that need another round
+  double rest[stride];  ///< place of rest of releases simulated again with this knowledge, m
 };
 
-inline constexpr int no_column = -1;  ///< of the output: a number that plain releases do not have
-/// Where the output has each of the transient_numbers, in their order.
+inline constexpr int no_column = -1;  ///< column of a number that standard releases do not have
+/// Columns of the transient_numbers in the output, in their order.
 inline constexpr int transient_columns[] = {
     PlainNumber::peak_displacement,
     PlainNumber::peak_time,
@@ -83,11 +83,11 @@ inline constexpr int transient_columns[] = {
 
 inline namespace PINDRIVE_TARGET {
 
-/// The slots of a pack: consecutive ones, or of a list.
+/// Slots of a pack: consecutive, or from a list.
 struct Slots {
   int first;
-  const int* list;  ///< or null
-  int size;         ///< of which so many count
+  const int* list;  ///< list of slots; null if consecutive
+  int size;         ///< number of valid slots
   int operator[](int i) const { return list ? list[i] : first + i; }
 #ifdef __GNUC__
   __attribute__((noinline))
@@ -97,7 +97,7 @@ struct Slots {
   }
 };
 
-/// A list of slots to be taken up later.
+/// List of slots for a later round.
 struct SlotList {
   int slots[KernelBlock::capacity + KernelBlock::widest];
   int size{0};
@@ -111,11 +111,11 @@ struct SlotList {
   }
 };
 
-/// A round of a pack, in two parts.
+/// Round of a pack, in two parts.
 template <class V, bool Later, bool Measured>
 class PackRound {
  public:
-  /// `knows_rest`: where these come to rest, from the block.
+  /// Loads a pack; `knows_rest`: with the place of rest from the block.
   PackRound(const KernelBlock& block, const Slots& slots, bool knows_rest)
       : slots_(slots), release_(release(block, slots)), round_(release_) {
     auto& progress = round_.progress();
@@ -131,8 +131,8 @@ class PackRound {
     round_.to_first_rest();
   }
 
-  /// Those that need another round are added to `later`; those of which the settling time asks for the
-  /// place of rest beforehand, to `again`.
+  /// Stores a pack. Releases that need another round are added to `later`; releases whose settling
+  /// time needs the place of rest first, to `again`.
   void finish(KernelBlock& block, bool settling, SlotList& later, SlotList& again) {
     constexpr double none = __builtin_nan("");
     round_.to_end();
@@ -212,7 +212,7 @@ class PackRound {
   Round<V, Later, Measured> round_;
 };
 
-/// A round of `count` slots: of a list, or the first ones.
+/// Simulates a round of `count` slots: from a list, or the first slots.
 template <class V, bool Later, bool Measured>
 #if defined(__GNUC__) && !defined(__CUDACC__) && !defined(__SANITIZE_ADDRESS__)
 // A pack that is handed over in memory costs more than what is done with it.
@@ -229,8 +229,8 @@ void follow_round(KernelBlock& block, const int* list, int count, bool settling,
   }
 }
 
-/// What first rounds are followed in: of the state alone, in two packs at once where there are the
-/// registers for it, so that neither waits for the other.
+/// Type for first rounds: for the state alone two packs at once, if there are enough registers, so
+/// that latencies overlap.
 template <class V, bool Measured>
 struct FirstRound {
   using type = V;
@@ -242,7 +242,7 @@ struct FirstRound<Pack<8>, false> {
 };
 #endif
 
-/// All rounds of so many slots.
+/// Simulates all rounds of `count` slots.
 template <class V, bool Measured>
 void follow_all(KernelBlock& block, int* list, int count, bool settling, bool knows_rest,
                 SlotList& again) {
@@ -269,7 +269,7 @@ void follow_all(KernelBlock& block, int* list, int count, bool settling, bool kn
   fill(again);
 }
 
-/// Follows the first `count` releases of a block.
+/// Simulates the first `count` releases of a block.
 template <class V>
 void follow_block(KernelBlock& block, int count, Asked asked) {
   constexpr int widest = KernelBlock::widest;

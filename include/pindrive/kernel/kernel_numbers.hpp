@@ -1,4 +1,4 @@
-/// The numbers of a plain release, taken on the way from event to event.
+/// Numbers of a standard release, accumulated from event to event.
 #pragma once
 
 #include "pindrive/kernel/plain_release.hpp"
@@ -11,12 +11,12 @@ struct TransientNumbers {
   using Mask = MaskOf<V>;
   static constexpr double none = __builtin_nan("");
 
-  V outward, inward;  ///< ±1, which way is out; 1 where the pin sets out the other way, else 0
-  V turns;            ///< at the finger's velocity; the start is one where the pin sets out inward
+  V outward, inward;  ///< outward direction ±1; 1 if the pin starts inward, else 0
+  V turns;            ///< turning points; the start counts if the pin starts inward
   V peak, peak_time{none}, trough{none}, trough_time{none};
   V return_speed{0.0}, return_time{none}, first_reversal{none};
   V plate_reversals{0.0}, plate_stuck{0.0}, plate_slid{0.0}, plate_peak{0.0};
-  V finger_slid{0.0}, moved{0.0};  ///< m; 1 where it did move
+  V finger_slid{0.0}, moved{0.0};  ///< slid distance, m; 1 if the pin moved
 
   explicit TransientNumbers(const ForwardRelease<V>& r) {
     const V zero(0.0), x = r.start, v = r.start_velocity;
@@ -31,7 +31,7 @@ struct TransientNumbers {
     peak_time = select(start_is_peak, zero, V(none));
   }
 
-  /// What of this changes on the way.
+  /// Calls f with all members that change.
   template <class F>
   void columns(const F& f) {
     f(turns), f(peak), f(peak_time), f(trough), f(trough_time), f(return_speed), f(return_time);
@@ -40,7 +40,7 @@ struct TransientNumbers {
   }
   static constexpr int column_count = 14;
 
-  /// A velocity, which counts on the way back from the peak.
+  /// Includes a velocity, relevant on the return from the peak.
   void consider(const Mask& which, const V& time, const V& velocity) {
     consider_way_back(which & (turns == V(1.0)), time, velocity);
   }
@@ -57,7 +57,7 @@ struct TransientNumbers {
     plate_peak = select(which, larger(plate_peak, r.fp), plate_peak);
     moved = select(which, V(1.0), moved);
   }
-  /// The plate carries it from a position to another.
+  /// Includes stick on the plate from one position to another.
   void carries(const Mask& which, const V& from, const V& to, const V& begin, const V& time,
                const ForwardRelease<V>& r) {
     const V zero(0.0);
@@ -68,12 +68,12 @@ struct TransientNumbers {
     plate_peak = select(which, larger(plate_peak, force), plate_peak);
     moved = select(which, V(1.0), moved);
   }
-  /// Its velocity is the plate's.
+  /// Includes an instant at the plate velocity.
   void reaches_plate(const Mask& which, const V& time) {
     first_reversal = select(which & (plate_reversals == V(0.0)), time, first_reversal);
     plate_reversals = plate_reversals + select(which, V(1.0), V(0.0));
   }
-  /// Its velocity is the finger's.
+  /// Includes a turning point.
   void turns_at(const Mask& which, const V& position, const V& time) {
     const Mask at_peak = which & (turns == V(0.0)), at_trough = which & (turns == V(1.0));
     peak = select(at_peak, position, peak);
@@ -83,8 +83,8 @@ struct TransientNumbers {
     turns = turns + select(which, V(1.0), V(0.0));
   }
 
-  /// All but the settling time, for `give(name, number)`, of what ends at a position. `released`: 1
-  /// where the plate carried it and let it go.
+  /// Passes all numbers but the settling time to `give(name, number)`, for a motion with a final
+  /// position. `released`: 1 after stick on the plate.
   template <class Give>
   void give(const ForwardRelease<V>& r, const Mask& resting, const V& position, const V& time,
             const V& released, const Give& give) const {

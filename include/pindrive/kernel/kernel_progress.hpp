@@ -1,4 +1,4 @@
-/// How far a plain release has been followed: what one round of the kernel hands to the next.
+/// Progress of a standard release from one round of the kernel to the next.
 #pragma once
 
 #include "pindrive/kernel/kernel_numbers.hpp"
@@ -7,12 +7,12 @@
 namespace pindrive::detail {
 inline namespace PINDRIVE_TARGET {
 
-/// Where a release is at the start of a round, its plate moving forward.
+/// State of a release at the start of a round, mirrored so that the plate moves forward.
 template <class V>
 struct Standing {
   V position, velocity, time;  ///< m, m/s, s
-  V time_error;                ///< what the rounding of the time leaves out of it, s
-  V released;                  ///< 1 where the plate carried it and let it go, else 0
+  V time_error;                ///< rounding error of the time, s
+  V released;                  ///< 1 after stick on the plate, else 0
 
   explicit Standing(const ForwardRelease<V>& r)
       : position(r.start), velocity(r.start_velocity), time(0.0), time_error(0.0), released(0.0) {}
@@ -23,7 +23,7 @@ struct Standing {
   static constexpr int column_count = 5;
 };
 
-/// All of it at the start of a round. `Measured`: with its numbers.
+/// Complete progress at the start of a round. `Measured`: with its numbers.
 template <class V, bool Measured>
 struct Progress {
   Standing<V> standing;

@@ -1,4 +1,4 @@
-/// When a plain release that comes to rest comes within the settling band to stay there.
+/// Settling time of a standard release that comes to rest.
 #pragma once
 
 #include "pindrive/kernel/plain_release.hpp"
@@ -6,20 +6,21 @@
 namespace pindrive::detail {
 inline namespace PINDRIVE_TARGET {
 
-/// A stretch of motion between two events: a slide whose turning point is at its start (side 1) or at,
-/// or beyond, its end (−1), or a stretch that the plate carries it (0).
+/// Stretch of motion between two events: a slide with its turning point at the start (side 1) or at
+/// or beyond its end (side −1), or stick on the plate (0).
 template <class V>
 struct Slide {
-  V start{__builtin_nan("")};               ///< position; NaN is none
-  V time{0.0};                              ///< of the turning point, or of the start
-  V distance{1.0}, centre{0.0}, side{0.0};  ///< of the turning point from the centre
+  V start{__builtin_nan("")};  ///< initial position, m; NaN: no stretch
+  V time{0.0};                 ///< time of the turning point, or of the start, s
+  V distance{1.0}, centre{0.0},
+      side{0.0};  ///< distance of the turning point from the centre, m; centre, m; side
 };
 
-/// The half turns that end at rest.
+/// Half periods before rest.
 template <class V>
 struct LastTurns {
-  V from{0.0}, begin{0.0}, count{0.0};  ///< distance from the middle, time of the first; how many
-  V end{0.0};                           ///< the distance after them
+  V from{0.0}, begin{0.0}, count{0.0};  ///< distance from the middle; time of the first; number
+  V end{0.0};                           ///< distance after the last
 };
 
 template <class V>
@@ -27,10 +28,10 @@ class Settling {
  public:
   using Mask = MaskOf<V>;
 
-  /// Of a release whose place of rest is known beforehand, or NaN.
+  /// Starts with a known place of rest, or NaN.
   explicit Settling(const V& known_rest = V(__builtin_nan(""))) : rest_(known_rest) {}
 
-  /// What must be known of the stretches before those that follow.
+  /// Calls f with all members that later stretches need.
   template <class F>
   void columns(const F& f) {
     f(rest_), f(entry_.start), f(entry_.time), f(entry_.distance), f(entry_.centre), f(entry_.side);
@@ -43,7 +44,7 @@ class Settling {
     slides_[count_++] = {select(which, start, V(__builtin_nan(""))), time, distance, centre, side};
   }
 
-  /// Looks at the stretches remembered; those that come to rest do so at a position.
+  /// Evaluates the stored stretches for releases that come to rest at a position.
   void weigh(const ForwardRelease<V>& r, const Mask& resting, const V& position) {
     rest_ = select(rest_ == rest_, rest_, select(resting, position, rest_));
     for (int i = 0; i < count_; ++i) weigh(slides_[i], r);
@@ -52,10 +53,10 @@ class Settling {
 
   struct Settled {
     V time;
-    Mask unsure;  ///< whether rounding could decide when
-    Mask within;  ///< none of the stretches that were looked at begins outside the band
+    Mask unsure;  ///< mask: rounding could decide the time
+    Mask within;  ///< mask: no evaluated stretch begins outside the band
   };
-  /// Of those that rest.
+  /// Settling times of releases that rest.
   Settled settled(const ForwardRelease<V>& r, const LastTurns<V>& last) const {
     const V zero(0.0), one(1.0), width = this->width(r);
     const V target = rest_ + with_sign(width, entry_.start - rest_);
@@ -98,7 +99,7 @@ class Settling {
     return {settled, unsure, !enters};
   }
 
-  /// Whether the place of rest is known.
+  /// Mask of releases with a known place of rest.
   Mask knows_rest() const { return rest_ == rest_; }
 
  private:
@@ -106,8 +107,8 @@ class Settling {
     return r.band * absolute(r.start - rest);
   }
   V width(const ForwardRelease<V>& r) const { return width(rest_, r); }
-  /// Whether an end so far off is on the edge of the band; at the start it is as far off as the width
-  /// says, however little rounding leaves of it.
+  /// Mask of ends on the edge of the band; the start has exactly the distance that defines the
+  /// width.
   static Mask on_edge(const V& off, const V& width, const Mask& at_start,
                       const ForwardRelease<V>& r) {
     return !((r.slack() < absolute(off - width)) | (at_start & (r.slack() < off)));
@@ -125,9 +126,9 @@ class Settling {
   }
 
   V rest_;
-  Slide<V> entry_;  ///< the last stretch that begins outside the band
+  Slide<V> entry_;  ///< last stretch that begins outside the band
   V entry_unsure_{0.0};
-  static constexpr int most_slides = 5;  ///< of a round of the kernel
+  static constexpr int most_slides = 5;  ///< slides in a round of the kernel
   Slide<V> slides_[most_slides];
   int count_{0};
 };

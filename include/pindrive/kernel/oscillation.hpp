@@ -1,5 +1,5 @@
-/// How a pin on its spring swings about a fixed centre, between two events: the closed form that the
-/// kernel asks for where it turns, where it is fastest and when it has a velocity.
+/// Oscillation of a pin about a fixed centre, between two events: the closed form of turning
+/// points, extreme velocities and given velocities for the kernel.
 #pragma once
 
 #include "pindrive/numbers/elementary.hpp"
@@ -7,15 +7,15 @@
 namespace pindrive::detail {
 inline namespace PINDRIVE_TARGET {
 
-/// How far a damped oscillation is past a turning point.
+/// Phase of a damped oscillation past a turning point.
 template <class V>
 struct PastTurn {
   V angle;  ///< δ in [0, π)
-  V slope;  ///< of e^(−ρδ) (cos δ + ρ sin δ) there
+  V slope;  ///< derivative of e^(−ρδ) (cos δ + ρ sin δ) at δ
 };
 
-/// The δ with e^(−ρδ) (cos δ + ρ sin δ) = part: how far past its turning point an oscillation has only
-/// this part of its distance from the centre; with −ρ, how far before it. 0 for part >= 1.
+/// Phase δ with e^(−ρδ) (cos δ + ρ sin δ) = part: the phase past a turning point at which the
+/// distance from the centre has decreased to this part; with −ρ, the phase before. 0 for part >= 1.
 template <class V>
 PastTurn<V> past_turn(const V& part, const V& rho) {
   using Mask = MaskOf<V>;
@@ -57,17 +57,18 @@ PastTurn<V> past_turn(const V& part, const V& rho) {
   return {select(zero < lack, angle, zero), last_slope};
 }
 
-/// The oscillation of mass, spring and damper: x'' − 2α x' + ω0² (x − c) = 0 with α <= 0, its phase
-/// counted as an angle ωt.
+/// Oscillation of mass, spring and damper: x'' − 2α x' + ω0² (x − c) = 0 with α <= 0; the phase is
+/// the angle ωt.
 template <class V>
 struct Oscillation {
   V omega0_squared, per_omega0_squared, omega0, alpha, omega, per_omega;
-  V rho;                     ///< −α/ω
-  V half, shrink;            ///< time of a half turn, and by what it shrinks
-  V extreme_angle, extreme;  ///< from rest to the largest velocity, and that of 1 m, 1/s
-  MaskOf<V> oscillates;      ///< damped so little that a half turn's sine keeps its digits
+  V rho;           ///< −α/ω
+  V half, shrink;  ///< half period, s; factor of the amplitude over a half period
+  /// phase from rest to the extreme velocity; extreme velocity per metre, 1/s
+  V extreme_angle, extreme;
+  MaskOf<V> oscillates;  ///< mask: damping so small that the sine of a half period keeps its digits
 
-  /// 1 − ζ² from which on it does.
+  /// Smallest 1 − ζ² for which `oscillates` holds.
   static constexpr double least = 0.02;
 
   Oscillation(const V& mass, const V& stiffness, const V& damping) {
@@ -90,8 +91,7 @@ struct Oscillation {
   struct Extreme {
     V angle, velocity;
   };
-  /// Where the velocity is largest in the direction of a side: the nearest such angle, < 0 if it is
-  /// past.
+  /// Nearest phase at which the velocity is extreme in the direction of a side; < 0 if past.
   Extreme extreme_velocity(const V& velocity, const V& acceleration, const V& side) const {
     const V cosine = side * omega * acceleration;
     const V sine = side * (alpha * acceleration - omega0_squared * velocity);
@@ -101,9 +101,9 @@ struct Oscillation {
   }
 
   struct Turn {
-    V angle, distance;  ///< from the centre
+    V angle, distance;  ///< phase; distance from the centre, m
   };
-  /// Where the velocity comes to zero.
+  /// Next turning point.
   Turn next_turn(const V& velocity, const V& acceleration) const {
     const V side = with_sign(V(1.0), velocity);
     const V sine = acceleration - alpha * velocity, cosine = omega * velocity;
@@ -112,7 +112,7 @@ struct Oscillation {
     return {angle, side * distance * exponential_in_range(V(0.0) - rho * angle)};
   }
 
-  /// How far from the centre it has a velocity and an acceleration.
+  /// Distance from the centre for a velocity and an acceleration, m.
   V distance_at(const V& velocity, const V& acceleration) const {
     return (V(2.0) * alpha * velocity - acceleration) * per_omega0_squared;
   }
@@ -120,7 +120,7 @@ struct Oscillation {
   struct State {
     V distance, velocity;
   };
-  /// So far on from a distance from the centre and a velocity.
+  /// State after a phase, from a distance from the centre and a velocity.
   State after(const V& angle, const V& distance, const V& velocity) const {
     const Circular<V> turned = sine_and_cosine_in_turn(angle);
     const V decay = exponential_in_range(V(0.0) - rho * angle);

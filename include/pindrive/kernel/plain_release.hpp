@@ -1,4 +1,4 @@
-/// What the kernel takes and gives of plain releases.
+/// Input and output of the kernel for standard releases.
 #pragma once
 
 #include "pindrive/kernel/oscillation.hpp"
@@ -6,7 +6,8 @@
 namespace pindrive::detail {
 inline namespace PINDRIVE_TARGET {
 
-/// What goes in, SI units. Both contacts have friction and are rigid; others are given up.
+/// Input of the kernel, SI units. Both contacts have friction and are rigid; all further releases
+/// are left to the general core.
 template <class V>
 struct PlainRelease {
   V mass, stiffness, damping;       ///< kg, N/m, N s/m
@@ -16,10 +17,11 @@ struct PlainRelease {
   V mouse_velocity;                 ///< m/s
   V displacement, velocity;         ///< x(0), x'(0): m, m/s
   V duration;                       ///< s; infinite: until it rests
-  V settling_band;                  ///< of the settling time, a part of |x(0) − x_end|
+  V settling_band;                  ///< band of the settling time, as a fraction of |x(0) − x_end|
 };
 
-/// The numbers of docs/theory.md, section 6, that a plain release has; what it has not is NaN.
+/// Numbers of docs/theory.md, section 6, of a standard release; a number that does not exist is
+/// NaN.
 struct PlainNumber {
   enum Name : signed char {
     peak_displacement,
@@ -57,24 +59,27 @@ V one_or_minus_one(const V& n) {
   return from_bits<V>((low << 63) | bits(V(1.0)));
 }
 
-/// Two numbers that differ by less than this part of what they are computed from may be equal: a
-/// thousand times what rounding adds up to over the turns that are followed.
+/// Relative difference below which two numbers may be equal: a thousand times the accumulated
+/// rounding of the evaluated half periods.
 inline constexpr double near_tie = 1e-12;
 
-/// A plain release, seen so that its plate moves forward, with what follows from it.
+/// Standard release, mirrored so that the plate moves forward, with derived values.
 template <class V>
 struct ForwardRelease {
-  V mirror;                 ///< ±1, which brings its positions and velocities here and back
+  V mirror;                 ///< sign ±1 that mirrors positions and velocities
   V stiffness, per_mass;    ///< N/m, 1/kg
   V flexibility;            ///< m/N
   V fp, sp, ff, sf;         ///< kinetic and static friction of plate and finger, N
-  V vp, drag;               ///< the plate's velocity, and the damper's force at it
+  V vp, drag;               ///< plate velocity; damper force at this velocity
   V start, start_velocity;  ///< x(0), x'(0)
   V until, band;
-  V between, outside;  ///< the centre while it slides slower than the plate, and backward, m
-  V size;              ///< of the forces, N
+  /// centre of oscillation while slower than the plate, and while moving backward, m
+  V between, outside;
+  V size;  ///< scale of the forces, N
   Oscillation<V> swing;
-  MaskOf<V> plain;  ///< those that the kernel follows: what loses no energy never comes to rest
+  MaskOf<V>
+      /// mask of releases that the kernel simulates; without energy loss a pin never comes to rest
+      plain;
 
   explicit ForwardRelease(const PlainRelease<V>& r) noexcept
       : mirror(with_sign(V(1.0), r.mouse_velocity)),
@@ -101,13 +106,13 @@ struct ForwardRelease {
             (zero < fp + ff + r.damping) & swing.oscillates;
   }
 
-  /// The force on the plate while it carries the pin.
+  /// Stick force at a position of a pin stuck to the plate, N.
   V carrying(const V& position) const { return stiffness * position + drag + ff; }
-  /// Whether rounding could decide which of two forces is larger.
+  /// Mask: rounding could decide which of two forces is larger.
   MaskOf<V> tie(const V& one, const V& other) const {
     return !(V(near_tie) * size < absolute(one - other));
   }
-  /// The same of positions.
+  /// Difference of positions below which rounding could decide, m.
   V slack() const { return V(near_tie) * size * flexibility; }
 };
 

@@ -87,7 +87,7 @@ struct ContactPoint : SlidingSkin<T> {
       friction = range.at(speed);
       if (guard_ == ActiveGuard::none) return;
       if (guard_ == ActiveGuard::upper || branch_ > 0) {
-        // At a breakpoint it is one number, whichever branch follows.
+        // Both branches have equal friction at a breakpoint.
         friction = contact.branch(guard_ == ActiveGuard::upper ? branch_ + 1 : branch_).force;
         count = 2;
         return;
@@ -205,7 +205,7 @@ struct ContactPoint : SlidingSkin<T> {
       const bool turns = closing == 0 || grazes(closing, parting, known);
       T faster = closing;
       if (turns) faster = parting != 0 ? parting : speed.u.value * third;
-      if (faster == 0) faster = second * second;  // it begins to turn
+      if (faster == 0) faster = second * second;  // the pin starts to turn
       return (mode.guard == ActiveGuard::lower ? faster : -faster) >= 0;
     }
     const T decides = first != 0 ? first : second != 0 ? second : third;

@@ -95,7 +95,7 @@ class Guards {
   /// Times count from the start of the mode, which is at `since`. Times that differ by less than
   /// the time resolution are equal.
   T earliest(const Oscillator<T>& oscillator, T since, T limit, T force_error) {
-    const Path<T>* falls = nullptr;     // to the middle of its oscillation
+    const Path<T>* falls = nullptr;     // falls to the centre of its oscillation
     for (int n = 0; n < count_; ++n) {  // speeds, then stick forces
       Guard<T>& guard = list_[n + forces_ < count_ ? n + forces_ : n + forces_ - count_];
       const Path<T>& path = guard.path;
@@ -107,7 +107,7 @@ class Guards {
           if (path.slope < 0) falls = &path;
           continue;
         }
-        // What rises as another falls turns only after that has come to zero.
+        // The mirrored guard turns only after the falling guard has reached zero.
         if (falls != nullptr && path.value == -falls->value && path.slope == -falls->slope)
           continue;
       }
@@ -150,7 +150,7 @@ class Guards {
     T counts = defer_grazing(first, breakpoint, [&](const Guard<T>& guard, T tau) {
       return stays(guard, oscillator, tau, force_error);
     });
-    if (counts > first)  // until then the others have not been looked at
+    if (counts > first)  // later guards are not evaluated yet
       for (int i = 0; i < count_; ++i)
         if (list_[i].zero > counts) {
           list_[i].zero = first_crossing(list_[i], oscillator, force_error, counts);

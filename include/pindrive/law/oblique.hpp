@@ -26,15 +26,15 @@ T departure_acceleration(T mass, T friction, T across_rate, T pull) {
   using std::abs;
   using std::sqrt;
   const T w = abs(across_rate);
-  // In t = p/w', from above in size: there the left side bends away from its tangent.
+  // Newton in t = p/w', from larger |t|, where the left side is convex.
   T t = pull / (mass * w);
-  bool converged = false;  // the derivative of a dual number does so one round later
+  bool converged = false;  // a dual derivative converges one iteration later
   for (int tries = 0; tries < 200; ++tries) {
     const T root = sqrt(1 + t * t);
     const T missed = mass * w * t + friction * t / root - pull;
     const T move = -missed / (mass * w + friction / (root * root * root));
     const T next = t + move;
-    // What falls beyond zero has overshot.
+    // A change of sign is an overshoot.
     const T kept = next * t < 0 ? t / 64 : next;
     const bool done = converged;
     converged = abs(kept - t) <= 2 * std::numeric_limits<detail::Real<T>>::epsilon() * abs(t);
@@ -113,7 +113,7 @@ bool enumerate_oblique_options(Point& side, T u, ActiveGuard& guard) {
   const auto& contact = side.contact;
   if (!slides_obliquely(side.load, side.across)) {
     if (!side.oblique()) return false;
-    guard = ActiveGuard::none;  // that of another speed
+    guard = ActiveGuard::none;  // the old guard belongs to another speed
     side.mode = {ContactState::stick, ActiveGuard::none, 0, T(0)};
     if (u != 0)
       side.mode =

@@ -43,7 +43,7 @@ class Selection {
     restoring_force_ = drive_.stiffness * state_.x + drive_.damping * state_.v;
     T size = drive_.stiffness * state_.position_scale + drive_.damping * abs(state_.v);
     applied_force_ += force_.value;
-    size += abs(force_.rate) * time_;  // known to the rounding of the time
+    size += abs(force_.rate) * time_;  // error from the time resolution
     stop_.enumerate_options(state_);
     size += stop_.force_scale(state_);
     state_.force_error =
@@ -92,8 +92,8 @@ class Selection {
   EndStops<T> stop_;             ///< end stops in the selected state
   int stick_limit_side_{0};      ///< side of a stick force that has just reached its limit, else 0
   Line<T> force_{};              ///< external force, N
-  T applied_force_{},
-      restoring_force_{};  ///< inertial and external force; force of spring and damper less that of a stop, N
+  /// inertial and external force; force of spring and damper less that of a stop, N
+  T applied_force_{}, restoring_force_{};
 
   T acceleration_{};  ///< acceleration in slip, m/s²
   bool tangential_{false};
@@ -235,7 +235,7 @@ class Selection {
     tangential_ = false;
     guards_.clear();
     const T finger = finger_.force(state_);
-    // Beside a plate that begins to slide across all forces may balance but for rounding.
+    // On a plate that begins to slide across, all forces may balance within rounding.
     const bool across =
         plate_.oblique() && plate_.across.value == 0 && state_.v == plate_.surface.value;
     const T parting =

@@ -151,11 +151,11 @@ class SlidingSkin : public ContactPointState<T> {
           has_slider_state() ? slip_sign_ * s.slider_velocity : goes.stationary_speed(range.force);
       if (had_pin_speed_ && guard != ActiveGuard::none &&
           is_nonzero(speed - (guard == ActiveGuard::upper ? range.to : range.from), u))
-        guard = ActiveGuard::none;  // its load has changed its rate
+        guard = ActiveGuard::none;  // the rate of the load has changed
       const ActiveGuard came_to = guard;
       if (guard == ActiveGuard::none && speed >= range.to) guard = ActiveGuard::upper;
       if (guard == ActiveGuard::none && !(speed > range.from)) guard = ActiveGuard::lower;
-      // A pin whose velocity has jumped takes along a slider that does not lag.
+      // A slider without its own velocity follows a jump of the pin velocity.
       const T jumps = guard == ActiveGuard::upper ? speed - range.to : range.from - speed;
       must_jump_ = had_pin_speed_ && came_to == ActiveGuard::none && guard != ActiveGuard::none &&
                    jumps > 2 * rounding<T> * (range.from + (speed < 0 ? -speed : speed));
@@ -166,7 +166,7 @@ class SlidingSkin : public ContactPointState<T> {
       friction = range.at(has_slider_state() ? slider_speed_ : range.from);
       const T pulls = slip_sign_ * s.skin, most = friction * load.value;
       if (std::abs(plain(pulls - most)) > 64 * rounding<T> * plain(pulls + most) + s.force_error) {
-        must_jump_ = true;  // its load has jumped
+        must_jump_ = true;  // the load has jumped
         had_pin_speed_ = false;
         jump_ = pulls > most ? goes.next_faster(branch_, pulls / load.value)
                              : goes.next_slower(branch_ + 1, pulls / load.value);
@@ -188,11 +188,11 @@ class SlidingSkin : public ContactPointState<T> {
     count = 1;
     must_jump_ = false;
     guard = ActiveGuard::none;
-    stick_state_ = ContactState::elastic_stick;  // with the force that it has
+    stick_state_ = ContactState::elastic_stick;  // with its present tension
     const T most = stick_limit(), grows = stretch_rate(contact.static_limit);
     const bool empty = !(most > 0) && s.skin == 0;
     slips_either_way_ = empty && !(grows > 0);
-    slip_sign_ = (empty ? u > 0 : s.skin > 0) ? T(-1) : T(1);  // of the force
+    slip_sign_ = (empty ? u > 0 : s.skin > 0) ? T(-1) : T(1);  // sign of the force
     const T pulls = -slip_sign_ * s.skin;
     const bool exceeds = pulls > most + rounding<T> * most + s.force_error;
     if (!exceeds && (pulls < most || slip_sign_ * u > -grows)) return;
@@ -201,7 +201,7 @@ class SlidingSkin : public ContactPointState<T> {
     const auto goes = slider(-slip_sign_, u);
     jump_ = goes.next_faster(0, must_jump_ ? pulls / load.value : contact.static_limit);
     if (jump_.shortens_skin && jump_.guard == ActiveGuard::lower &&
-        load.rate < 0)  // nor does it slip on
+        load.rate < 0)  // slip cannot continue either
       jump_ = goes.sticking(jump_);
     count = must_jump_ ? 1 : slips_either_way_ && u == 0 ? 3 : 2;
     resolve_rest(goes, -slip_sign_, u);
@@ -242,7 +242,7 @@ class SlidingSkin : public ContactPointState<T> {
       if (!contact.may_lag() || u == 0 || u < most) return breakpoint;
       const SliderJump<T> there = slider(T(1), u).at_first_load();
       if (!there.sticks && there.guard != ActiveGuard::lower) return breakpoint;
-      const T round = stretch_rate(largest_friction(2 * u));  // for each second that it waits
+      const T round = stretch_rate(largest_friction(2 * u));  // per second of delay
       load.rate = T(0);
       return std::min(breakpoint, time + u / round * known);
     }
@@ -313,8 +313,8 @@ class SlidingSkin : public ContactPointState<T> {
   T slider_speed_{0};            ///< slider speed before a jump, m/s
   SliderJump<T> jump_{};         ///< end of the jump
   SliderJump<T> alternative_{};  ///< second candidate for the end of the jump
-  bool slips_either_way_{false},
-      must_jump_{false};  ///< either slip sign is a candidate; the jump is the only candidate
+  /// either slip sign is a candidate; the jump is the only candidate
+  bool slips_either_way_{false}, must_jump_{false};
   bool has_alternative_{false};  ///< the second candidate exists
   bool had_pin_speed_{false};    ///< the slider had the speed of the pin
 };

@@ -190,8 +190,8 @@ class EndStops {
   const Stops<T> stops_;
   std::array<StopState, 2> options_{};
   int count_{1};
-  ActiveGuard guard_{
-      ActiveGuard::none};  ///< active guard: distance to the end of the travel, or push
+  /// active guard: distance to the end of the travel, or push
+  ActiveGuard guard_{ActiveGuard::none};
   bool push_is_zero_{false}, force_jumped_{false};
 };
 

@@ -51,10 +51,10 @@ struct ContactPointState {
   T slip_sign_{0};                                    ///< its slip sign
   int branch_{0};                                     ///< its branch of the friction curve
   ActiveGuard guard_{ActiveGuard::none};              ///< guard that is zero now
-  ContactState stick_state_{
-      ContactState::absent};  ///< stick or elastic_stick if the contact may stick, else absent
-  ActiveGuard departure_guard_{
-      ActiveGuard::none};  ///< active guard of a slip that starts from stick
+  /// stick or elastic_stick if the contact may stick, else absent
+  ContactState stick_state_{ContactState::absent};
+  /// active guard of a slip that starts from stick
+  ActiveGuard departure_guard_{ActiveGuard::none};
 };
 
 }  // namespace pindrive::detail

@@ -108,9 +108,9 @@ struct Stops {
 
 template <class T>
 struct Drive {
-  T mass;  ///< mass of the moving body (in a device: electromagnet and pin), kg; > 0
-  T stiffness;               ///< spring, N/m; > 0
-  T damping;                 ///< damper, N s/m; >= 0
+  T mass;       ///< mass of the moving body (in a device: electromagnet and pin), kg; > 0
+  T stiffness;  ///< spring, N/m; > 0
+  T damping;    ///< damper, N s/m; >= 0
   Contact<T> plate, finger;  ///< the plate is rigid
   Stops<T> stops{};
 };
@@ -279,8 +279,8 @@ enum class Transition : signed char { none, stick, slip, cross };
 
 struct Event {
   Transition plate{Transition::none}, finger{Transition::none};
-  Transition stop{
-      Transition::none};  ///< stick: contact; cross: momentary contact; slip: separation
+  /// stick: contact; cross: momentary contact; slip: separation
+  Transition stop{Transition::none};
 
   bool any() const {
     return plate != Transition::none || finger != Transition::none || stop != Transition::none;
@@ -321,10 +321,10 @@ struct Segment {
   Mode mode;
   Event event;  ///< event at the end
   Flow<T> flow;
-  Propagator<T> moved;  ///< propagator of the oscillator from begin to a finite end
+  Propagator<T> moved;     ///< propagator of the oscillator from begin to a finite end
   Line<T> plate_velocity;  ///< m/s
-  Path<T> plate_force,
-      finger_force;  ///< friction on the pin, N; if both contacts stick, the plate force is their sum
+  /// friction on the pin, N; if both contacts stick, the plate force is their sum
+  Path<T> plate_force, finger_force;
   EliminatedPart eliminated{EliminatedPart::none};  ///< fast transient that the series omits
 
   /// Propagator of the oscillator after τ.
@@ -351,8 +351,8 @@ struct Outcome {
   End end{End::moving};
   T period{std::numeric_limits<T>::quiet_NaN()};  ///< period of a steady oscillation, s
   T until{0};  ///< end of the last segment, s; a cycle repeats from here on
-  T cycle_begin{
-      0};  ///< begin of the repeated cycle, s; of an irregular motion, begin of the stretch that is measured
+  /// begin of the repeated cycle, s; of an irregular motion, begin of the stretch that is measured
+  T cycle_begin{0};
 
   /// True if the state is known at all times, not only as far as it was simulated.
   bool known() const { return end != End::moving && end != End::irregular; }

@@ -17,8 +17,8 @@ template <class T>
 struct ContactUse {
   T reversals{0};   ///< zeros of the sliding velocity
   T time_stuck{0};  ///< time in stick or elastic stick, s
-  T distance_slid{
-      0};  ///< distance that the pin slides over the surface, also in the transverse direction, m
+  /// distance that the pin slides over the surface, also in the transverse direction, m
+  T distance_slid{0};
   T dissipated{0};  ///< friction work, also in the transverse direction, J
   T peak_force{0};  ///< largest friction force, N
 };
@@ -28,8 +28,8 @@ template <class T>
 struct ContactsUse {
   ContactUse<T> plate, finger;
   T across_dissipated{0};  ///< transverse part of the friction work of the plate, J
-  T peak_stretch{
-      std::numeric_limits<T>::quiet_NaN()};  ///< largest stretch of a compliant finger, m
+  /// largest stretch of a compliant finger, m
+  T peak_stretch{std::numeric_limits<T>::quiet_NaN()};
   T peak_stretch_rate{std::numeric_limits<T>::quiet_NaN()};  ///< m/s
 };
 

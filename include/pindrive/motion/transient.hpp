@@ -39,9 +39,9 @@ struct Transient {
   static constexpr T none = std::numeric_limits<T>::quiet_NaN();
 
   T peak_displacement{none}, peak_time{none};  ///< x_m,a at t_a: m, s
-  T trough_displacement{none},
-      trough_time{none};  ///< x_m,c at t_c; t_c infinite if only approached
-  T swing{none};          ///< (17), m
+  /// x_m,c at t_c; t_c infinite if only approached
+  T trough_displacement{none}, trough_time{none};
+  T swing{none};                                        ///< (17), m
   T return_velocity{none}, return_velocity_time{none};  ///< v_m,b at t_b: m/s, s
   T first_reversal_time{none};                          ///< t_1, s
   T settling_time{none};                                ///< start of the time within the band, s
@@ -49,10 +49,10 @@ struct Transient {
   T last_event_time{none};  ///< last contact event, s; 0 without any after the release,
   T steady_since{none};     ///< start of a steady oscillation, s
   T peak_stretch{none},
-      peak_stretch_rate{
-          none};         ///< largest stretch (m) and stretch rate (m/s) of a compliant finger
-  T end_position{none};  ///< x_end: position of rest, or centre of the final oscillation, m
-  T end_time{none};      ///< t*: end of the transient, s
+      /// largest stretch (m) and stretch rate (m/s) of a compliant finger
+      peak_stretch_rate{none};
+  T end_position{none};         ///< x_end: position of rest, or centre of the final oscillation, m
+  T end_time{none};             ///< t*: end of the transient, s
   ContactUse<T> plate, finger;  ///< in the transient; peak forces of the whole motion
 
   SteadyNumbers<T> steady;  ///< numbers of the final oscillation

@@ -1,8 +1,8 @@
-/// A number with its derivative along one parameter. The core run on it gives exact derivatives of
-/// everything it computes, through events: no step, no difference of two motions.
+/// Dual number: a number with its derivative along one parameter. The core evaluated with dual
+/// numbers gives exact derivatives through events, without steps or differences.
 ///
-/// Numbers decide, derivatives follow: comparisons look at the value alone, so the motion takes the
-/// same way as in plain numbers. What holds only for that way is for the caller to see.
+/// Comparisons use the value alone, so the motion takes the events of the plain numbers. The caller
+/// is responsible for results that hold only for this sequence of events.
 #pragma once
 
 #include <cmath>
@@ -82,7 +82,7 @@ struct Dual {
   }
 
  private:
-  /// What does not depend on the parameter stays so, though its factor be infinite.
+  /// Product with zero slope preserved, even for an infinite factor.
   static constexpr T times(T slope, T factor) { return slope == 0 ? T(0) : slope * factor; }
 };
 

@@ -1,9 +1,10 @@
-/// sin, cos, exp, expm1, log, log1p and atan2 from + − × ÷ and the bits of numbers.
+/// Elementary functions sin, cos, exp, expm1, log, log1p and atan2 from + − × ÷ and the bits of
+/// numbers.
 ///
-/// Written once for a number, for packs of numbers and for a GPU thread, they give the same bits in
-/// all of them and on every machine; the libraries of systems and compilers do not. Each is within
-/// 2 units in the last place over the range that it states. The coefficients are minimax polynomials
-/// made by tests/oracle/make_polynomials.py.
+/// One text for a number, for packs of numbers and for a GPU thread gives identical bits
+/// everywhere, unlike the libraries of systems and compilers. Each function is within 2 units in
+/// the last place over its stated range. The coefficients are minimax polynomials from
+/// tests/oracle/make_polynomials.py.
 #pragma once
 
 #include "pindrive/numbers/pack.hpp"
@@ -11,11 +12,11 @@
 namespace pindrive::detail {
 inline namespace PINDRIVE_TARGET {
 
-/// The largest angle of `sine_and_cosine`, rad; beyond it a double says little of a phase: from here
-/// on its neighbours are 6e-8 rad and more apart.
+/// Largest angle of `sine_and_cosine`, rad; neighbouring doubles beyond are at least 6e-8 rad
+/// apart.
 inline constexpr double largest_angle = 4.2e8;
 
-/// terms[0] + terms[1] x + … by halves, which do not wait for each other.
+/// terms[0] + terms[1] x + … in two independent halves.
 template <class V, int Count>
 V by_halves(const V& x, const V (&terms)[Count]) {
   if constexpr (Count == 1) {
@@ -36,7 +37,7 @@ V polynomial(const V& x, const double (&c)[Count]) {
   return by_halves(x, terms);
 }
 
-/// A sum with what its rounding left out.
+/// Sum with its rounding error.
 template <class V>
 struct Sum {
   V value, rest;
@@ -47,7 +48,8 @@ Sum<V> exact_sum(const V& a, const V& b) {
   return {sum, (a - (sum - of_b)) + (b - of_b)};
 }
 
-/// The nearest integer to a number below 2^51 in size, as a number and in the low bits of another.
+/// Nearest integer to a number below 2^51 in size, as a number and in the low bits of a second
+/// number.
 template <class V>
 struct Nearest {
   V value;
@@ -59,7 +61,7 @@ struct Nearest {
     value = shifted - shifter;
     low = bits(shifted);
   }
-  /// 2 to this power, which a double holds.
+  /// 2 to this power, within the range of doubles.
   V power_of_two() const { return from_bits<V>((low + BitsOf<V>(1023)) << 52); }
 };
 
@@ -70,7 +72,7 @@ struct Circular {
   V sine, cosine;
 };
 
-/// Those of a number of quarters of a turn and the angle r + low, |r| <= π/4, that is left.
+/// Sine and cosine of a number of quarter turns plus the angle r + low, |r| <= π/4.
 template <class V>
 Circular<V> quarters_and_rest(const BitsOf<V>& quarters, const V& r, const V& low) {
   using Bits = BitsOf<V>;
@@ -95,7 +97,7 @@ Circular<V> quarters_and_rest(const BitsOf<V>& quarters, const V& r, const V& lo
           from_bits<V>((bits(cosine) ^ exchanged) ^ of_cosine_sign)};
 }
 
-/// The sine and the cosine of |angle| <= largest_angle, rad; NaN beyond.
+/// Sine and cosine of |angle| <= largest_angle, rad; NaN beyond.
 template <class V>
 Circular<V> sine_and_cosine(const V& angle) {
   constexpr double outside = __builtin_nan("");
@@ -112,7 +114,7 @@ Circular<V> sine_and_cosine(const V& angle) {
   return quarters_and_rest(turns.low, r, (fourth.value - r) + rest);
 }
 
-/// The same of an angle within one turn, |angle| <= 2π, for less.
+/// Sine and cosine of |angle| <= 2π, rad, at less cost.
 template <class V>
 Circular<V> sine_and_cosine_in_turn(const V& angle) {
   const Nearest<V> turns(angle * V(0x1.45f306dc9c883p-1));
@@ -150,7 +152,7 @@ V exponential_in_range(const V& x) {
   return (V(1.0) + (e.r + e.change)) * e.n.power_of_two();
 }
 
-/// e^x for every x; subnormal, 0 and infinite where that is so.
+/// e^x for every x, with subnormal, zero and infinite results.
 template <class V>
 V exponential(const V& given) {
   const V x = smaller(larger(given, V(-746.0)), V(710.0));
@@ -223,8 +225,8 @@ V logarithm_of_1_plus(const V& x) {
 
 // ---- the angle of a point ----------------------------------------------------------------------
 
-/// The angle in [−π, π] of the point (x, y) with |x|, |y| < 2^1022; 0 at the origin. An x of −0 is one
-/// of 0.
+/// Angle in [−π, π] of the point (x, y) with |x|, |y| < 2^1022; 0 at the origin. −0 as x counts as
+/// 0.
 template <class V>
 V angle_of(const V& y, const V& x) {
   using Mask = MaskOf<V>;

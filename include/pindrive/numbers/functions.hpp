@@ -1,6 +1,6 @@
-/// The elementary functions of the numbers that the core computes with: of a double those of
-/// elementary.hpp, so that a motion has the same bits on every system; of a float or a long double those
-/// of the standard library. Other numbers bring their own.
+/// Elementary functions of the scalar types of the core: for a double from elementary.hpp, so that
+/// a motion has identical bits on every system; for a float or long double from the standard
+/// library. Further types define their own.
 #pragma once
 
 #include <cmath>
@@ -10,14 +10,14 @@
 
 namespace pindrive {
 
-/// A number without what else it carries, such as a derivative.
+/// Value of a number without its derivative.
 inline float plain(float x) { return x; }
 inline double plain(double x) { return x; }
 inline long double plain(long double x) { return x; }
 
 namespace detail {
 
-/// A number as it is compared.
+/// Type of the value of a number.
 template <class T>
 using Real = decltype(plain(T{}));
 

@@ -1,5 +1,4 @@
-/// How the numbers of a pack are held: in a vector register where the compiler targets one, else as two
-/// halves.
+/// Storage of a pack: a vector register if the compiler targets one, else two halves.
 #pragma once
 
 #ifndef __CUDACC__
@@ -27,8 +26,8 @@ using uint64_t = unsigned long long;
 #define PINDRIVE_VECTOR_LANES 2
 #endif
 
-/// Names the instruction set that a translation unit is compiled for, so that functions of one are
-/// never linked into the code of another.
+/// Name of the instruction set of a translation unit, so that functions for one set are never
+/// linked into code for another.
 #ifndef PINDRIVE_TARGET
 #define PINDRIVE_TARGET baseline
 #endif
@@ -36,7 +35,7 @@ using uint64_t = unsigned long long;
 namespace pindrive::detail {
 inline namespace PINDRIVE_TARGET {
 
-/// As a number by itself.
+/// Storage as a single number.
 struct ScalarLanes {
   using Number = double;
   using Integer = std::uint64_t;
@@ -72,7 +71,7 @@ struct ScalarLanes {
 template <int N>
 struct LanesOf;
 
-/// As two packs of half the width.
+/// Storage as two packs of half the width.
 template <int N>
 struct PairLanes {
   using Half = typename LanesOf<N / 2>::type;
@@ -152,8 +151,8 @@ struct PairLanes {
 };
 
 #ifdef PINDRIVE_VECTOR_LANES
-/// As a vector of GCC's and Clang's, a type for each width: of one that depends on a parameter GCC
-/// does not see that it is a vector.
+/// Storage as a vector of GCC and Clang, with a type for each width: GCC does not recognise a
+/// vector type that depends on a parameter.
 template <int N>
 struct VectorTypes;
 template <>
@@ -212,7 +211,7 @@ struct VectorLanes {
   }
   static Truth less(Number a, Number b) { return (Truth)(a < b); }
   static Truth less_equal(Number a, Number b) { return (Truth)(a <= b); }
-  /// Not by == of vectors, which GCC 12 gets wrong in halves at -O1 and -O2.
+  /// Comparison without == of vectors, which GCC 12 compiles wrongly in halves at -O1 and -O2.
   static Truth equal(Number a, Number b) {
 #if defined(__AVX2__)
     if constexpr (N == 4) return (Truth)_mm256_cmp_pd((__m256d)a, (__m256d)b, _CMP_EQ_OQ);
@@ -252,7 +251,7 @@ struct VectorLanes {
 #endif
 
 #if defined(PINDRIVE_VECTOR_LANES) && PINDRIVE_VECTOR_LANES == 8
-/// Comparisons of AVX-512 answer in a register of bits.
+/// Storage of AVX-512, whose comparisons return a register of bits.
 struct MaskedLanes : VectorLanes<8> {
   using Truth = __mmask8;
 

@@ -1,8 +1,9 @@
-/// Packs of 2, 4 or 8 numbers that are computed with as one, and the same operations for a number.
+/// Packs of 2, 4 or 8 numbers with common operations, and the corresponding operations of a single
+/// number.
 ///
-/// A pack is a vector register where the compiler targets one that holds it, else two halves. Every
-/// operation rounds as that of a single double does, so a text that is written with these gives the
-/// same bits for a number, for a pack of any width, and for a GPU thread.
+/// A pack is a vector register if the compiler targets one, else two halves. Every operation rounds
+/// like that of a double, so that one text gives identical bits for a number, for a pack of any
+/// width, and for a GPU thread.
 #pragma once
 
 #include "pindrive/numbers/lanes.hpp"
@@ -12,7 +13,7 @@ inline namespace PINDRIVE_TARGET {
 
 // ---- packs -------------------------------------------------------------------------------------
 
-/// The answers of a comparison, one for each number of a pack.
+/// Results of a comparison, one for each number of a pack.
 template <int N>
 struct Mask {
   using Lanes = typename LanesOf<N>::type;
@@ -33,7 +34,7 @@ struct Mask {
   friend bool any(const Mask& a) { return Lanes::any(a.held); }
 };
 
-/// N numbers.
+/// Pack of N numbers.
 template <int N>
 struct Pack {
   using Lanes = typename LanesOf<N>::type;
@@ -107,7 +108,7 @@ struct PackBits {
 
 // ---- the same for a number -----------------------------------------------------------------------
 
-/// What goes with a number or a pack: how many it holds, its mask and its bits.
+/// Types and size that belong to a number or a pack: count, mask and bits.
 template <class V>
 struct Traits;
 template <>
@@ -146,7 +147,7 @@ Pack<N> root(const Pack<N>& a) {
   return Pack<N>::of(Pack<N>::Lanes::root(a.held));
 }
 
-/// The bits of numbers, and back.
+/// Reinterprets the bits of numbers.
 template <class To, class From>
 To same_bits(const From& from) {
   static_assert(sizeof(To) == sizeof(From), "nothing may be left out");
@@ -167,7 +168,7 @@ V from_bits(const BitsOf<V>& a) {
   return same_bits<V>(a);
 }
 
-/// As many numbers as a pack holds, from and to consecutive places.
+/// Loads and stores a pack at consecutive places.
 template <class V>
 V load(const double* from) {
   V a;
@@ -178,7 +179,7 @@ V load(const double* from) {
 #endif
   return a;
 }
-/// The same from places of a column.
+/// Loads a pack from given places of a column.
 template <class V>
 V gather(const double* column, const int* places) {
   if constexpr (Traits<V>::width == 1)
@@ -195,7 +196,7 @@ void store(const V& a, double* to) {
 #endif
 }
 
-/// The answer for one number of a pack.
+/// Result of a comparison for one number of a pack.
 inline bool answer(bool a, int) { return a; }
 template <int N>
 bool answer(const Mask<N>& a, int i) {
@@ -206,7 +207,7 @@ template <class V>
 V absolute(const V& a) {
   return from_bits<V>(bits(a) & BitsOf<V>(0x7fffffffffffffffULL));
 }
-/// The size of one with the sign of the other.
+/// Absolute value of a number with the sign of another number.
 template <class V>
 V with_sign(const V& size, const V& sign) {
   const BitsOf<V> mark(0x8000000000000000ULL);

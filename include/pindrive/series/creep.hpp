@@ -37,8 +37,8 @@ class CreepFlow : public SeriesStep<T> {
     using std::abs;
     this->eliminated = EliminatedPart::of_friction;
     if (e.across.value < 0 || (e.across.value == 0 && e.across.rate < 0))
-      e.across = {-e.across.value, -e.across.rate};  // only its size counts: w >= 0
-    acceleration_[0] = e.plate_velocity.rate;  // the first guess is that it moves as the plate
+      e.across = {-e.across.value, -e.across.rate};  // by symmetry w >= 0
+    acceleration_[0] = e.plate_velocity.rate;        // initial guess: acceleration of the plate
     if (e.held || e.side != 0 || !(e.load.value * e.plate_force > 0) || !balance(e, start)) return;
     Real farthest = plain(limit);
     if (e.across.rate < 0)
@@ -46,18 +46,18 @@ class CreepFlow : public SeriesStep<T> {
     const Real step = std::min(trial_step(e, start), farthest);
     if (!(step > 0)) return;
     this->begin(step);
-    Real before{0}, last{0};  // of the round before: the velocity of creep at the start, the change
-    // What the rounds came nearest to, where rounding keeps those of a known step from converging.
+    Real before{0}, last{0};  // preceding iteration: initial creep velocity, change
+    // Best iterate, for a known step whose iterations do not converge within rounding.
     SeriesStep<T> nearest;
     Real least = std::numeric_limits<Real>::infinity();
     for (int round = 0; round < most_rounds && balance(e, start); ++round) {
-      // What the rounds still change is less than what they changed.
+      // The iteration contracts.
       const Real v = plain(e.plate_velocity.value + e.across.value * t_), off = plain(start.v) - v;
       if (!within_step && round > 0 &&
           abs(off) > 4 * abs(v - before) + 64 * unit * (abs(v) + abs(off)) + unsure(e, start))
         return;
       before = v;
-      // The first one has as much of a as tells whether it is near, and its rate, which changes it next.
+      // The first iteration computes a and its rate, enough to decide about convergence.
       expand(e, start, step, round == 0 ? 2 : N);
       if (round == 0) continue;
       const Real left = farthest / step;
@@ -65,13 +65,13 @@ class CreepFlow : public SeriesStep<T> {
       const bool converged = converged_;
       const Real changed = change(part);
       converged_ = changed <= unit * this->size_of(plate_force, part) / plain(e.mass);
-      if (!within_step && round > 2 && !converged_ && changed > last / 2) return;  // nor would it
+      if (!within_step && round > 2 && !converged_ && changed > last / 2) return;  // no convergence
       last = changed;
       if (within_step && changed < least) {
         least = changed;
         nearest = *this;
       }
-      // The derivatives of a dual number converge one round later.
+      // Dual derivatives converge one iteration later.
       const bool ends = within_step && round + 1 == most_rounds;
       if (!converged && !ends) continue;
       if (!converged) static_cast<SeriesStep<T>&>(*this) = nearest;
@@ -117,7 +117,7 @@ class CreepFlow : public SeriesStep<T> {
       const T missing = needed - direct - linear * t, move = missing / slope;
       const bool balanced =
           abs(missing) <= 4 * unit * (abs(needed) + abs(direct) + abs(linear * t));
-      const T most = 1 + abs(t);  // a longer move overshoots where friction is nearly all used
+      const T most = 1 + abs(t);  // a longer move overshoots near the friction limit
       t += move > most ? most : move < -most ? -most : move;
       if (!(slope > 0 && abs(t) < steepest)) return false;  // falling friction balances nothing
       if (!balanced) continue;
@@ -157,9 +157,9 @@ class CreepFlow : public SeriesStep<T> {
     const T w = e.across.value, w_rate = e.across.rate * step, load_rate = e.load.rate * step;
     x[0] = start.x;
     y[0] = start.skin;
-    T before{0};  // F d + S u, of the order before
+    T before{0};  // F d + S u of the preceding order
     for (int n = 0;; ++n) {
-      // What does not depend on t of this order; then t, and what it adds.
+      // Terms without t of this order; then t and its contribution.
       T square{0}, product{0};
       for (int i = 1; i < n; ++i) {
         square += t[i] * t[n - i] - s[i] * s[n - i];
@@ -275,7 +275,7 @@ class CreepFlow : public SeriesStep<T> {
 
   T t_{0};                               // at the start
   std::array<T, N + 1> acceleration_{};  // a, in the time σ, m/s²
-  std::array<Real, N> changes_{};        // of it in the last round
+  std::array<Real, N> changes_{};        // its changes in the last iteration
   bool converged_{false}, holds_{false};
 };
 

@@ -56,8 +56,7 @@ class SeriesFlow : public SeriesStep<T> {
   /// Longest step in units of the fastest time constant, even at rest: rounding of the start then
   /// remains rounding. Also the largest number of step reductions.
   static constexpr Real longest = 8;
-  static constexpr Real farther =
-      1024;  // than the step that was tried, whose powers must be numbers
+  static constexpr Real farther = 1024;  // times the tried step; its powers must be finite
   static constexpr int most_tries = 200;
 
   int begins_{0};  // the order at which u and w begin
@@ -108,8 +107,8 @@ class SeriesFlow : public SeriesStep<T> {
     if (starts_to_slide(e, s))
       return (e.held ? turns : (abs(pull) + friction) / m + turns) / turns * linear_rate(e);
     const Real speed = hypot(u, w), along = u / speed, across = w / speed;
-    // What friction takes from the pull, and how fast it turns with the velocity.
-    // The plate accelerates too.
+    // Friction in the balance of forces, and its turning rate with the velocity.
+    // The plate may accelerate.
     const Real apart = pull - m * plain(e.plate_velocity.rate);
     const Real left = abs(apart - friction * along) + friction * across * across;
     return (e.held ? turns : left / m + abs(plain(e.across.rate))) / speed;
@@ -134,7 +133,7 @@ class SeriesFlow : public SeriesStep<T> {
       const Real w_end = begins_ > 0 ? w_rate : w + w_rate;
       const Real w_least = w * w_end > 0 ? std::min(abs(w), abs(w_end)) : Real(0);
       const Real least = max({w_least, r[0] - 2 * r[1], p[0] - 2 * p[1]});
-      // The square of r is known to the rounding of its largest.
+      // The error of r² is the rounding of its largest value.
       found.known = least > r[0] / 16;
       found.root = (beyond(r, r) + beyond(p, p)) / least;
       found.direction = (beyond(r, d) + d[0] * found.root) / least;
@@ -160,7 +159,7 @@ class SeriesFlow : public SeriesStep<T> {
     const std::array<T, 2> w{e.across.value, e.across.rate * step};
     const std::array<T, 3> w_squared{w[0] * w[0], 2 * w[0] * w[1], w[1] * w[1]};
     const T load_rate = e.load.rate * step;
-    T before{0};  // F d + S u, of the order before
+    T before{0};  // F d + S u of the preceding order
     for (int n = 0;; ++n) {
       e.follow(y, v, n, T(step));
       const T u = u_[n] = n < 2 ? v[n] - v_p[n] : v[n];
@@ -204,18 +203,18 @@ class SeriesFlow : public SeriesStep<T> {
     y[0] = start.skin;
     const T w = e.across.rate * step, load_rate = e.load.rate * step;
     const T strength = e.load.value * e.plate_force;
-    T slope{0}, before{0};  // of the direction by u/σ; F d + S u, of the order before
+    T slope{0}, before{0};  // ∂d/∂(u/σ); F d + S u of the preceding order
     for (int n = 0;; ++n) {
       const T part = T(step) / T(n + 1);
       x[n + 1] = part * v[n];
       e.follow(y, v, n, T(step));
-      // All forces of this order but the plate's.
+      // All forces of this order except plate friction.
       T others = -e.damping * v[n] - e.stiffness * x[n] - e.skin_factor.value * y[n] +
                  (n == 0   ? e.force.value
                   : n == 1 ? e.force.rate * step
                            : T(0));
       if (n > 0) others -= step * (e.damping_rate * v[n - 1] + e.skin_factor.rate * y[n - 1]);
-      T product{0}, square{0};  // what d and ρ of this order are without u of the next
+      T product{0}, square{0};  // d and ρ of this order without u of the next
       for (int i = 1; i < n; ++i) {
         product -= r[i + 1] * d[n - i];
         square -= r[i + 1] * r[n - i + 1];
@@ -232,7 +231,7 @@ class SeriesFlow : public SeriesStep<T> {
         slope = w * w / (r[1] * r[1] * r[1]);
         v[1] = u[1] + e.plate_velocity.rate * step;
       } else {
-        // d = slope û + …: with û 0 first, then what it adds.
+        // d is linear in û: first with û = 0, then its contribution.
         r[n + 1] = square / (2 * r[1]);
         d[n] = (product - r[n + 1] * d[0]) / r[1];
         const T friction = e.plate_force * d[n] + known;
@@ -273,7 +272,7 @@ class SeriesFlow : public SeriesStep<T> {
     const Sums u = sums_of(inner(1).c);
     const Turning turning = bound_turning(e);
     if (!turning.known) return false;
-    // What is left of the equation: the terms from the order N on.
+    // Residual of the equation: terms from order N on.
     const Real missed = e.held ? Real(0)
                                : max(abs(b), abs(b + b_change)) * last(velocity, N) +
                                      abs(b_change) * last(velocity, N - 1) +
@@ -293,7 +292,7 @@ class SeriesFlow : public SeriesStep<T> {
     skin_bound = e.skin_error(h, sqrt(K) * error, v_bound, missed_skin);
     speed_bound = v_bound + turning.root;
     const auto rounding_of = [&](const Sums& sums) { return 2 * unit * sums[0]; };
-    // Of a slider beside a pin that hardly moves: what the rounding of the forces makes of its velocity.
+    // Slider beside a pin at rest: error of its velocity from the rounding of the forces.
     const Real forces =
         decay != 0 ? most_f * sums_of(skin.c)[0] + k * sums_of(position.c)[0] : Real(0);
     return v_bound <= rounding_of(sums_of(velocity.c)) + 2 * unit * forces * h / m &&

@@ -84,7 +84,7 @@ struct SeriesEquation {
     const Real stays = plain(skin_decay) + plain(skin_factor.rate);
     const Real least = f * f_end > 0 ? std::min(abs(f), abs(f_end)) : Real(0);
     const Real by_force = least > 0 ? pull / least : never;
-    // Where y is off by the most, either it turns or what pulls it back has not yet.
+    // At its largest error y turns, or its restoring term is still growing.
     const bool falls_back = plain(skin_decay) > 0 && stays > 0 && f >= 0 && f_end >= 0;
     const Real by_rate = falls_back ? (plain(skin_stiffness) * faster + missed) / stays : never;
     return std::min(by_force, by_rate);

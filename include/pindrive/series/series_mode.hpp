@@ -165,7 +165,7 @@ class SeriesMode {
     friend class SeriesMode;
     void add(Polynomial<T> path, bool at_zero, detail::ActiveGuard bound, bool plate, int side) {
       if (at_zero) leave_zero(path.c);
-      // A step that begins beyond the bound by rounding, and goes on there, ends at once.
+      // A step that begins beyond the guard by rounding and moves away ends at once.
       const bool speed = bound == detail::ActiveGuard::lower || bound == detail::ActiveGuard::upper;
       const bool beyond = speed && !at_zero && path.c[0] < 0 && path.c[1] < 0;
       const T zero = beyond ? T(0) : first_zero(path);
@@ -176,7 +176,7 @@ class SeriesMode {
     template <class Coefficients>
     static void leave_zero(Coefficients& c) {
       const bool turns = c[1] < 0 && c[2] > -c[1];
-      c[0] = turns ? c[1] * c[1] / (2 * c[2]) : T(0);  // twice as deep as it dips
+      c[0] = turns ? c[1] * c[1] / (2 * c[2]) : T(0);  // twice the depth of the minimum
       for (int n = 1; n <= 3 && !turns && !(c[n] > 0); ++n) c[n] = T(0);
     }
     std::array<Guard, 8> list_;
@@ -248,7 +248,7 @@ class SeriesMode {
     Polynomial<T> above = speed, below = T(-1) * speed;
     above += Line<T>{-range.from, T(0)};
     below += Line<T>{range.to, T(0)};
-    if (!oblique || range.from > 0)  // else the plate slides across at least
+    if (!oblique || range.from > 0)  // else the transverse velocity keeps the speed positive
       found.add(above, at == ActiveGuard::lower, ActiveGuard::lower, is_plate, 0);
     if (range.to < never)
       found.add(below, at == ActiveGuard::upper, ActiveGuard::upper, is_plate, 0);
@@ -272,7 +272,7 @@ class SeriesMode {
     if (stops.damping == 0) return;
     Polynomial<T> push = T(sense * end) * stops.stiffness * step.position;
     push += T(sense * end) * stops.damping * step.velocity;
-    // Not by the sum, whose rounding may be more.
+    // Added term by term: the sum may round more.
     push.c[0] = sense * (stops.stiffness * (end * step.position.c[0] - stops.travel) +
                          stops.damping * end * step.velocity.c[0]);
     found.add(push, at.push, ActiveGuard::push, false, end);

@@ -122,7 +122,7 @@ class SeriesStep {
     drop(stick_force, needed, unused);
   }
 
-  std::array<Polynomial<T>, 3> inner_;  // what the recurrences need beside these
+  std::array<Polynomial<T>, 3> inner_;  // auxiliary series of the recurrences
 
  private:
   template <class Visitor>

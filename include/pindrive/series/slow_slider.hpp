@@ -51,7 +51,7 @@ class SlowSliderFlow : public SeriesFlow<T> {
       this->expand(e, start, step);
       follow(e, step);
       part = within_step ? left : std::min({this->suggested_part(), left, Real(longest)});
-      // The derivatives of a dual number converge one round later.
+      // Dual derivatives converge one iteration later.
       if (converged) break;
       const Real changed = change(part);
       converged = changed <= unit * plain(e.skin_decay) * this->size_of(skin, part);
@@ -132,7 +132,7 @@ class SlowSliderFlow : public SeriesFlow<T> {
     const Real stays = plain(e.skin_decay) + plain(e.skin_factor.rate);
     const Real falls = min(b, b + b_change) + min({Real(0), S * load, S * (load + load_change)});
     const Real grown = h / m * (k * h + most_f * K / stays + max(Real(0), -falls));
-    // It may end where its load does, to the rounding of the time.
+    // May end with its load, within the time resolution.
     const Real ends = f + f_change + 4 * unit * (plain(time) + h) * abs(plain(e.skin_factor.rate));
     if (!(ends >= 0) || (!e.held && grown > Real(0.5))) return false;
     v_bound = e.held ? Real(0) : 2 * h / m * (missed + most_f * missed_skin / stays);
@@ -153,7 +153,7 @@ class SlowSliderFlow : public SeriesFlow<T> {
   }
 
   std::array<T, N + 1> stretching_{};  // (φ y)', in the time σ
-  std::array<Real, N + 1> changes_{};  // of it in the last round
+  std::array<Real, N + 1> changes_{};  // its changes in the last iteration
   bool holds_{false};
 };
 
