@@ -10,6 +10,7 @@
 #include "pindrive.h"
 #include "pindrive/certificate/certify.hpp"
 #include "pindrive/motion/crossings.hpp"
+#include "pindrive/motion/duration.hpp"
 #include "pindrive/motion/energy.hpp"
 #include "pindrive/motion/transient.hpp"
 

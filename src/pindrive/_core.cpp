@@ -21,6 +21,7 @@
 #include "owned_motion.hpp"
 #include "pindrive/certificate/certify.hpp"
 #include "pindrive/motion/crossings.hpp"
+#include "pindrive/motion/duration.hpp"
 #include "pindrive/motion/energy.hpp"
 #include "pindrive/motion/transient.hpp"
 

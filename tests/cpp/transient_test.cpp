@@ -2,6 +2,7 @@
 #include "pindrive/motion/transient.hpp"
 
 #include "check.hpp"
+#include "pindrive/motion/duration.hpp"
 
 namespace pd = pindrive;
 using check::expect;

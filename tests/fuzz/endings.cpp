@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "judge.hpp"
+#include "pindrive/motion/duration.hpp"
 #include "pindrive/motion/transient.hpp"
 #include "round_numbers.hpp"
 

@@ -175,7 +175,7 @@ MUTANTS = (
     ),
     Mutant(
         "every second zero of an oscillation is missed",
-        "flow/flow.hpp",
+        "flow/oscillator.hpp",
         "first + index * spacing;",
         "first + 2 * index * spacing;",
     ),
@@ -205,19 +205,19 @@ MUTANTS = (
     ),
     Mutant(
         "a zero is placed half a wave late",
-        "flow/flow.hpp",
+        "flow/oscillator.hpp",
         "if (angle <= 0) angle += pi;",
         "if (angle <= 0) angle += 2 * pi;",
     ),
     Mutant(
         "two growing waves are followed for long in one closed form",
-        "flow/flow.hpp",
+        "flow/oscillator.hpp",
         "return alpha_ > 0 && discriminant_ < 0 ? 3 / omega_",
         "return alpha_ > 0 && discriminant_ < 0 ? 60 / omega_",
     ),
     Mutant(
         "the series of the first instants is short",
-        "flow/flow.hpp",
+        "flow/oscillator.hpp",
         "n <= 14; ++n",
         "n <= 5; ++n",
     ),

@@ -95,9 +95,10 @@ class Breakaways {
     const T rate = sqrt((drive.stiffness + drive.finger.stiffness) / drive.mass);
     // A plate's direction may turn in no more time than that.
     const auto turned = [&] {
-      return abs(segment.at(segment.span).plate_force - s.plate_force) > T(1e-10) * scales.force;
+      return abs(segment.at(segment.span).plate_force - s.plate_force) >
+             T(brief_turn) * scales.force;
     };
-    return segment.segment.end - segment.segment.begin <= T(1e-11) / rate &&
+    return segment.segment.end - segment.segment.begin <= T(brief_segment) / rate &&
            !(within_limit(segment, s) > 8 * rounding<T> * scales.force) &&
            !(segment.oblique() && turned());
   }
@@ -126,7 +127,7 @@ class Breakaways {
     using std::abs;
     const Drive<T>& drive = segment.drive;
     const Line<T>& plate_velocity = segment.plate_velocity;
-    const T still = T(1e-12) * segment.scales.v;
+    const T still = T(still_velocity) * segment.scales.v;
     const bool with_plate = abs(s.v - plate_velocity.value) <= still;
     // Where both sliding velocities are zero, a plate's direction is that in which the pin sets out, or stays.
     const T drags = plate_velocity.rate, turns = hypot(drags, segment.across.rate);

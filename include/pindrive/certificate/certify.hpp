@@ -17,6 +17,7 @@
 #include "pindrive/certificate/certificate.hpp"
 #include "pindrive/certificate/segment_guards.hpp"
 #include "pindrive/flow/positivity.hpp"
+#include "pindrive/model/limits.hpp"
 #include "pindrive/motion/evaluated_segment.hpp"
 #include "pindrive/motion/motion.hpp"
 #include "pindrive/motion/period_samples.hpp"
@@ -80,11 +81,6 @@ class Certifier {
     const T begin = std::max(samples.begin(tolerance), detail::last_breakpoint(motion_.inputs()));
     raise(result_.steady_since, std::max((since - begin) / outcome.period - T(1), T(0)));
   }
-
-  /// Depth, as a fraction of the largest value, to which a guard may be negative between two nodes
-  /// unnoticed; and number of panels at each end of a segment before its middle is skipped.
-  static constexpr T unseen = T(1e-10);
-  static constexpr int walked = 2048;
 
   template <class Trajectory>
   using Evaluated = detail::EvaluatedSegment<T, Trajectory>;
@@ -173,8 +169,10 @@ class Certifier {
     for (int panels = 0; low < evaluated.span && go_on_(); ++panels) {
       const bool grows = !oscillator.oscillates() || -alpha * low > 40;
       const T length = !waves ? evaluated.span : grows ? std::max(quick, low / 2) : quick;
-      const bool leaps = panels == walked && evaluated.span - low > (walked + 1) * length;
-      T high = leaps ? evaluated.span - walked * length : std::min(low + length, evaluated.span);
+      const bool leaps = panels == detail::walked_panels &&
+                         evaluated.span - low > (detail::walked_panels + 1) * length;
+      T high = leaps ? evaluated.span - detail::walked_panels * length
+                     : std::min(low + length, evaluated.span);
       if (!(high > low)) high = evaluated.span;  // so late that a panel is lost in rounding
       const auto to = evaluated.at(high);
       if (leaps)
@@ -194,8 +192,8 @@ class Certifier {
     const auto from = evaluated.at(T(0)), to = evaluated.at(evaluated.span);
     const T known = std::max(evaluated.unsure(from), evaluated.unsure(to));
     for (const auto& [guard, law, scale, slid] : Guards<BySeries<T>>(evaluated)) {
-      const T least =
-          lowest(guard, unseen * scale) + (law == &Certificate<T>::force_bound ? known : slid);
+      const T least = lowest(guard, T(detail::unseen_violation) * scale) +
+                      (law == &Certificate<T>::force_bound ? known : slid);
       if (!(least >= 0)) worst(result_.*law, least, scale);
     }
     laws(evaluated, from, errors);
@@ -232,7 +230,7 @@ class Certifier {
       for (int i = 0; i < guards.size(); ++i) {
         const auto& [guard, law, scale, slid] = guards[i];
         const T lowest = guard.lowest(oscillator, guard.at(before.moment), guard.at(now.moment),
-                                      flatness[i], unseen * scale);
+                                      flatness[i], T(detail::unseen_violation) * scale);
         if (!(lowest >= 0)) worst(result_.*law, lowest, scale);
       }
       laws(evaluated, now, errors);

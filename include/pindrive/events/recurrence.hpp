@@ -77,12 +77,12 @@ class CycleDetector {
   /// ending in the outcome if the event closes a cycle.
   void visit(const Segment<T>& ended, const Mode& mode, T time, T time_error, const State<T>& state,
              Outcome<T>& outcome) {
-    if (count_ < first_kept) {
+    if (count_ < first_kept_event) {
       ++count_;
       return;
     }
     const Event now{time, time_error, mode, state};
-    if (count_ > first_kept) {
+    if (count_ > first_kept_event) {
       if (returns_to(kept_, ended, now, outcome)) return;
       if (count_ > short_memory && returns_to(recent_, ended, now, outcome)) return;
       if (period_ > 0 && approaches(ended, now, outcome)) return;
@@ -116,9 +116,6 @@ class CycleDetector {
     T stuck{0};  ///< time of stick on the plate since then, s
   };
 
-  static constexpr long long first_kept = 3;  ///< index of the first event that is kept
-  /// Events after which the recent state is renewed.
-  static constexpr long long short_memory = 32;
   static constexpr int windows_in_block = irregular_windows / 8;
   static constexpr T never = std::numeric_limits<T>::infinity();
 
@@ -235,10 +232,10 @@ class CycleDetector {
 
   const Drive<T>& drive_;
   Visit kept_, recent_, followed_;
-  long long count_{0};          ///< events so far
-  long long next_{first_kept};  ///< count at which the kept visit is renewed
-  long long period_{0};         ///< period of the followed approach, in events; 0 without one
-  T distance_{0}, ratio_{1};    ///< distance of its last return; ratio to the distance before
+  long long count_{0};                ///< events so far
+  long long next_{first_kept_event};  ///< count at which the kept visit is renewed
+  long long period_{0};               ///< period of the followed approach, in events; 0 without one
+  T distance_{0}, ratio_{1};          ///< distance of its last return; ratio to the distance before
 
   int in_window_{0}, windows_{0};  ///< events in the window, windows so far
   int turns_{0};                   ///< changes between longer and shorter windows

@@ -18,17 +18,10 @@
 #pragma once
 
 #include "pindrive/kernel/kernel_progress.hpp"
+#include "pindrive/model/limits.hpp"
 
 namespace pindrive::detail {
 inline namespace PINDRIVE_TARGET {
-
-/// Smallest distance of an extremum of the velocity from the plate velocity, relative to the
-/// latter: closer, the time of the event has less than half of the digits.
-inline constexpr double near_grazing = 1e-9;
-/// Half periods evaluated; each costs a few operations, of a whole pack if one drive needs it.
-inline constexpr int most_half_turns = 4096;
-/// Rounds evaluated before a release is left to the general core.
-inline constexpr int most_rounds = 1 << 18;
 
 /// Round, from one progress to the next. `Later`: not the first round.
 template <class V, bool Later, bool Measured>

@@ -2,6 +2,7 @@
 /// points, extreme velocities and given velocities for the kernel.
 #pragma once
 
+#include "pindrive/model/limits.hpp"
 #include "pindrive/numbers/elementary.hpp"
 
 namespace pindrive::detail {
@@ -68,9 +69,6 @@ struct Oscillation {
   V extreme_angle, extreme;
   MaskOf<V> oscillates;  ///< mask: damping so small that the sine of a half period keeps its digits
 
-  /// Smallest 1 − ζ² for which `oscillates` holds.
-  static constexpr double least = 0.02;
-
   Oscillation(const V& mass, const V& stiffness, const V& damping) {
     const V zero(0.0), per_mass = V(1.0) / mass;
     omega0_squared = stiffness * per_mass;
@@ -78,7 +76,7 @@ struct Oscillation {
     omega0 = root(omega0_squared);
     alpha = V(-0.5) * damping * per_mass;
     const V squared = (omega0 + alpha) * (omega0 - alpha);
-    oscillates = V(least) * omega0_squared < squared;
+    oscillates = V(least_discriminant) * omega0_squared < squared;
     omega = root(larger(squared, zero));
     per_omega = V(1.0) / omega;
     rho = zero - alpha * per_omega;

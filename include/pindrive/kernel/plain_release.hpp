@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pindrive/kernel/oscillation.hpp"
+#include "pindrive/model/limits.hpp"
 
 namespace pindrive::detail {
 inline namespace PINDRIVE_TARGET {
@@ -58,10 +59,6 @@ V one_or_minus_one(const V& n) {
   const BitsOf<V> low = bits(n + V(0x1p52));
   return from_bits<V>((low << 63) | bits(V(1.0)));
 }
-
-/// Relative difference below which two numbers may be equal: a thousand times the accumulated
-/// rounding of the evaluated half periods.
-inline constexpr double near_tie = 1e-12;
 
 /// Standard release, mirrored so that the plate moves forward, with derived values.
 template <class V>

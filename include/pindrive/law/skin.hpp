@@ -165,7 +165,7 @@ class SlidingSkin : public ContactPointState<T> {
                                                     : range.from;
       friction = range.at(has_slider_state() ? slider_speed_ : range.from);
       const T pulls = slip_sign_ * s.skin, most = friction * load.value;
-      if (std::abs(plain(pulls - most)) > 64 * rounding<T> * plain(pulls + most) + s.force_error) {
+      if (std::abs(plain(pulls - most)) > jump_error<T> * plain(pulls + most) + s.force_error) {
         must_jump_ = true;  // the load has jumped
         had_pin_speed_ = false;
         jump_ = pulls > most ? goes.next_faster(branch_, pulls / load.value)
@@ -281,7 +281,7 @@ class SlidingSkin : public ContactPointState<T> {
   bool is_nonzero(T distance, T u) const {
     using std::abs;
     const T size = abs(u) + abs(stretch_rate(contact.branch(branch_).force));
-    return abs(distance) > 64 * rounding<T> * size;
+    return abs(distance) > jump_error<T> * size;
   }
 
   /// Sets the jump at a load of zero: loss of contact, slip under the growing load, or stick.

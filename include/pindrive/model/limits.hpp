@@ -17,9 +17,19 @@ inline constexpr T rounding = 4 * std::numeric_limits<T>::epsilon();
 template <class T>
 inline constexpr T first_grip = 64 * rounding<T>;
 
+/// Relative difference of two forces, or of two speeds, beyond which the load or the pin velocity of
+/// a slider has jumped: the accumulated rounding of a segment is below.
+template <class T>
+inline constexpr T jump_error = 64 * rounding<T>;
+
 /// Events at one instant after which a motion is terminated. Physics has two or three (a contact
 /// slips, a second one follows, a breakpoint is passed); more would never end.
 inline constexpr int standstill_limit = 100;
+
+/// Index of the first event whose state is kept for comparison: most motions come to rest after few.
+inline constexpr long long first_kept_event = 3;
+/// Events after which the recent kept state is renewed, so that a short period is found soon.
+inline constexpr long long short_memory = 32;
 
 /// Distance within which two states are equal, as a fraction of the natural scales of the motion:
 /// well above the rounding of the events of one period.
@@ -58,6 +68,55 @@ inline constexpr double band_error_at_rest = 64 * rest_tolerance;
 /// Angle (rad) before the end of a segment within which a position belongs to the end: the velocity
 /// at an event is set exactly, and its closed form reaches zero slightly earlier or later.
 inline constexpr double at_end = 1e-6;
+
+/// Relative time before the end of a segment within which a turning point belongs to the next segment.
+inline constexpr double turning_at_end = 1e-9;
+
+// ---- series ------------------------------------------------------------------------------------
+
+/// Longest step of a series in units of its fastest time constant, even at rest: rounding of the
+/// start then remains rounding.
+inline constexpr double longest_step = 8;
+/// Factor between tried and used step of a series; the powers of the step must be finite.
+inline constexpr double farthest_step = 1024;
+/// Reductions of a step before its truncation error is accepted as it is.
+inline constexpr int most_reductions = 200;
+/// Factor by which a step of slow motion is shortened until its iteration converges.
+inline constexpr double step_reduction = 0.75;
+/// Iterations and reductions of a step of slow motion before the Taylor series of the whole motion is
+/// used instead.
+inline constexpr int slow_iterations = 16, slow_reductions = 40;
+/// Largest ratio t = (x' − v_p)/w of creep: closer to the friction limit the boundary layer is never thin.
+inline constexpr double steepest_creep = 1e4;
+
+// ---- kernel ------------------------------------------------------------------------------------
+
+/// Relative difference below which the kernel leaves a decision to the general core: a thousand times
+/// the accumulated rounding of the evaluated half periods.
+inline constexpr double near_tie = 1e-12;
+/// Smallest distance of an extremum of the velocity from the plate velocity, relative to the latter:
+/// closer, the time of the event has less than half of the digits.
+inline constexpr double near_grazing = 1e-9;
+/// Smallest 1 − ζ² in the kernel: closer to critical damping the sine of a half period loses digits.
+inline constexpr double least_discriminant = 0.02;
+/// Half periods evaluated by the kernel; each costs a few operations, of a whole pack if one drive
+/// needs it.
+inline constexpr int most_half_turns = 4096;
+/// Rounds evaluated by the kernel before a release is left to the general core.
+inline constexpr int most_rounds = 1 << 18;
+
+// ---- certificate -------------------------------------------------------------------------------
+
+/// Depth, as a fraction of the largest value, to which a guard may be negative between two nodes
+/// unnoticed.
+inline constexpr double unseen_violation = 1e-10;
+/// Panels at each end of a segment that are evaluated before its middle is skipped.
+inline constexpr int walked_panels = 2048;
+/// Duration of a segment in time constants below which nothing changes, and relative change of the
+/// friction of an oblique plate below which its direction is constant.
+inline constexpr double brief_segment = 1e-11, brief_turn = 1e-10;
+/// Relative velocity, as a fraction of the largest velocity, below which a pin is at rest on a surface.
+inline constexpr double still_velocity = 1e-12;
 
 }  // namespace detail
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "pindrive/events/simulate.hpp"
+#include "pindrive/motion/duration.hpp"
 #include "pindrive/motion/motion.hpp"
 #include "pindrive/motion/transient.hpp"
 

@@ -1,4 +1,4 @@
-/// Numbers of a motion (docs/theory.md, section 6), computed from its segments, not from samples.
+/// Measurement of the numbers of a motion (docs/theory.md, section 6), from its segments, not from samples.
 #pragma once
 
 #include <algorithm>
@@ -7,114 +7,16 @@
 #include <limits>
 
 #include "pindrive/flow/roots.hpp"
+#include "pindrive/model/limits.hpp"
 #include "pindrive/motion/contact_use.hpp"
 #include "pindrive/motion/extrema.hpp"
 #include "pindrive/motion/motion.hpp"
 #include "pindrive/motion/settling.hpp"
 #include "pindrive/motion/steady_numbers.hpp"
 #include "pindrive/motion/steady_since.hpp"
-#include "pindrive/numbers/named_number.hpp"
+#include "pindrive/motion/transient_numbers.hpp"
 
 namespace pindrive {
-
-/// Use of one contact after the transient: in each period of a steady motion, and in the mean.
-template <class T>
-struct Afterwards {
-  static constexpr T none = std::numeric_limits<T>::quiet_NaN();
-
-  T reversals{none}, time_stuck{none}, distance_slid{none}, dissipated{none};  ///< in one period
-  T power{none};  ///< mean power of the friction of a steady motion or under a pin at rest, W
-
-  void add(const ContactUse<T>& period, T time) {
-    reversals = period.reversals;
-    time_stuck = period.time_stuck;
-    distance_slid = period.distance_slid;
-    dissipated = period.dissipated;
-    power = period.dissipated / time;
-  }
-};
-
-template <class T>
-struct Transient {
-  static constexpr T none = std::numeric_limits<T>::quiet_NaN();
-
-  T peak_displacement{none}, peak_time{none};  ///< x_m,a at t_a: m, s
-  /// x_m,c at t_c; t_c infinite if only approached
-  T trough_displacement{none}, trough_time{none};
-  T swing{none};                                        ///< (17), m
-  T return_velocity{none}, return_velocity_time{none};  ///< v_m,b at t_b: m/s, s
-  T first_reversal_time{none};                          ///< t_1, s
-  T settling_time{none};                                ///< start of the time within the band, s
-  T rest_time{none};        ///< start of permanent rest, s; infinite if the pin never comes to rest
-  T last_event_time{none};  ///< last contact event, s; 0 without any after the release,
-  T steady_since{none};     ///< start of a steady oscillation, s
-  T peak_stretch{none},
-      /// largest stretch (m) and stretch rate (m/s) of a compliant finger
-      peak_stretch_rate{none};
-  T end_position{none};         ///< x_end: position of rest, or centre of the final oscillation, m
-  T end_time{none};             ///< t*: end of the transient, s
-  ContactUse<T> plate, finger;  ///< in the transient; peak forces of the whole motion
-
-  SteadyNumbers<T> steady;  ///< numbers of the final oscillation
-  T decay_energy{none};     ///< energy that a final decay has yet to dissipate, J
-  Afterwards<T> plate_afterwards, finger_afterwards;
-};
-
-/// Numbers by their names in the table of quantities.
-template <class T>
-inline constexpr NamedNumber<T, Transient<T>> transient_numbers[] = {
-    {"transient.peak_displacement", [](const Transient<T>& t) { return t.peak_displacement; }},
-    {"transient.peak_time", [](const Transient<T>& t) { return t.peak_time; }},
-    {"transient.trough_displacement", [](const Transient<T>& t) { return t.trough_displacement; }},
-    {"transient.trough_time", [](const Transient<T>& t) { return t.trough_time; }},
-    {"transient.swing", [](const Transient<T>& t) { return t.swing; }},
-    {"transient.return_velocity", [](const Transient<T>& t) { return t.return_velocity; }},
-    {"transient.return_velocity_time",
-     [](const Transient<T>& t) { return t.return_velocity_time; }},
-    {"transient.first_reversal_time", [](const Transient<T>& t) { return t.first_reversal_time; }},
-    {"transient.settling_time", [](const Transient<T>& t) { return t.settling_time; }},
-    {"transient.rest_time", [](const Transient<T>& t) { return t.rest_time; }},
-    {"transient.last_event_time", [](const Transient<T>& t) { return t.last_event_time; }},
-    {"transient.peak_stretch", [](const Transient<T>& t) { return t.peak_stretch; }},
-    {"transient.peak_stretch_rate", [](const Transient<T>& t) { return t.peak_stretch_rate; }},
-    {"transient.end_time", [](const Transient<T>& t) { return t.end_time; }},
-    {"transient.plate.reversals", [](const Transient<T>& t) { return t.plate.reversals; }},
-    {"transient.plate.time_stuck", [](const Transient<T>& t) { return t.plate.time_stuck; }},
-    {"transient.plate.distance_slid", [](const Transient<T>& t) { return t.plate.distance_slid; }},
-    {"transient.plate.dissipated", [](const Transient<T>& t) { return t.plate.dissipated; }},
-    {"transient.plate.peak_force", [](const Transient<T>& t) { return t.plate.peak_force; }},
-    {"transient.finger.reversals", [](const Transient<T>& t) { return t.finger.reversals; }},
-    {"transient.finger.time_stuck", [](const Transient<T>& t) { return t.finger.time_stuck; }},
-    {"transient.finger.distance_slid",
-     [](const Transient<T>& t) { return t.finger.distance_slid; }},
-    {"transient.finger.dissipated", [](const Transient<T>& t) { return t.finger.dissipated; }},
-    {"transient.finger.peak_force", [](const Transient<T>& t) { return t.finger.peak_force; }},
-    {"ending.position", [](const Transient<T>& t) { return t.end_position; }},
-    {"ending.steady_since", [](const Transient<T>& t) { return t.steady_since; }},
-    {"ending.amplitude", [](const Transient<T>& t) { return t.steady.amplitude; }},
-    {"ending.period", [](const Transient<T>& t) { return t.steady.period; }},
-    {"ending.least_amplitude", [](const Transient<T>& t) { return t.steady.least_amplitude; }},
-    {"ending.peak_velocity", [](const Transient<T>& t) { return t.steady.peak_velocity; }},
-    {"ending.rounds", [](const Transient<T>& t) { return t.steady.rounds; }},
-    {"ending.decay_energy", [](const Transient<T>& t) { return t.decay_energy; }},
-    {"ending.plate.reversals", [](const Transient<T>& t) { return t.plate_afterwards.reversals; }},
-    {"ending.plate.time_stuck",
-     [](const Transient<T>& t) { return t.plate_afterwards.time_stuck; }},
-    {"ending.plate.distance_slid",
-     [](const Transient<T>& t) { return t.plate_afterwards.distance_slid; }},
-    {"ending.plate.dissipated",
-     [](const Transient<T>& t) { return t.plate_afterwards.dissipated; }},
-    {"ending.plate.power", [](const Transient<T>& t) { return t.plate_afterwards.power; }},
-    {"ending.finger.reversals",
-     [](const Transient<T>& t) { return t.finger_afterwards.reversals; }},
-    {"ending.finger.time_stuck",
-     [](const Transient<T>& t) { return t.finger_afterwards.time_stuck; }},
-    {"ending.finger.distance_slid",
-     [](const Transient<T>& t) { return t.finger_afterwards.distance_slid; }},
-    {"ending.finger.dissipated",
-     [](const Transient<T>& t) { return t.finger_afterwards.dissipated; }},
-    {"ending.finger.power", [](const Transient<T>& t) { return t.finger_afterwards.power; }},
-};
 
 /// Measures a motion over [0, duration]; the motion outlives the measurement. Numbers of later
 /// events, or of none, are NaN.
@@ -201,7 +103,8 @@ class Measurement {
       // A velocity of zero that ends the segment belongs to the next one.
       const Segment<T>* following = &segment + 1;
       const bool turns_at_end = following != motion_.end() && following->flow.velocity.start == 0;
-      const T inside = turns_at_end ? length(segment) * (1 - T(1e-9)) : length(segment);
+      const T inside =
+          turns_at_end ? length(segment) * (1 - T(detail::turning_at_end)) : length(segment);
       motion_.along(segment, [&](const auto& along) {
         along.each_root(along.velocity(), direction, inside, [&](T tau) {
           direction = -direction;
@@ -377,39 +280,5 @@ class Measurement {
   T duration_;
   GoOn go_on_;
 };
-
-/// Requested duration or, without one, long enough to see the ending: a decay to a thousandth and
-/// settled within the band or the default band, or a few periods of a steady motion.
-template <class T, class GoOn = Unattended>
-T duration_of(const Motion<T>& motion, T band, GoOn go_on = {}) {
-  using std::isfinite;
-  using std::sqrt;
-  if (isfinite(motion.inputs().duration)) return motion.inputs().duration;
-  constexpr T never = std::numeric_limits<T>::infinity();
-  const Outcome<T>& outcome = motion.outcome();
-  const T period = T(6.283185307179586) / sqrt(motion.drive().stiffness / motion.drive().mass);
-  const T last_begin = std::prev(motion.end())->begin;
-  switch (outcome.end) {
-    case End::resting:
-      return std::max(last_begin * T(1.25), period);
-    case End::decaying: {
-      const Measurement<T, GoOn> measured(motion, never, go_on);
-      const T settled = measured.settling_time(std::min(band, T(settling_band)));
-      const T decayed = measured.decayed() + period;  // infinite where there is nothing to decay
-      if (!(decayed < never)) return last_begin + period;
-      return settled * T(1.25) > decayed ? settled * T(1.25) : decayed;
-    }
-    case End::free:
-    case End::grazing:
-      return last_begin + 3 * outcome.period;
-    case End::stick_slip:
-    case End::limit_cycle:
-      return outcome.until + 3 * outcome.period;
-    case End::irregular:
-    case End::moving:
-      break;
-  }
-  return outcome.until;
-}
 
 }  // namespace pindrive

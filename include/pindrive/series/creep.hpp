@@ -16,6 +16,7 @@
 #include <cmath>
 #include <limits>
 
+#include "pindrive/model/limits.hpp"
 #include "pindrive/series/series.hpp"
 #include "pindrive/series/slow_slider.hpp"
 
@@ -50,7 +51,7 @@ class CreepFlow : public SeriesStep<T> {
     // Best iterate, for a known step whose iterations do not converge within rounding.
     SeriesStep<T> nearest;
     Real least = std::numeric_limits<Real>::infinity();
-    for (int round = 0; round < most_rounds && balance(e, start); ++round) {
+    for (int round = 0; round < detail::slow_iterations && balance(e, start); ++round) {
       // The iteration contracts.
       const Real v = plain(e.plate_velocity.value + e.across.value * t_), off = plain(start.v) - v;
       if (!within_step && round > 0 &&
@@ -72,15 +73,15 @@ class CreepFlow : public SeriesStep<T> {
         nearest = *this;
       }
       // Dual derivatives converge one iteration later.
-      const bool ends = within_step && round + 1 == most_rounds;
+      const bool ends = within_step && round + 1 == detail::slow_iterations;
       if (!converged && !ends) continue;
       if (!converged) static_cast<SeriesStep<T>&>(*this) = nearest;
       if (!within_step && !starts_from(e, start)) return;
       this->rescale(part);
       holds_ = within_step || bound(e, plain(e.mass) * change(part));
-      for (int tries = 0; !holds_ && tries < most_tries; ++tries) {
-        part *= shorter;
-        this->rescale(shorter);
+      for (int tries = 0; !holds_ && tries < detail::slow_reductions; ++tries) {
+        part *= Real(detail::step_reduction);
+        this->rescale(Real(detail::step_reduction));
         holds_ = bound(e, plain(e.mass) * change(part));
       }
       break;
@@ -94,10 +95,6 @@ class CreepFlow : public SeriesStep<T> {
  private:
   using SeriesStep<T>::N, SeriesStep<T>::unit, SeriesStep<T>::beyond, SeriesStep<T>::sums_of;
   using typename SeriesStep<T>::Sums;
-  static constexpr int most_rounds = 16, most_tries = 40;
-  static constexpr Real shorter = 0.75;
-  /// Largest slope t at the start: closer to the friction limit the boundary layer is never thin.
-  static constexpr Real steepest = 1e4;
 
   Polynomial<T>& inner(int i) { return this->inner_[i]; }  // t, √(1 + t²), t/√(1 + t²)
 
@@ -119,7 +116,8 @@ class CreepFlow : public SeriesStep<T> {
           abs(missing) <= 4 * unit * (abs(needed) + abs(direct) + abs(linear * t));
       const T most = 1 + abs(t);  // a longer move overshoots near the friction limit
       t += move > most ? most : move < -most ? -most : move;
-      if (!(slope > 0 && abs(t) < steepest)) return false;  // falling friction balances nothing
+      if (!(slope > 0 && abs(t) < Real(detail::steepest_creep)))
+        return false;  // falling friction balances nothing
       if (!balanced) continue;
       t_ = t;
       return true;

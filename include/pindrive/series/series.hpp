@@ -11,6 +11,7 @@
 
 #include "pindrive/flow/polynomial.hpp"
 #include "pindrive/law/oblique.hpp"
+#include "pindrive/model/limits.hpp"
 #include "pindrive/series/series_equation.hpp"
 #include "pindrive/series/series_step.hpp"
 
@@ -39,9 +40,10 @@ class SeriesFlow : public SeriesStep<T> {
       this->trim();
       return;
     }
-    step = std::min({this->suggested_part(), 1 / ((rate / longest + rising_rate(equation)) * step),
-                     farthest / step, farther});
-    for (int tries = 0; tries < most_tries; ++tries, step = Real(0.75)) {
+    step = std::min({this->suggested_part(),
+                     1 / ((rate / Real(detail::longest_step) + rising_rate(equation)) * step),
+                     farthest / step, Real(detail::farthest_step)});
+    for (int tries = 0; tries < detail::most_reductions; ++tries, step = Real(0.75)) {
       this->rescale(step);
       if (bound(equation)) break;
     }
@@ -53,12 +55,6 @@ class SeriesFlow : public SeriesStep<T> {
   using typename SeriesStep<T>::Sums;
 
  private:
-  /// Longest step in units of the fastest time constant, even at rest: rounding of the start then
-  /// remains rounding. Also the largest number of step reductions.
-  static constexpr Real longest = 8;
-  static constexpr Real farther = 1024;  // times the tried step; its powers must be finite
-  static constexpr int most_tries = 200;
-
   int begins_{0};  // the order at which u and w begin
 
   Polynomial<T>& inner(int i) { return this->inner_[i]; }  // d, u

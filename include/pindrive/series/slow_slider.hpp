@@ -14,6 +14,7 @@
 #include <array>
 #include <cmath>
 
+#include "pindrive/model/limits.hpp"
 #include "pindrive/model/model.hpp"
 #include "pindrive/series/series.hpp"
 
@@ -50,20 +51,22 @@ class SlowSliderFlow : public SeriesFlow<T> {
     for (int round = 0;; ++round) {
       this->expand(e, start, step);
       follow(e, step);
-      part = within_step ? left : std::min({this->suggested_part(), left, Real(longest)});
+      part =
+          within_step ? left : std::min({this->suggested_part(), left, Real(detail::longest_step)});
       // Dual derivatives converge one iteration later.
       if (converged) break;
       const Real changed = change(part);
       converged = changed <= unit * plain(e.skin_decay) * this->size_of(skin, part);
-      if (round == most_rounds || (round > 2 && !converged && changed > last / 2)) return;
+      if (round == detail::slow_iterations || (round > 2 && !converged && changed > last / 2))
+        return;
       last = changed;
     }
     this->rescale(part);
     if (!within_step && !starts_from(start)) return;
     holds_ = within_step || bound(e, start.time, change(part));
-    for (int tries = 0; !holds_ && tries < most_tries; ++tries) {
-      part *= shorter;
-      this->rescale(shorter);
+    for (int tries = 0; !holds_ && tries < detail::slow_reductions; ++tries) {
+      part *= Real(detail::step_reduction);
+      this->rescale(Real(detail::step_reduction));
       holds_ = bound(e, start.time, change(part));
     }
     if (holds_) this->trim();
@@ -75,8 +78,6 @@ class SlowSliderFlow : public SeriesFlow<T> {
  private:
   using SeriesStep<T>::N, SeriesStep<T>::unit, SeriesStep<T>::sums_of;
   using typename SeriesStep<T>::Sums;
-  static constexpr int most_rounds = 16, most_tries = 40;
-  static constexpr Real longest = 8, shorter = 0.75;
 
   /// Estimate of the fastest rate of the slow motion, 1/s; the skin acts as a damper φ.
   static Real slow_rate(const SeriesEquation<T>& e, const SeriesState<T>& start) {
