@@ -20,6 +20,7 @@ def run(*arguments: str | Path) -> Result:
 
 def refused(*arguments: str | Path) -> str:
     """The one line on the standard error of a command that refuses and leaves the folder as is."""
+    assert not Path("pyproject.toml").exists(), "in_empty_folder: others write to the checkout"
     before = {path: path.stat().st_mtime_ns for path in Path().rglob("*")}
     result = run(*arguments)
     assert result.exit_code == 2, result.output

@@ -206,6 +206,7 @@ def test_a_scan_along_a_raw_recording_shows_what_the_hand_itself_does(tmp_path: 
         assert line.stroke == pytest.approx(like.stroke, rel=0.05)
 
 
+@pytest.mark.usefixtures("in_empty_folder")
 def test_check_says_what_a_recording_is(tmp_path: Path) -> None:
     t, ways = mouse(truth())
     file = write(tmp_path / "raw.csv", "time [s], dx [count], dy [count]", t, ways, 0.0 * ways)
