@@ -24,8 +24,8 @@ void expect(bool holds, const char* what, double found) {
 
 /// A pin at full pull under a hand of 60 mm/s.
 template <class T>
-pd::SeriesEquation<T> pulled(T across) {
-  pd::SeriesEquation<T> e{T(0.01), T(0.64), T(100.0)};
+pd::detail::SeriesEquation<T> pulled(T across) {
+  pd::detail::SeriesEquation<T> e{T(0.01), T(0.64), T(100.0)};
   e.force = {T(-0.02), T(0)};
   e.plate_velocity = {T(0.06), T(0)};
   e.across = {across, T(0)};
@@ -35,19 +35,20 @@ pd::SeriesEquation<T> pulled(T across) {
 
 template <class T>
 struct End {
-  pd::SeriesState<T> state;
+  pd::detail::SeriesState<T> state;
   int steps{0};
   T bounds{0};  ///< of the velocity, summed
 };
 
 /// Follows a mode for a time: by creep where it creeps, or by the Taylor series alone.
 template <class T>
-End<T> follow(pd::SeriesEquation<T> e, pd::SeriesState<T> state, double duration, bool creep) {
+End<T> follow(pd::detail::SeriesEquation<T> e, pd::detail::SeriesState<T> state, double duration,
+              bool creep) {
   End<T> end{state};
   for (double t = 0; t < duration * (1 - 1e-15) && end.steps < 200000; ++end.steps) {
     const T left = duration - t;
-    const pd::SeriesStep<T> step =
-        creep ? pd::series_step(e, end.state, left) : pd::SeriesFlow<T>(e, end.state, left);
+    const pd::detail::SeriesStep<T> step = creep ? pd::detail::series_step(e, end.state, left)
+                                                 : pd::detail::SeriesFlow<T>(e, end.state, left);
     end.state = step.at(step.span());
     e = e.from(step.span());
     end.bounds += step.v_bound;
@@ -80,7 +81,7 @@ void beside_taylor() {
       e.skin_drift = 0.5 * uniform(random);
       e.damping_rate = 5 * uniform(random);
     }
-    const pd::SeriesState<double> start{2e-3 * uniform(random), 0.1 * uniform(random), 0};
+    const pd::detail::SeriesState<double> start{2e-3 * uniform(random), 0.1 * uniform(random), 0};
     const auto whole = follow(e, start, 0.05, false), reduced = follow(e, start, 0.05, true);
     const double off = std::max(std::abs(whole.state.x - reduced.state.x) / 3e-3,
                                 std::abs(whole.state.v - reduced.state.v) / 0.06);
@@ -97,7 +98,7 @@ void beside_taylor() {
 /// Towards the aligned case nothing jumps: the displacement comes to that of a pin that sticks as the
 /// across velocity goes to zero, in a number of steps that does not grow.
 void joins_the_aligned_case() {
-  const pd::SeriesState<double> start{1e-3, 0.06, 0};
+  const pd::detail::SeriesState<double> start{1e-3, 0.06, 0};
   const double carried = 1e-3 + 0.06 * 0.05;
   double before = 1;
   for (double across = 1e-3; across > 1e-20; across /= 10) {
@@ -127,16 +128,16 @@ void through_zero() {
   e.across.rate = -0.2;
   auto mirrored = pulled(-0.004);
   mirrored.across.rate = 0.2;
-  pd::SeriesState<double> state{1e-3, 0.058, 0}, other = state;
+  pd::detail::SeriesState<double> state{1e-3, 0.058, 0}, other = state;
   double t = 0, energy = 0, worst = 0;
-  const auto stored = [](const pd::SeriesState<double>& s) {
+  const auto stored = [](const pd::detail::SeriesState<double>& s) {
     return 0.005 * s.v * s.v + 50 * s.x * s.x;
   };
   const double at_start = stored(state);
   int steps = 0;
   for (; t < 0.04 * (1 - 1e-15) && steps < 2000; ++steps) {
-    const auto step = pd::series_step(e, state, 0.04 - t);
-    const auto twin = pd::series_step(mirrored, other, 0.04 - t);
+    const auto step = pd::detail::series_step(e, state, 0.04 - t);
+    const auto twin = pd::detail::series_step(mirrored, other, 0.04 - t);
     for (const double part : {0.0, 0.3, 0.7, 1.0}) {
       const double tau = part * step.span(), v = step.velocity.at(tau);
       const double w = e.across.at(tau), u = v - 0.06, force = step.plate_force.at(tau);
@@ -175,7 +176,7 @@ void bounds() {
   for (int i = 0; i < 40; ++i) {
     const double across = 1e-4 * (1 + i % 7), x = 1e-4 * i;
     auto state = follow(pulled(across), {x, 0.06, 0}, 0.003, true).state;
-    const pd::CreepFlow<double> step(pulled(across), state, 0.002);
+    const pd::detail::CreepFlow<double> step(pulled(across), state, 0.002);
     if (!step.is_valid()) continue;
     ++held;
     const auto fine = follow(pulled(L(across)), {state.x, state.v, 0}, step.span(), false);
@@ -188,8 +189,9 @@ void bounds() {
   }
   expect(held > 30, "creeps too seldom", held);
   // A pin that is off the velocity of creep, or cannot be held, does not creep.
-  expect(!pd::CreepFlow<double>(pulled(1e-3), {1e-3, 0.05, 0}, 0.01).is_valid(), "off", 0);
-  expect(!pd::CreepFlow<double>(pulled(1e-3), {8e-3, 0.06, 0}, 0.01).is_valid(), "not held", 0);
+  expect(!pd::detail::CreepFlow<double>(pulled(1e-3), {1e-3, 0.05, 0}, 0.01).is_valid(), "off", 0);
+  expect(!pd::detail::CreepFlow<double>(pulled(1e-3), {8e-3, 0.06, 0}, 0.01).is_valid(), "not held",
+         0);
 }
 
 /// Derivatives beside differences.

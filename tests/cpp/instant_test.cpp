@@ -70,7 +70,7 @@ double apart(const Case& c, int& count) {
     const auto inputs = pd::InputLines<double>::of(c.drive, c.inputs, segment).from(tau);
     state.skin = -friction.finger;
     const pd::Branch<double> branch = c.drive.finger.branch(segment.mode.finger_branch);
-    if (pd::SeriesMode<double>(c.drive, segment.mode, inputs)
+    if (pd::detail::SeriesMode<double>(c.drive, segment.mode, inputs)
             .has_slider_state())  // where its friction is this
       state.slider_velocity =
           pd::along(segment.mode.finger,

@@ -127,10 +127,10 @@ void departures() {
       for (const double across : {1e-3, -1.0, 1e3}) {
         double before = 0;
         for (const double pull : {1e-6, 1e-2, 1.0, 1e3}) {
-          const double p = pd::departure_acceleration(mass, friction, across, pull);
+          const double p = pd::detail::departure_acceleration(mass, friction, across, pull);
           const double force = mass * p + friction * p / std::hypot(p, across);
           worst = std::max(worst, std::abs(force - pull) / pull);
-          odd = odd && pd::departure_acceleration(mass, friction, across, -pull) == -p;
+          odd = odd && pd::detail::departure_acceleration(mass, friction, across, -pull) == -p;
           grows = grows && p > before;
           before = p;
         }
@@ -138,7 +138,7 @@ void departures() {
   expect(worst < 1e-14, "the acceleration that sets out needs the force that pulls");
   expect(odd, "... to either side alike");
   expect(grows, "... and grows with the pull");
-  expect(pd::departure_acceleration(1.0, 0.5, 1.0, 0.0) == 0, "without a pull it is zero");
+  expect(pd::detail::departure_acceleration(1.0, 0.5, 1.0, 0.0) == 0, "without a pull it is zero");
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ using check::expect;
 namespace {
 
 void later() {
-  pd::SeriesEquation<double> e{0.01, 0.4, 100};
+  pd::detail::SeriesEquation<double> e{0.01, 0.4, 100};
   e.force = {1, 2};
   e.plate_velocity = {3, 4};
   e.load = {5, 6};
@@ -31,7 +31,7 @@ void later() {
 
 /// (f y)' = K x' − D y − E with f = 2 τ, K = D = 7 and E = 3, of a pin of x' = 5 + 4 τ.
 void grows_from_nothing() {
-  pd::SeriesEquation<double> e{0.01, 0.4, 100};
+  pd::detail::SeriesEquation<double> e{0.01, 0.4, 100};
   e.skin_factor = {0, 2};
   e.skin_stiffness = e.skin_decay = 7;
   e.skin_drift = 3;

@@ -28,7 +28,7 @@ constexpr auto forward = ContactState::slip_forward, backward = ContactState::sl
                stick = ContactState::stick, elastic = ContactState::elastic_stick;
 
 bool closed(const pd::Drive<double>& d, const Mode& mode, const pd::InputLines<double>& inputs) {
-  return pd::SeriesMode<double>(d, mode, inputs).has_closed_form();
+  return pd::detail::SeriesMode<double>(d, mode, inputs).has_closed_form();
 }
 
 void closed_forms() {
@@ -62,7 +62,8 @@ void closed_forms() {
 void equations() {
   pd::InputLines<double> inputs{{0.1, 0.5}, {2, 1}, {}, {0.3, -1}, {3, -2}};
   const auto rigid = drive();
-  const auto e = pd::SeriesMode<double>(rigid, {backward, forward, 0, 1}, inputs).equation();
+  const auto e =
+      pd::detail::SeriesMode<double>(rigid, {backward, forward, 0, 1}, inputs).equation();
   expect(
       e.side == -1 && near(e.plate_force, 0.03, 1e-15) && e.plate_slope == -0.2 && e.load.rate == 1,
       "the plate's branch is continued to no speed");
@@ -73,11 +74,12 @@ void equations() {
              near(e.force.rate, -1 + 2 * finger, 1e-15),
          "... and its friction opposes, beside inertia and the force from outside");
   const auto soft = drive(400);
-  const auto sticks = pd::SeriesMode<double>(soft, {forward, elastic, 1, 0}, inputs).equation();
+  const auto sticks =
+      pd::detail::SeriesMode<double>(soft, {forward, elastic, 1, 0}, inputs).equation();
   expect(sticks.skin_factor.value == 1 && sticks.skin_stiffness == 400 && sticks.skin_decay == 0,
          "skin that sticks pulls with its force");
   const auto has_slider_state =
-      pd::SeriesMode<double>(soft, {forward, forward, 1, 1}, inputs).equation();
+      pd::detail::SeriesMode<double>(soft, {forward, forward, 1, 1}, inputs).equation();
   expect(near(has_slider_state.skin_factor.value, 0.3, 1e-15) &&
              near(has_slider_state.skin_factor.rate, -0.2, 1e-15) &&
              has_slider_state.skin_decay == 400 &&
@@ -86,7 +88,7 @@ void equations() {
   pd::Drive<double> stopped = rigid;
   stopped.stops = {1e-3, 5000, 2};
   const auto pushed =
-      pd::SeriesMode<double>(stopped, {stick, stick, 0, 0, pd::StopState::lower}, inputs)
+      pd::detail::SeriesMode<double>(stopped, {stick, stick, 0, 0, pd::StopState::lower}, inputs)
           .equation();
   expect(pushed.held && pushed.surface.value == 0.1 && pushed.stiffness == 5100 &&
              pushed.damping == 2.4 && near(pushed.force.value, 0.3 + 0.005 - 5, 1e-15),
@@ -100,8 +102,8 @@ void guards() {
   d.stiffness = 1e-12;
   d.finger = {};
   pd::InputLines<double> inputs{{0, 0}, {1, 1}};
-  const pd::SeriesMode<double> mode(d, {forward, ContactState::absent, 1, 0}, inputs);
-  const auto step = pd::series_step(mode.equation(), {0, 0.06}, 0.01);
+  const pd::detail::SeriesMode<double> mode(d, {forward, ContactState::absent, 1, 0}, inputs);
+  const auto step = pd::detail::series_step(mode.equation(), {0, 0.06}, 0.01);
   const auto found = mode.guards(step, {});
   expect(found.end() - found.begin() == 1 && found.begin()->bound == ActiveGuard::lower &&
              found.begin()->plate,
@@ -111,32 +113,11 @@ void guards() {
   expect(found.earliest() != nullptr && near(found.earliest()->zero / tau, 1, 1e-12),
          "... at the time of the closed form");
   const auto held = drive();
-  const pd::SeriesMode<double> stuck(held, {stick, stick}, inputs);
-  const auto rest = stuck.guards(pd::series_step(stuck.equation(), {1e-4, 0}, 0.01), {});
+  const pd::detail::SeriesMode<double> stuck(held, {stick, stick}, inputs);
+  const auto rest = stuck.guards(pd::detail::series_step(stuck.equation(), {1e-4, 0}, 0.01), {});
   expect(rest.end() - rest.begin() == 2 && near(rest.begin()->path.at(0), 0.06 - 0.01, 1e-15) &&
              near((rest.begin() + 1)->path.at(0), 0.06 + 0.01, 1e-15),
          "two surfaces that hold the pin have the sum of their limits left, on both sides");
-}
-
-void rounded() {
-  const pd::Held<double> falls(0.0, Line{1e-3, -1e-2});
-  pd::Inputs<double> inputs{0.1, 0, 0};
-  inputs.across_velocity = falls;
-  const auto lines = [&](double time, const Line& along) {
-    return pd::InputLines<double>::across_from(inputs, time, along, true);
-  };
-  const auto zero = lines(0.1 * (1 + 1e-16), {0.1, 0}), not_zero = lines(0.09, {0.1, 0});
-  expect(zero.value == 0 && zero.rate == -1e-2 && near(not_zero.value, 1e-4, 1e-15),
-         "a velocity across that is rounding is zero");
-
-  // It and the velocity along the axis come to zero at 0.1 s, where that has its row.
-  pd::Held<double> stops(0.0, Line{1e-2, -1e-1});
-  stops.ends = 0.1;
-  inputs.mouse_velocity = stops;
-  const double time = 0.1 * (1 - 2e-15);
-  const auto both = lines(time, {stops.line.at(time), -1e-1});
-  expect(both.value == 1e-2 * (0.1 - time) && both.rate == -1e-2,
-         "one that comes to zero with that along the axis keeps its direction until there");
 }
 
 }  // namespace
@@ -145,6 +126,5 @@ int main() {
   closed_forms();
   equations();
   guards();
-  rounded();
   return check::status();
 }

@@ -13,7 +13,7 @@ namespace {
 constexpr double unit = std::numeric_limits<double>::epsilon();
 
 /// v = 1/(1 − q σ), σ = τ/span: the coefficients are powers of q.
-struct Geometric : pd::SeriesStep<double> {
+struct Geometric : pd::detail::SeriesStep<double> {
   explicit Geometric(double q, double length = 2) {
     begin(length);
     double power = 1;

@@ -100,21 +100,21 @@ struct Stored {
     const pd::Mode mode{state_of(c.plate), state_of(c.finger)};
     pd::InputLines<T> inputs{
         {T(c.v_p[0]), T(c.v_p[1])}, {load, T(c.load[1])}, {T(c.across[0]), T(c.across[1])}};
-    typename pd::SeriesMode<T>::Reached at;
+    typename pd::detail::SeriesMode<T>::Reached at;
     const double speed = abs(c.v - c.v_p[0]);  // does it begin at an end of its branch?
     if (abs(c.plate) == 1 && abs(speed - c.plate_branch[1]) < 1e-14 * speed)
       at.plate = ActiveGuard::lower;
     if (abs(c.plate) == 1 && abs(speed - c.plate_branch[2]) < 1e-14 * speed)
       at.plate = ActiveGuard::upper;
 
-    pd::SeriesState<T> state{x, v, T(c.skin)};
+    pd::detail::SeriesState<T> state{x, v, T(c.skin)};
     Followed<T> found{T(0), x, v, T(0)};
     for (;;) {
-      const pd::SeriesMode<T> series(drive, mode, inputs);
+      const pd::detail::SeriesMode<T> series(drive, mode, inputs);
       const bool flat = c.plate_branch[3] == 0 && c.across[0] == 0 && c.finger_stiffness == 0;
       expect(series.has_closed_form() == flat, "a closed form", double(flat));
-      const pd::SeriesEquation<T> equation = series.equation();
-      const auto step = pd::series_step(equation, state, T(c.duration) - found.time);
+      const pd::detail::SeriesEquation<T> equation = series.equation();
+      const auto step = pd::detail::series_step(equation, state, T(c.duration) - found.time);
       const auto guards = series.guards(step, at);
       const auto* ends = guards.earliest();
       const T tau = ends != nullptr ? ends->zero : T(step.span());
@@ -172,7 +172,7 @@ void oracle() {
 /// With a constant load it is the closed form of flow.hpp.
 void closed_form() {
   for (const double drag : {0.4, 3.0, -0.2}) {
-    pd::SeriesEquation<double> e{0.01, 0.4, 100.0};
+    pd::detail::SeriesEquation<double> e{0.01, 0.4, 100.0};
     e.force = {0.03, -0.5};
     e.plate_velocity = {0.1, 0.7};
     e.load = {1.5, 0};
@@ -184,10 +184,10 @@ void closed_form() {
     const double a = (pull - (0.4 + drag) * v - 100 * x) / 0.01;
     const auto exact = pd::Flow<double>::free(
         oscillator, x, v, a, -(pull - 100 * x - (0.4 + drag) * drift) / 100, drift);
-    pd::SeriesState<double> state{x, v, 0};
+    pd::detail::SeriesState<double> state{x, v, 0};
     double t = 0;
     for (int i = 0; i < 12; ++i) {
-      const pd::SeriesFlow<double> flow(e, state, 1.0);
+      const pd::detail::SeriesFlow<double> flow(e, state, 1.0);
       for (const double part : {0.3, 0.8}) {
         const double tau = part * flow.span(), moment = t + tau;
         const double off = flow.at(tau).x - exact.position.at(oscillator, moment);
@@ -210,7 +210,7 @@ void bounds() {
   std::uniform_real_distribution<double> uniform(-1, 1);
   double largest = 0;
   for (int i = 0; i < 400; ++i) {
-    pd::SeriesEquation<double> e{0.01, 0.5 + 0.5 * uniform(random), 100.0};
+    pd::detail::SeriesEquation<double> e{0.01, 0.5 + 0.5 * uniform(random), 100.0};
     e.force = {0.05 * uniform(random), uniform(random)};
     e.plate_velocity = {0.1 * uniform(random), uniform(random)};
     e.load = {1, 20 * uniform(random)};
@@ -228,15 +228,15 @@ void bounds() {
       if (e.skin_factor.value == 0) e.skin_factor.rate = std::abs(e.skin_factor.rate);
       e.skin_drift = 0.5 * uniform(random);
     }
-    pd::SeriesState<double> start{1e-3 * uniform(random), 0.1 * uniform(random),
-                                  0.1 * uniform(random)};
+    pd::detail::SeriesState<double> start{1e-3 * uniform(random), 0.1 * uniform(random),
+                                          0.1 * uniform(random)};
     if (e.skin_factor.value == 0 && e.skin_factor.rate != 0)
       start.skin =
           (e.skin_stiffness * start.v - e.skin_drift) / (e.skin_decay + e.skin_factor.rate);
-    const pd::SeriesFlow<double> flow(e, start, 0.01);
+    const pd::detail::SeriesFlow<double> flow(e, start, 0.01);
     using L = long double;
     const auto wide = [](pd::Line<double> given) { return pd::Line<L>{given.value, given.rate}; };
-    pd::SeriesEquation<L> fine{e.mass, e.damping, e.stiffness};
+    pd::detail::SeriesEquation<L> fine{e.mass, e.damping, e.stiffness};
     fine.force = wide(e.force);
     fine.plate_velocity = wide(e.plate_velocity);
     fine.load = wide(e.load);
@@ -249,18 +249,19 @@ void bounds() {
     fine.skin_stiffness = e.skin_stiffness;
     fine.skin_decay = e.skin_decay;
     fine.skin_drift = e.skin_drift;
-    pd::SeriesState<L> state{start.x, start.v, start.skin};
+    pd::detail::SeriesState<L> state{start.x, start.v, start.skin};
     if (fine.skin_factor.value == 0 && fine.skin_factor.rate != 0)
       state.skin = (fine.skin_stiffness * state.v - fine.skin_drift) /
                    (fine.skin_decay + fine.skin_factor.rate);
     L t = 0;
     while (t < flow.span() * (1 - 1e-18L)) {
-      const pd::SeriesFlow<L> step(fine, state, std::min(L(flow.span()) / 8, flow.span() - t));
+      const pd::detail::SeriesFlow<L> step(fine, state,
+                                           std::min(L(flow.span()) / 8, flow.span() - t));
       state = step.at(step.span());
       fine = fine.from(step.span());
       t += step.span();
     }
-    const pd::SeriesState<double> end = flow.at(flow.span());
+    const pd::detail::SeriesState<double> end = flow.at(flow.span());
     const double v_size = abs(end.v) + abs(start.v) + abs(flow.velocity.c[1]);
     const double off = double(abs(end.v - state.v));
     expect(off <= flow.v_bound + 2e-15 * v_size, "beyond its bound: velocity", off / flow.v_bound);
@@ -277,12 +278,12 @@ void bounds() {
 
   // The bound itself, where it is no rounding: a step that is too long for its order.
   for (const double across : {0.05, 0.02}) {
-    pd::SeriesEquation<double> e{0.01, 0.1, 100.0};
+    pd::detail::SeriesEquation<double> e{0.01, 0.1, 100.0};
     e.plate_force = 0.3;
     e.plate_velocity = {0.1, 0};
     e.across = {across, 0};
-    const pd::SeriesFlow<double> flow(e, {1e-3, 0.02, 0}, 1.0);
-    const pd::SeriesFlow<double> half(e, {1e-3, 0.02, 0}, flow.span() / 2);
+    const pd::detail::SeriesFlow<double> flow(e, {1e-3, 0.02, 0}, 1.0);
+    const pd::detail::SeriesFlow<double> half(e, {1e-3, 0.02, 0}, flow.span() / 2);
     const auto middle = flow.at(flow.span() / 2);
     expect(half.velocity.degree < flow.velocity.degree, "no fewer terms in a shorter step",
            half.velocity.degree);

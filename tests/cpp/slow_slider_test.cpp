@@ -25,8 +25,8 @@ void expect(bool holds, const char* what, double found) {
 /// A pin of 10 g that skin of this stiffness holds back with 0.5 N s/m and 0.2 N, under a load that changes by
 /// this part a second.
 template <class T>
-pd::SeriesEquation<T> held_back(T stiffness, T rate, T damping = T(0.64)) {
-  pd::SeriesEquation<T> e{T(0.01), damping, T(100.0)};
+pd::detail::SeriesEquation<T> held_back(T stiffness, T rate, T damping = T(0.64)) {
+  pd::detail::SeriesEquation<T> e{T(0.01), damping, T(100.0)};
   e.plate_force = T(0.3);
   e.side = -1;
   e.plate_velocity = {T(0.2), T(0)};
@@ -39,18 +39,19 @@ pd::SeriesEquation<T> held_back(T stiffness, T rate, T damping = T(0.64)) {
 
 template <class T>
 struct End {
-  pd::SeriesState<T> state;
+  pd::detail::SeriesState<T> state;
   int steps{0};
 };
 
 /// Follows a mode for a time: by slow steps where those hold, or by the Taylor series alone.
 template <class T>
-End<T> follow(pd::SeriesEquation<T> e, pd::SeriesState<T> state, double duration, bool slow) {
+End<T> follow(pd::detail::SeriesEquation<T> e, pd::detail::SeriesState<T> state, double duration,
+              bool slow) {
   End<T> end{state};
   for (double t = 0; t < duration * (1 - 1e-15) && end.steps < 200000; ++end.steps) {
     const T left = duration - t;
-    const pd::SeriesStep<T> step =
-        slow ? pd::series_step(e, end.state, left) : pd::SeriesFlow<T>(e, end.state, left);
+    const pd::detail::SeriesStep<T> step = slow ? pd::detail::series_step(e, end.state, left)
+                                                : pd::detail::SeriesFlow<T>(e, end.state, left);
     end.state = step.at(step.span());
     e = e.from(step.span());
     t += double(step.span());
@@ -116,7 +117,7 @@ void up_to_no_load() {
   last.skin_factor.value -= 25 * 5e-17;
   auto before = follow(e.from(1e-4), begins, 0.0199 - 1e-4, true).state;
   before.time = 0.1;
-  const pd::SlowSliderFlow<double> step(last, before, 1e-4);
+  const pd::detail::SlowSliderFlow<double> step(last, before, 1e-4);
   expect(step.is_valid() && step.span() == 1e-4, "to where rounding has it below zero",
          step.span());
 }
@@ -127,17 +128,19 @@ void shortly_before_a_row() {
   const double row = 1e-10;
   auto begins = follow(e, {1e-3, 1e-3, 1e-3}, 1e-6, false).state;
   e = e.from(1e-6);
-  expect(pd::SlowSliderFlow<double>(e, begins, row).is_valid(), "up to a row", 0);
+  expect(pd::detail::SlowSliderFlow<double>(e, begins, row).is_valid(), "up to a row", 0);
   begins.skin *= 1 + 1e-13;
-  expect(!pd::SlowSliderFlow<double>(e, begins, row).is_valid(), "off by more than rounding", 0);
+  expect(!pd::detail::SlowSliderFlow<double>(e, begins, row).is_valid(),
+         "off by more than rounding", 0);
 }
 
 /// A slider that is off that velocity is followed through its fast part, and soft skin all the way.
 void refuses() {
   const auto e = held_back(1e6, 5.0);
-  expect(!pd::SlowSliderFlow<double>(e, {1e-3, 0.05, 0.06}, 0.01).is_valid(), "off", 0);
-  expect(!pd::SlowSliderFlow<double>::stiff(held_back(3e3, 5.0), {1e-3, 0.05, 0.05}), "soft", 0);
-  expect(!pd::SlowSliderFlow<double>::stiff(held_back(1e6, -1e5), {1e-3, 0.05, 0.05}),
+  expect(!pd::detail::SlowSliderFlow<double>(e, {1e-3, 0.05, 0.06}, 0.01).is_valid(), "off", 0);
+  expect(!pd::detail::SlowSliderFlow<double>::stiff(held_back(3e3, 5.0), {1e-3, 0.05, 0.05}),
+         "soft", 0);
+  expect(!pd::detail::SlowSliderFlow<double>::stiff(held_back(1e6, -1e5), {1e-3, 0.05, 0.05}),
          "a load that falls quickly", 0);
 }
 

@@ -425,7 +425,7 @@ struct Instants {
     oblique += across;
     departure_acceleration +=
         across && lines.across_velocity.value == 0 && one[1] == lines.plate_velocity.value;
-    lagging += pd::SeriesMode<Dual>(known.drive(), mode, lines).has_slider_state();
+    lagging += pd::detail::SeriesMode<Dual>(known.drive(), mode, lines).has_slider_state();
     for (std::size_t i = 0; i < one.size(); ++i) {
       const double value = std::abs(one[i].value - other[i].value);
       const double slope = std::abs(one[i].slope - other[i].slope);

@@ -241,7 +241,7 @@ MUTANTS = (
     ),
     Mutant(
         "a plate that comes to rest along and across turns before it does",
-        "series/series_mode.hpp",
+        "model/input_lines.hpp",
         "if (held && along.rate != 0 &&",
         "if (held && along.rate != 0 && time < 0 &&",
     ),

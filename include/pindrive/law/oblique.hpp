@@ -6,16 +6,11 @@
 
 #include "pindrive/flow/flow.hpp"
 #include "pindrive/law/state.hpp"
+#include "pindrive/model/input_lines.hpp"
 #include "pindrive/model/limits.hpp"
 #include "pindrive/model/model.hpp"
 
-namespace pindrive {
-
-/// True if a plate slides in the transverse direction and has a load, from this instant on.
-template <class T>
-bool slides_obliquely(const Line<T>& load, const Line<T>& across) {
-  return (across.value != 0 || across.rate != 0) && (load.value != 0 || load.rate != 0);
-}
+namespace pindrive::detail {
 
 /// Relative acceleration p with which a pin of mass m leaves a plate that begins to slide across
 /// with acceleration w'.
@@ -43,8 +38,6 @@ T departure_acceleration(T mass, T friction, T across_rate, T pull) {
   }
   return t * w;
 }
-
-namespace detail {
 
 /// Axial and transverse sliding velocity u and w, linear from this instant on.
 ///
@@ -168,6 +161,4 @@ void end_oblique_slip(State<T>& state, Point& plate, bool on_finger, T across, T
     state.v = plate.surface.value;
 }
 
-}  // namespace detail
-
-}  // namespace pindrive
+}  // namespace pindrive::detail

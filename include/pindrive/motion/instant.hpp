@@ -19,8 +19,8 @@ class Instant {
  public:
   Instant(const Drive<T>& drive, const Mode& mode, const InputLines<T>& inputs,
           const detail::State<T>& state) {
-    const SeriesMode<T> series(drive, mode, inputs);
-    const SeriesEquation<T> e = series.equation();
+    const detail::SeriesMode<T> series(drive, mode, inputs);
+    const detail::SeriesEquation<T> e = series.equation();
     const bool has_slider_state = series.has_slider_state(), at_stop = held_by_stop(drive, mode);
     position_ = at_stop ? stop_sign(mode.stop) * drive.stops.travel : drive.stops.within(state.x);
     const Line<T> surface = at_stop ? Line<T>{} : e.surface;
@@ -67,15 +67,15 @@ class Instant {
  private:
   /// Friction of the slipping plate beside a force `pull`. A pin with the velocity of the plate
   /// starts to slide as the plate begins to slide across.
-  T plate_slip(const SeriesEquation<T>& e, T pull) const {
+  T plate_slip(const detail::SeriesEquation<T>& e, T pull) const {
     using detail::hypot;
     const T u = velocity_ - e.plate_velocity.value, w = e.across.value;
     T along = T(e.side);
     if (e.side == 0 && u == 0 && w == 0) {
       const T rest = pull - e.mass * e.plate_velocity.rate;
       const T p = e.held ? e.surface.rate - e.plate_velocity.rate
-                         : departure_acceleration(e.mass, e.load.value * e.plate_force,
-                                                  e.across.rate, rest);
+                         : detail::departure_acceleration(e.mass, e.load.value * e.plate_force,
+                                                          e.across.rate, rest);
       along = p / hypot(p, e.across.rate);
     } else if (e.side == 0) {
       along = u / hypot(u, w);
@@ -104,7 +104,7 @@ detail::State<T> released(const Drive<T>& drive, const Mode& mode, const InputLi
     state.skin = finger.stiffness * stretch;
   else if (speed != 0)
     state.skin = (state.v < 0 ? -load : load) * finger.branch(finger.branch_of(speed)).at(speed);
-  if (!SeriesMode<T>(drive, mode, inputs).has_slider_state()) return state;
+  if (!detail::SeriesMode<T>(drive, mode, inputs).has_slider_state()) return state;
   const int slid = finger.branch_of(speed);
   const Branch<T> branch = finger.branch(mode.finger_branch);
   // Where its curve falls a slider goes on at once to another speed, of the same friction.

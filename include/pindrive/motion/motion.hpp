@@ -20,7 +20,7 @@ template <class T, class Visitor>
 auto visit_trajectory(const Drive<T>& drive, const Segment<T>& segment, const InputLines<T>& lines,
                       Visitor&& visit) {
   if (!(segment.end > segment.begin) || segment.eliminated == EliminatedPart::motion ||
-      SeriesMode<T>(drive, segment.mode, lines).has_closed_form())
+      detail::SeriesMode<T>(drive, segment.mode, lines).has_closed_form())
     return visit(ClosedForm<T>(segment));
   return visit(BySeries<T>(drive, segment, lines));
 }

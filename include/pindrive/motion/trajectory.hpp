@@ -154,28 +154,29 @@ class BySeries {
   }
 
  private:
-  static SeriesStep<T> expand(const Drive<T>& drive, const Segment<T>& segment,
-                              const InputLines<T>& lines) {
-    const SeriesMode<T> mode(drive, segment.mode, lines);
+  static detail::SeriesStep<T> expand(const Drive<T>& drive, const Segment<T>& segment,
+                                      const InputLines<T>& lines) {
+    const detail::SeriesMode<T> mode(drive, segment.mode, lines);
     const Path<T>& v = segment.flow.velocity;
     const Path<T>& of_finger = segment.finger_force;
     // The slider of a finger that lags is slower than the pin by what the skin stretches.
     const T skin = mode.has_slider_state() ? v.start + of_finger.drift / drive.finger.stiffness
                                            : -of_finger.start;
-    const SeriesState<T> start{segment.flow.position.start, v.start, skin, v.drift};
+    const detail::SeriesState<T> start{segment.flow.position.start, v.start, skin, v.drift};
     const T span = segment.end - segment.begin;
-    const SeriesEquation<T> e = mode.equation();
+    const detail::SeriesEquation<T> e = mode.equation();
     if (segment.eliminated == EliminatedPart::of_slider)
-      if (const SlowSliderFlow<T> slow(e, start, span, true); slow.is_valid()) return slow;
+      if (const detail::SlowSliderFlow<T> slow(e, start, span, true); slow.is_valid()) return slow;
     if (segment.eliminated == EliminatedPart::of_friction)
       for (const bool within_step : {true, false})
-        if (const CreepFlow<T> creep(e, start, span, within_step); creep.is_valid()) return creep;
-    return SeriesFlow<T>(e, start, span, true);
+        if (const detail::CreepFlow<T> creep(e, start, span, within_step); creep.is_valid())
+          return creep;
+    return detail::SeriesFlow<T>(e, start, span, true);
   }
   /// Friction of a rigid finger, or of slipping skin.
   Polynomial<T> of_finger(const Drive<T>& drive, const Mode& mode, const Line<T>& load) const {
     const Branch<T> branch = drive.finger.branch(mode.finger_branch);
-    const bool has_slider_state = SeriesMode<T>(drive, mode, {}).has_slider_state();
+    const bool has_slider_state = detail::SeriesMode<T>(drive, mode, {}).has_slider_state();
     Polynomial<T> force = Line<T>{-branch.slope * load.value, -branch.slope * load.rate} *
                           (has_slider_state ? step_.skin : step_.velocity);
     const T at_rest = -along(mode.finger, branch.force - branch.slope * branch.from);
@@ -183,7 +184,7 @@ class BySeries {
     return force;
   }
 
-  SeriesStep<T> step_;
+  detail::SeriesStep<T> step_;
   Polynomial<T> plate_force_, finger_force_;
 };
 

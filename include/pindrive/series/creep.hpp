@@ -20,7 +20,7 @@
 #include "pindrive/series/series.hpp"
 #include "pindrive/series/slow_slider.hpp"
 
-namespace pindrive {
+namespace pindrive::detail {
 
 /// Step of creep; valid if velocity and series agree with creep within rounding.
 template <class T>
@@ -293,4 +293,4 @@ SeriesStep<T> series_step(const SeriesEquation<T>& e, const SeriesState<T>& star
   return slides ? step : SeriesFlow<T>(e, start, limit);
 }
 
-}  // namespace pindrive
+}  // namespace pindrive::detail

@@ -15,7 +15,7 @@
 #include "pindrive/series/series_equation.hpp"
 #include "pindrive/series/series_step.hpp"
 
-namespace pindrive {
+namespace pindrive::detail {
 
 /// Taylor series of a mode at a state.
 template <class T>
@@ -298,4 +298,4 @@ class SeriesFlow : public SeriesStep<T> {
   }
 };
 
-}  // namespace pindrive
+}  // namespace pindrive::detail

@@ -7,7 +7,7 @@
 
 #include "pindrive/flow/polynomial.hpp"
 
-namespace pindrive {
+namespace pindrive::detail {
 
 /// State of the pin and its skin; see SeriesEquation.
 template <class T>
@@ -91,4 +91,4 @@ struct SeriesEquation {
   }
 };
 
-}  // namespace pindrive
+}  // namespace pindrive::detail

@@ -11,7 +11,7 @@
 #include "pindrive/model/model.hpp"
 #include "pindrive/series/series_equation.hpp"
 
-namespace pindrive {
+namespace pindrive::detail {
 
 /// Step of a mode without a closed form, over the time for which its series holds to rounding.
 template <class T>
@@ -133,4 +133,4 @@ class SeriesStep {
   }
 };
 
-}  // namespace pindrive
+}  // namespace pindrive::detail

@@ -18,7 +18,7 @@
 #include "pindrive/model/model.hpp"
 #include "pindrive/series/series.hpp"
 
-namespace pindrive {
+namespace pindrive::detail {
 
 /// Step of a pin on a slow slider; valid if the slider has the velocity of the slow motion within
 /// rounding.
@@ -158,4 +158,4 @@ class SlowSliderFlow : public SeriesFlow<T> {
   bool holds_{false};
 };
 
-}  // namespace pindrive
+}  // namespace pindrive::detail
