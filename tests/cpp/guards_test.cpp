@@ -17,11 +17,11 @@ constexpr double never = std::numeric_limits<double>::infinity();
 const pd::Contact<double> coulomb{0.1, 0.1};
 
 ContactPoint slipping(double v, double surface, double rate = 0) {
-  ContactPoint touch(coulomb);
-  touch.surface = {surface, rate};
+  ContactPoint point(coulomb);
+  point.surface = {surface, rate};
   pd::detail::State<double> state{0, v};
-  touch.initialize(state, false);
-  return touch;
+  point.initialize(state, false);
+  return point;
 }
 
 /// A pin without damping at v that slows down as v cos(100 t), past a finger at rest and a plate.

@@ -5,7 +5,7 @@
 #include <random>
 
 #include "check.hpp"
-#include "pindrive/law/friction.hpp"
+#include "pindrive/law/contact_point.hpp"
 
 namespace pd = pindrive;
 using check::expect;
@@ -66,28 +66,28 @@ void changes() {
 /// A plate of friction 0.03 N that moves at 0.1 m/s, and across.
 ContactPoint plate(Line across, Line load = {1, 0}) {
   static const pd::Contact<double> contact{0.03, 0.04};
-  ContactPoint touch(contact);
-  touch.surface = {0.1, 0.5};
-  touch.across = across;
-  touch.load = load;
-  touch.mode = ContactPoint::slip(1, ActiveGuard::none, 0);
-  return touch;
+  ContactPoint point(contact);
+  point.surface = {0.1, 0.5};
+  point.across = across;
+  point.load = load;
+  point.mode = ContactPoint::slip(1, ActiveGuard::none, 0);
+  return point;
 }
 
 void asks() {
-  ContactPoint touch = plate({0.3, 0});
+  ContactPoint point = plate({0.3, 0});
   ActiveGuard at = ActiveGuard::lower;
-  expect(pd::detail::enumerate_oblique_options(touch, 0.4, at) && touch.oblique() &&
+  expect(pd::detail::enumerate_oblique_options(point, 0.4, at) && point.oblique() &&
              at == ActiveGuard::none,
          "a plate that begins to slide across slips in the one way that is left");
-  expect(near(touch.direction, 0.8, 1e-15) && touch.friction == 0.03, "... along its velocity");
+  expect(near(point.direction, 0.8, 1e-15) && point.friction == 0.03, "... along its velocity");
   ContactPoint unloaded = plate({0.3, 0}, {0, 0});
   expect(!pd::detail::enumerate_oblique_options(unloaded, 0.4, at) && !unloaded.oblique(),
          "what carries nothing is not asked");
-  touch.across = {0, 0};
-  touch.load = {1, 0};
-  expect(!pd::detail::enumerate_oblique_options(touch, -0.4, at) &&
-             touch.mode.state == ContactState::slip_backward,
+  point.across = {0, 0};
+  point.load = {1, 0};
+  expect(!pd::detail::enumerate_oblique_options(point, -0.4, at) &&
+             point.mode.state == ContactState::slip_backward,
          "where it no longer slides across it slips along the axis");
   ContactPoint still = plate({0, 0.2});
   expect(pd::detail::enumerate_oblique_options(still, 0.0, at) &&
@@ -96,27 +96,27 @@ void asks() {
 }
 
 void sets_out_and_lands() {
-  ContactPoint touch = plate({0, 0.2});
-  touch.friction = 0.03;
+  ContactPoint point = plate({0, 0.2});
+  point.friction = 0.03;
   const double mass = 0.01, pull = 0.02;
-  const double p = pd::detail::oblique_departure(mass, touch, pull), direction = touch.direction;
+  const double p = pd::detail::oblique_departure(mass, point, pull), direction = point.direction;
   expect(near(p, 0.2 * direction / std::sqrt(1 - direction * direction), 1e-12) &&
              near((mass * p + 0.03 * direction) / (pull - mass * 0.5), 1, 1e-12),
          "a pin sets out in the direction in which the forces along the axis balance");
-  touch.mode = {ContactState::slip_oblique, ActiveGuard::none, 0, 0.0};
-  touch.across = {0, 0};
+  point.mode = {ContactState::slip_oblique, ActiveGuard::none, 0, 0.0};
+  point.across = {0, 0};
   pd::detail::State<double> state{1e-3, 0.1 * (1 + 4e-16)};
-  pd::detail::end_oblique_slip(state, touch, false, 0.0, mass, 1.0);
+  pd::detail::end_oblique_slip(state, point, false, 0.0, mass, 1.0);
   expect(state.v == 0.1, "a pin that has the plate's velocity to rounding has it exactly");
   state.v = 0.101;
-  pd::detail::end_oblique_slip(state, touch, false, 1e-9, mass, 1.0);
+  pd::detail::end_oblique_slip(state, point, false, 1e-9, mass, 1.0);
   expect(state.v == 0.101, "... one that slides does not");
   state.v = 0.1 + 3e-9;
-  pd::detail::end_oblique_slip(state, touch, false, 1e-9, mass, 1.0);
+  pd::detail::end_oblique_slip(state, point, false, 1e-9, mass, 1.0);
   expect(state.v == 0.1 + 3e-9, "... nor one that is faster along than its plate was across");
   state.v = 0.1 + 5e-10;
-  pd::detail::end_oblique_slip(state, touch, true, 1e-9, mass, 1.0);
-  expect(touch.surface.value == state.v, "... and a pin on the finger keeps its own");
+  pd::detail::end_oblique_slip(state, point, true, 1e-9, mass, 1.0);
+  expect(point.surface.value == state.v, "... and a pin on the finger keeps its own");
 }
 
 void departures() {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "check.hpp"
-#include "pindrive/law/friction.hpp"
+#include "pindrive/law/contact_point.hpp"
 
 namespace pd = pindrive;
 using check::expect;
@@ -33,20 +33,20 @@ const pd::Branch<double> peak[] = {
 State at(double v, double force) { return {1e-3, v, force, 1e-3, 1e-16}; }
 
 ContactPoint sticking(const pd::Contact<double>& contact, double load = 1) {
-  ContactPoint touch(contact);
-  touch.load = {load, 0};
-  touch.mode = {ContactState::elastic_stick, ActiveGuard::none, 0, 0};
-  return touch;
+  ContactPoint point(contact);
+  point.load = {load, 0};
+  point.mode = {ContactState::elastic_stick, ActiveGuard::none, 0, 0};
+  return point;
 }
 
 void sticks() {
-  ContactPoint touch = sticking(skin);
-  touch.enumerate_options(at(0.1, -0.25));
-  expect(touch.count == 1 && touch.option(0).state == ContactState::elastic_stick,
+  ContactPoint point = sticking(skin);
+  point.enumerate_options(at(0.1, -0.25));
+  expect(point.count == 1 && point.option(0).state == ContactState::elastic_stick,
          "within its limit skin grips");
-  expect(near(touch.force(at(0.1, -0.25)), 0.25, 1e-15), "with the force that it has");
-  touch.enumerate_options(at(-0.1, -0.3));
-  expect(touch.count == 2 && touch.option(1).state == ContactState::slip_backward,
+  expect(near(point.force(at(0.1, -0.25)), 0.25, 1e-15), "with the force that it has");
+  point.enumerate_options(at(-0.1, -0.3));
+  expect(point.count == 2 && point.option(1).state == ContactState::slip_backward,
          "at its limit, stretched further, it may slip");
   ContactPoint falling_load = sticking(skin);
   falling_load.load.rate = -7;
@@ -67,19 +67,19 @@ void sticks() {
 }
 
 void is_slip() {
-  ContactPoint touch = sticking(lagging);
-  touch.mode = ContactPoint::slip(1, ActiveGuard::none);
+  ContactPoint point = sticking(lagging);
+  point.mode = ContactPoint::slip(1, ActiveGuard::none);
   State state = at(0.08, 0.25);
   state.slider_velocity = 0.05;
-  touch.enumerate_options(state);
-  expect(touch.has_slider_state() && near(touch.slider_speed(), 0.05, 1e-15) &&
-             near(touch.relative_speed(0.08), 0.03, 1e-15),
+  point.enumerate_options(state);
+  expect(point.has_slider_state() && near(point.slider_speed(), 0.05, 1e-15) &&
+             near(point.relative_speed(0.08), 0.03, 1e-15),
          "on a rising curve its slider has a speed of its own");
-  expect(near(touch.skin_force(state, 2), 0.5, 1e-15), "its skin carries the friction of that");
-  touch.load = {0.5, 0};
+  expect(near(point.skin_force(state, 2), 0.5, 1e-15), "its skin carries the friction of that");
+  point.load = {0.5, 0};
   State before = state;
-  touch.keep_force(before, 0.50001);
-  expect(near(touch.skin_force(before, 0.5), touch.skin_force(state, 0.50001), 1e-12),
+  point.keep_force(before, 0.50001);
+  expect(near(point.skin_force(before, 0.5), point.skin_force(state, 0.50001), 1e-12),
          "within the rounding of a time it keeps its force as the load changes");
   ContactPoint even = sticking(skin);
   even.mode = ContactPoint::slip(1, ActiveGuard::none);
@@ -89,26 +89,26 @@ void is_slip() {
 }
 
 void runs_away_at_rest() {
-  ContactPoint touch(pd::Contact<double>{0, 0, 1000, peak, 3});
-  touch.load = {1, 0};
-  touch.mode = ContactPoint::slip(1, ActiveGuard::none);
-  touch.reached_guard = ActiveGuard::upper;
+  ContactPoint point(pd::Contact<double>{0, 0, 1000, peak, 3});
+  point.load = {1, 0};
+  point.mode = ContactPoint::slip(1, ActiveGuard::none);
+  point.reached_guard = ActiveGuard::upper;
   State state = at(0, 0.02);
   state.slider_velocity = 0.01;
-  touch.enumerate_options(state);
-  expect(touch.count == 4 && touch.option(1).state == ContactState::elastic_stick &&
-             touch.option(2).state == ContactState::slip_forward &&
-             touch.option(3).state == ContactState::slip_backward,
+  point.enumerate_options(state);
+  expect(point.count == 4 && point.option(1).state == ContactState::elastic_stick &&
+             point.option(2).state == ContactState::slip_forward &&
+             point.option(3).state == ContactState::slip_backward,
          "skin that has lost its force beside a pin at rest may set out either way");
   const auto holds = [&](int option, double acceleration) {
-    touch.mode = touch.option(option);
-    return touch.is_admissible(state, acceleration);
+    point.mode = point.option(option);
+    return point.is_admissible(state, acceleration);
   };
   expect(holds(1, 0) && !holds(1, 1), "it rests with a pin that rests");
   expect(holds(2, 1) && !holds(2, -1) && holds(3, -1) && !holds(3, 1),
          "and follows one that does not");
-  touch.mode = touch.option(2);
-  touch.apply_jump(state);
+  point.mode = point.option(2);
+  point.apply_jump(state);
   expect(state.skin == 0 && state.slider_velocity == 0, "without force");
 
   ContactPoint lifted = sticking({0, 0, 1000, peak, 3});
@@ -135,11 +135,11 @@ void runs_away_at_rest() {
 }
 
 void lifts() {
-  ContactPoint touch = sticking(skin);
-  touch.load = {0, 5};
+  ContactPoint point = sticking(skin);
+  point.load = {0, 5};
   State state = at(0.01, 0);
-  touch.enumerate_options(state);
-  expect(touch.defer_first_grip(state, 1, 2) == 2 && touch.load.rate == 5,
+  point.enumerate_options(state);
+  expect(point.defer_first_grip(state, 1, 2) == 2 && point.load.rate == 5,
          "a load that grows from zero is followed by skin without a curve");
   ContactPoint falls(pd::Contact<double>{0.2, 0.3, 1000, falling, 2});
   falls.load = {0, 5};  // its limit grows as fast as a pin of 1.5 mm/s stretches it
@@ -164,12 +164,12 @@ void lifts() {
   even.enumerate_options(as_fast);
   expect(even.option(0).state == ContactState::elastic_stick,
          "where it can just grip at its limit, to rounding, it may");
-  touch.load = {1, -1};
-  expect(touch.defer_first_grip(state, 1, 2) == 2 && touch.load.value == 1,
+  point.load = {1, -1};
+  expect(point.defer_first_grip(state, 1, 2) == 2 && point.load.value == 1,
          "one far from zero is followed until its row");
-  touch.load = {1e-20, -1e-6};
-  touch.defer_first_grip(state, 1, 1 + 1e-14);
-  expect(touch.load.value == 0 && touch.load.rate == 0, "the last of one that ends is none");
+  point.load = {1e-20, -1e-6};
+  point.defer_first_grip(state, 1, 1 + 1e-14);
+  expect(point.load.value == 0 && point.load.rate == 0, "the last of one that ends is none");
   ContactPoint rigid(pd::Contact<double>{0.2, 0.3});
   rigid.load = {1e-20, -1e-6};
   expect(rigid.defer_first_grip(state, 1, 1 + 1e-14) == 1 + 1e-14 && rigid.load.rate == -1e-6,

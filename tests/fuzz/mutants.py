@@ -53,7 +53,7 @@ MUTANTS = (
     ),
     Mutant(
         "breaks away and crosses to the wrong side",
-        "law/friction.hpp",
+        "law/contact_point.hpp",
         "return inwards > 0 ||",
         "return inwards < 0 ||",
     ),
@@ -89,7 +89,7 @@ MUTANTS = (
     ),
     Mutant(
         "a changing load acts as if it were constant",
-        "law/friction.hpp",
+        "law/contact_point.hpp",
         "Force<T> law{{force * load.value, force * load.rate}};",
         "Force<T> law{{force * load.value, T(0)}};",
     ),
@@ -113,19 +113,19 @@ MUTANTS = (
     ),
     Mutant(
         "a tangential departure goes on although another force jumps",
-        "law/friction.hpp",
+        "law/contact_point.hpp",
         "if (contact.kinetic != contact.static_limit && load.value != 0) return false;",
         "",
     ),
     Mutant(
         "the force at a breakpoint is that of the wrong branch",
-        "law/friction.hpp",
+        "law/contact_point.hpp",
         "contact.branch(guard_ == ActiveGuard::upper ? branch_ + 1 : branch_).force",
         "contact.branch(guard_ == ActiveGuard::upper ? branch_ : branch_ - 1).force",
     ),
     Mutant(
         "a breakpoint is passed without a change",
-        "law/friction.hpp",
+        "law/contact_point.hpp",
         "branch_ + (faster ? 1 : -1),",
         "branch_ + (faster ? 1 : 0),",
     ),
@@ -145,7 +145,7 @@ MUTANTS = (
     ),
     Mutant(
         "skin slips at its limit though it turns back",
-        "law/friction.hpp",
+        "law/contact_point.hpp",
         "if (faster == 0) return slip_sign_ * decides >= 0;",
         "if (faster == 0) return slip_sign_ * decides > 0;",
     ),

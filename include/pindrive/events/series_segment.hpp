@@ -6,7 +6,7 @@
 #include <limits>
 #include <optional>
 
-#include "pindrive/law/friction.hpp"
+#include "pindrive/law/contact_point.hpp"
 #include "pindrive/law/guards.hpp"
 #include "pindrive/model/limits.hpp"
 #include "pindrive/model/model.hpp"

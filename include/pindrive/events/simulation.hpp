@@ -8,7 +8,7 @@
 #include "pindrive/events/recurrence.hpp"
 #include "pindrive/events/series_segment.hpp"
 #include "pindrive/flow/flow.hpp"
-#include "pindrive/law/friction.hpp"
+#include "pindrive/law/contact_point.hpp"
 #include "pindrive/law/guards.hpp"
 #include "pindrive/law/oblique.hpp"
 #include "pindrive/law/selection.hpp"

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "pindrive/flow/roots.hpp"
-#include "pindrive/law/friction.hpp"
+#include "pindrive/law/contact_point.hpp"
 #include "pindrive/model/limits.hpp"
 
 namespace pindrive::detail {

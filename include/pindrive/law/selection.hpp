@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "pindrive/law/friction.hpp"
+#include "pindrive/law/contact_point.hpp"
 #include "pindrive/law/guards.hpp"
 #include "pindrive/law/oblique.hpp"
 #include "pindrive/law/state.hpp"

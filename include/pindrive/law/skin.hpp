@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pindrive/law/contact_point_state.hpp"
 #include "pindrive/law/slider.hpp"
 #include "pindrive/law/state.hpp"
-#include "pindrive/law/touch_state.hpp"
 #include "pindrive/model/limits.hpp"
 #include "pindrive/model/model.hpp"
 

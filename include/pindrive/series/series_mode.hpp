@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "pindrive/law/friction.hpp"
+#include "pindrive/law/contact_point.hpp"
 #include "pindrive/model/input_lines.hpp"
 #include "pindrive/model/model.hpp"
 #include "pindrive/series/creep.hpp"

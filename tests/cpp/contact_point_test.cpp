@@ -1,5 +1,5 @@
 // What a contact may do next, and the force that it carries: by its state, its speed and its branch.
-#include "pindrive/law/friction.hpp"
+#include "pindrive/law/contact_point.hpp"
 
 #include "check.hpp"
 
@@ -18,11 +18,11 @@ constexpr double never = std::numeric_limits<double>::infinity();
 State at(double v, double skin = 0) { return {1e-3, v, skin, 1e-3, 1e-16}; }
 
 ContactPoint begun(const pd::Contact<double>& contact, double v, double surface = 0) {
-  ContactPoint touch(contact);
-  touch.surface.value = surface;
+  ContactPoint point(contact);
+  point.surface.value = surface;
   State state = at(v);
-  touch.initialize(state, false);
-  return touch;
+  point.initialize(state, false);
+  return point;
 }
 
 void options() {
@@ -32,15 +32,15 @@ void options() {
   expect(none.count == 1 && none.mode.state == ContactState::absent && none.force(at(0.1)) == 0,
          "an absent contact stays so and carries nothing");
 
-  ContactPoint touch = begun(rigid, 0.1, 0.02);
-  touch.enumerate_options(at(0.1));
-  expect(touch.count == 1 && touch.mode.state == ContactState::slip_forward,
+  ContactPoint point = begun(rigid, 0.1, 0.02);
+  point.enumerate_options(at(0.1));
+  expect(point.count == 1 && point.mode.state == ContactState::slip_forward,
          "one that slips inside its branch goes on");
-  expect(touch.force(at(0.1)) == -0.2, "... against its sliding");
+  expect(point.force(at(0.1)) == -0.2, "... against its sliding");
 
-  touch.enumerate_options(at(0.02));
+  point.enumerate_options(at(0.02));
   expect(
-      touch.count == 3 && touch.may_stick() && touch.option(1).state == ContactState::slip_backward,
+      point.count == 3 && point.may_stick() && point.option(1).state == ContactState::slip_backward,
       "one that comes to its surface velocity may stick, cross or turn back, in this order");
   ContactPoint lighter = begun(rigid, 0.1, 0.02);
   lighter.load = {0.5, 0};
@@ -52,46 +52,46 @@ void options() {
 void breakpoints() {
   const pd::Branch<double> curve[] = {{0, 0.1, 0.3, -1, 0}, {0.1, never, 0.2, 2, 0}};
   const pd::Contact<double> contact{0.3, 0.3, never, curve, 2};
-  ContactPoint touch = begun(contact, -0.04);
-  touch.enumerate_options(at(-0.04));
-  expect(touch.mode.state == ContactState::slip_backward && touch.force(at(-0.04)) == 0.26,
+  ContactPoint point = begun(contact, -0.04);
+  point.enumerate_options(at(-0.04));
+  expect(point.mode.state == ContactState::slip_backward && point.force(at(-0.04)) == 0.26,
          "on a branch the force follows the speed");
-  touch.reached_guard = ActiveGuard::upper;
-  touch.enumerate_options(at(-0.1));
-  expect(touch.count == 2 && touch.option(0).branch == 0 && touch.option(1).branch == 1 &&
-             touch.option(1).guard == ActiveGuard::lower,
+  point.reached_guard = ActiveGuard::upper;
+  point.enumerate_options(at(-0.1));
+  expect(point.count == 2 && point.option(0).branch == 0 && point.option(1).branch == 1 &&
+             point.option(1).guard == ActiveGuard::lower,
          "at a breakpoint it stays on its branch or goes to the next");
-  const double one = touch.force(at(-0.1));
-  touch.mode = touch.option(1);
-  expect(one == 0.2 && touch.force(at(-0.1)) == 0.2, "... with one force");
-  expect(touch.is_admissible(at(-0.1), -1.0) && !touch.is_admissible(at(-0.1), 1.0),
+  const double one = point.force(at(-0.1));
+  point.mode = point.option(1);
+  expect(one == 0.2 && point.force(at(-0.1)) == 0.2, "... with one force");
+  expect(point.is_admissible(at(-0.1), -1.0) && !point.is_admissible(at(-0.1), 1.0),
          "the branch beyond is entered by a speed that grows");
-  const auto law = touch.force_law(at(-0.1));
+  const auto law = point.force_law(at(-0.1));
   expect(law.drag == 2 && law.constant.value == 0.2 - 2 * 0.1, "its slope is a drag");
 }
 
 void elastic_sticks() {
   const pd::Contact<double> skin{0.2, 0.3, 1000};
-  ContactPoint touch = begun(skin, 0);
-  expect(touch.elastic(), "compliant skin at rest sticks elastically");
-  touch.enumerate_options(at(0.1, 0.25));
-  expect(touch.count == 1 && touch.force(at(0.1, 0.25)) == -0.25, "below its limit it stays");
-  touch.enumerate_options(at(0.1, 0.3));
-  expect(touch.count == 2 && touch.option(1).state == ContactState::slip_forward,
+  ContactPoint point = begun(skin, 0);
+  expect(point.elastic(), "compliant skin at rest sticks elastically");
+  point.enumerate_options(at(0.1, 0.25));
+  expect(point.count == 1 && point.force(at(0.1, 0.25)) == -0.25, "below its limit it stays");
+  point.enumerate_options(at(0.1, 0.3));
+  expect(point.count == 2 && point.option(1).state == ContactState::slip_forward,
          "at its limit and stretching it may slip");
-  touch.enumerate_options(at(-0.1, 0.3));
-  expect(touch.count == 1, "... on its way back it stays");
-  const auto law = touch.force_law(at(-0.1, 0.3));
+  point.enumerate_options(at(-0.1, 0.3));
+  expect(point.count == 1, "... on its way back it stays");
+  const auto law = point.force_law(at(-0.1, 0.3));
   expect(law.stiffness == 1000 && law.constant.value == -0.3, "it is a spring from where it is");
 }
 
 void continuity() {
   const pd::Contact<double> even{0.2, 0.2}, more{0.2, 0.3};
   for (const auto* contact : {&even, &more}) {
-    ContactPoint touch = begun(*contact, 0);
-    touch.enumerate_options(at(0));
-    touch.mode = touch.option(2);  // backward
-    expect(touch.is_continuous(1) == (contact == &even) && !touch.is_continuous(-1),
+    ContactPoint point = begun(*contact, 0);
+    point.enumerate_options(at(0));
+    point.mode = point.option(2);  // backward
+    expect(point.is_continuous(1) == (contact == &even) && !point.is_continuous(-1),
            "a force at its limit goes on where static is kinetic friction, to the other side");
   }
 }

@@ -1,5 +1,5 @@
 // A contact at an instant: which way an option slips, and what is asked of what it does.
-#include "pindrive/law/touch_state.hpp"
+#include "pindrive/law/contact_point_state.hpp"
 
 #include <limits>
 
@@ -22,14 +22,14 @@ int main() {
 
   constexpr double never = std::numeric_limits<double>::infinity();
   const pd::Branch<double> curve[] = {{0, 0.1, 0.3, -1, 0}, {0.1, never, 0.2, 2, 0}};
-  ContactPointState touch(pd::Contact<double>{0.3, 0.4, never, curve, 2});
-  expect(!touch.sliding() && !touch.elastic() && touch.stick_limit() == 0.4,
+  ContactPointState point(pd::Contact<double>{0.3, 0.4, never, curve, 2});
+  expect(!point.sliding() && !point.elastic() && point.stick_limit() == 0.4,
          "it begins absent, under its own load");
-  touch.load = {0.5, 3};
-  touch.mode = ContactPointState::slip(-1, ActiveGuard::none, 1);
-  expect(touch.sliding() && touch.branch().slope == 2 && touch.stick_limit() == 0.2,
+  point.load = {0.5, 3};
+  point.mode = ContactPointState::slip(-1, ActiveGuard::none, 1);
+  expect(point.sliding() && point.branch().slope == 2 && point.stick_limit() == 0.2,
          "it slips on a branch, and half the load sticks half as well");
-  touch.mode = {ContactState::elastic_stick, ActiveGuard::none, 0, 0};
-  expect(touch.elastic() && !touch.sliding(), "skin that grips does not slide");
+  point.mode = {ContactState::elastic_stick, ActiveGuard::none, 0, 0};
+  expect(point.elastic() && !point.sliding(), "skin that grips does not slide");
   return check::status();
 }
