@@ -58,7 +58,7 @@ class Slider {
   [[gnu::noinline]] SliderJump<T> next_faster(int branch, T asked) const {
     for (int j = branch;; ++j) {
       const Branch<T> range = contact_.branch(j);
-      const bool last = !(range.to < never);
+      const bool last = j + 1 >= contact_.branches;
       if (range.slope > 0) {
         const T most = last ? never : contact_.branch(j + 1).force;
         if (!(asked > range.force) || same(asked, range.force))
@@ -70,7 +70,7 @@ class Slider {
         }
       }
       const bool shortens_skin = range.force < asked && !same(asked, range.force);
-      if (range.slope != 0 || (shortens_skin && !last)) continue;
+      if (!last && (range.slope != 0 || shortens_skin)) continue;
       const T speed = stationary_speed(range.force);
       if (speed < range.from && shortens_skin) {
         SliderJump<T> back = next_slower(j, range.force);
@@ -79,7 +79,8 @@ class Slider {
       }
       if (!(speed > range.from))
         return {j, range.from, range.force, ActiveGuard::lower, false, shortens_skin};
-      if (speed < range.to) return {j, speed, range.force, ActiveGuard::none, false, shortens_skin};
+      if (last || speed < range.to)
+        return {j, speed, range.force, ActiveGuard::none, false, shortens_skin};
     }
   }
 
@@ -118,7 +119,7 @@ class Slider {
     for (int j = speed_ > 0 ? contact_.branch_of(speed_) : -1; j >= 0; --j) {
       const Branch<T> range = contact_.branch(j);
       const T left = excess(range.from, range.force);
-      const bool last = !(range.to < never);
+      const bool last = j + 1 >= contact_.branches;
       if (range.slope < 0 || left < 0 || (left == 0 && j == 0)) continue;
       if (left == 0) return {j, range.from, range.force, ActiveGuard::lower};
       if (!last && excess(range.to, contact_.branch(j + 1).force) >= 0) continue;
