@@ -159,7 +159,7 @@ class BySeries {
     const detail::SeriesMode<T> mode(drive, segment.mode, lines);
     const Path<T>& v = segment.flow.velocity;
     const Path<T>& of_finger = segment.finger_force;
-    // The slider of a finger that lags is slower than the pin by what the skin stretches.
+    // The slider velocity of a finger is the pin velocity minus the stretch rate.
     const T skin = mode.has_slider_state() ? v.start + of_finger.drift / drive.finger.stiffness
                                            : -of_finger.start;
     const detail::SeriesState<T> start{segment.flow.position.start, v.start, skin, v.drift};

@@ -75,7 +75,7 @@ def design(
 
 
 def _writers() -> dict[str, Writer[Design]]:
-    """How a design is written, by the suffix of a file; it has no main table for a CSV."""
+    """Return the writers of a design by file suffix; a design has no main table for a CSV."""
     from pindrive.files.output import DEVICE_FILE
     from pindrive.optimisation.results import Design, designed_file
 

@@ -88,7 +88,7 @@ def pictures(
 def dataset_writers(
     title: str, columns: Sequence[str], dataset: Callable[[Result], xr.Dataset]
 ) -> dict[str, Writer[Result]]:
-    """How a result that is a dataset is written: NetCDF and JSON of all, CSV of its main table.
+    """Return the writers of a dataset by file suffix: NetCDF, JSON, and CSV of the main table.
 
     Args:
         title: what the files hold.
