@@ -14,13 +14,14 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+from cases import EXPLORES
 from pages import DOCS, ROOT, blocks
 
-# A test run draws the same cases on every machine; `python3 run.py explore` draws new ones. How
-# long a case takes depends on the machine, so none has a deadline.
+# A test run draws the same cases on every machine; `python3 run.py explore` draws new ones, and
+# more. How long a case takes depends on the machine, so none has a deadline.
 settings.register_profile("same", deadline=None, derandomize=True)
 settings.register_profile("explore", deadline=None, derandomize=False)
-settings.load_profile("same")
+settings.load_profile("explore" if EXPLORES else "same")
 
 
 # A shell without a terminal starts background jobs with SIGINT ignored, and children inherit that.

@@ -27,6 +27,9 @@ LONGER = {
     ".venv/bin/pindrive scan examples/tactile-reader.toml --text ": (
         "--set array.columns=2 --set array.rows=2"
     ),
+    '.venv/bin/pindrive scan device.toml --text "Hello" --plot ': (
+        "--set array.columns=2 --set array.rows=2"
+    ),
     ".venv/bin/pindrive sensitivity examples/": "--rows 128",
     ".venv/bin/pindrive speed examples/tactile-reader.toml --plot ": (
         '--pitch "4 mm" --slowest "0.05 m/s" --fastest "0.2 m/s"'
@@ -34,7 +37,11 @@ LONGER = {
 }
 """How commands that take long begin, and what they get here beside what they say."""
 COARSER = {
-    "examples/tactile-reader-study.toml": (("count = 19", "count = 4"), ("count = 13", "count = 3"))
+    "examples/tactile-reader-study.toml": (
+        ("count = 19", "count = 4"),
+        ("count = 13", "count = 3"),
+    ),
+    "examples/oblique-hand-study.toml": (("count = 46", "count = 7"),),
 }
 """Examples of which the pages have a copy with fewer points, to be quick."""
 WARNED = {"docs/studies.md": "the plate's friction coefficient"}

@@ -14,6 +14,8 @@ from pathlib import Path
 
 import pytest
 
+from cases import EXPLORES
+
 ROOT = Path(__file__).resolve().parents[2]
 COMPILES = pytest.mark.timeout(1800)
 CONSUMER = ROOT / "tests" / "consumer"
@@ -143,8 +145,12 @@ def test_add_subdirectory(tmp_path: Path) -> None:
 
 @COMPILES
 @pytest.mark.skipif(not list(ROOT.glob("tests/cpp/*.cpp")), reason="there are no C++ tests")
+@pytest.mark.explore
 def test_ctest(programs: Path, tmp_path: Path) -> None:
     run("ctest", "--test-dir", programs, "--output-on-failure", "--parallel", "2")
+    if EXPLORES:
+        for seed in "12":
+            assert "failed 0" in run(programs / "fuzz", "50000", seed, "--threads", "2")
     same_however_it_is_run(programs / "fuzz", tmp_path / "fuzz.log")
 
 

@@ -6,7 +6,6 @@ their endings do not depend on units, mirror image and duration is shown by test
 
 from __future__ import annotations
 
-import os
 import subprocess
 from ctypes import byref, c_double, c_void_p
 from itertools import pairwise
@@ -19,12 +18,13 @@ import pytest
 from numpy.testing import assert_array_equal
 
 from c_interface import Interface, Outcome, doubles
+from cases import EXPLORES
 from core_case import Case, line, read
 from fmu_unit import Unit, unpacked
 from pindrive import Status, load_device, simulate, simulate_batch
 
-pytestmark = pytest.mark.timeout(1800)  # the first of them compiles the programs
-COUNT = int(os.environ.get("PINDRIVE_ROUND_DRIVES", "680"))
+pytestmark = [pytest.mark.explore, pytest.mark.timeout(1800)]  # the first test compiles
+COUNT = 4000 if EXPLORES else 680
 """680 has each three of the 17 features once."""
 
 

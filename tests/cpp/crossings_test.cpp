@@ -141,7 +141,7 @@ void judge(const pd::Motion<double>& motion, double until, const std::string& na
 int main() {
   std::vector<pd::Segment<double>> segments;
   int judged = 0, cycles = 0;
-  for (std::uint64_t number = 0; number < cases(4000); ++number) {
+  for (int number = 0; number < cases(4000); ++number) {
     const fuzz::Case c = fuzz::Draw(5, number).next();
     const fuzz::Given given(c);
     const auto outcome = fuzz::run(given, segments);

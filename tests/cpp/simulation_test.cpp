@@ -82,7 +82,7 @@ void parting_surfaces() {
 void no_mode_without_time() {
   std::size_t instants = 0, stopped = 0;
   Segments segments;
-  for (std::uint64_t number = 0; number < cases(100'000); ++number) {
+  for (int number = 0; number < cases(100'000); ++number) {
     const auto verdict = fuzz::simulated(fuzz::Draw(1, number).next(), segments);
     instants += verdict.instants;
     stopped += verdict.status != pd::Status::ok ? 1 : 0;

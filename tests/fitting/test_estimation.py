@@ -10,6 +10,7 @@ import pytest
 
 import pindrive as pd
 from benchmarks.fitting import outcome
+from cases import cases
 from pindrive import Contact, Drive, Profile, Recording, Release, Status, fit
 from pindrive.fitting import Fit, Identifiability
 from recordings import FREE, RELEASE, START, TRUTH, recorded
@@ -181,11 +182,12 @@ def test_noise_that_was_given_is_kept_and_exceeded_noise_is_told() -> None:
     assert doubtful.status is Status.incomplete
 
 
+@pytest.mark.explore
 def test_intervals_hold_the_truth_as_often_as_they_say() -> None:
     """A sample of `python3 run.py bench fitting`, which does it 500 times."""
-    done = [outcome(1501, 100, i) for i in range(4)]
+    done = [outcome(1501, 100, i) for i in range(cases(10))]
     closed = [held for each in done for _, kind, held in each.held if kind == "closed"]
-    assert len(closed) > 10
+    assert len(closed) > 2 * len(done)
     assert sum(closed) >= 0.75 * len(closed)
     assert all(each.converged and not each.lost for each in done)
 
