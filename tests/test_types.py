@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 
 import pindrive as pd
+from pages import ROOT
 
 PACKAGES = (
     *("quantities", "motion", "device", "evaluation", "files"),
@@ -48,7 +49,8 @@ def test_no_public_name_is_any(tmp_path: Path) -> None:
     lines = ["import pindrive", *(f"reveal_type(pindrive.{name})" for name in names)]
     program = tmp_path / "program.py"
     program.write_text("\n".join(lines) + "\n", "utf-8")
-    command = [sys.executable, "-m", "mypy", "--strict", "--config-file", "", str(program)]
+    cache = ("--cache-dir", str(ROOT / "build" / "mypy"))
+    command = [sys.executable, "-m", "mypy", "--strict", "--config-file", "", *cache, str(program)]
     result = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, check=False)
     assert result.returncode == 0, result.stdout
     revealed = [line for line in result.stdout.splitlines() if "Revealed type" in line]

@@ -39,12 +39,13 @@ def rows(path: str) -> list[dict[str, str]]:
 
 def test_speeds_are_written_as_python_has_them() -> None:
     files = [part for name in ("a.csv", "a.nc", "a.json") for part in ("-o", name)]
-    said = run("speed", READER, "--pitch", "4 mm, 8 mm", "--fastest", "40 mm/s", *files)
+    span = ("--slowest", "30 mm/s", "--fastest", "50 mm/s")
+    said = run("speed", READER, "--pitch", "8 mm", *span, *files)
     assert said.exit_code == 0, said.output
     assert said.stdout.endswith("Wrote a.csv\nWrote a.nc\nWrote a.json\n")
     device = load_device(READER)
     found = largest_speeds(
-        device.device, [0.004, 0.008], slowest=0.005, fastest=0.04, criteria=device.criteria
+        device.device, [0.008], slowest=0.03, fastest=0.05, criteria=device.criteria
     ).to_dataset()
     table = rows("a.csv")
     assert list(table[0])[:2] == ["speed_pitch [m]", "speed_width [m]"]
