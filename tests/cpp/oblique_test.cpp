@@ -13,6 +13,7 @@ using check::near;
 using pd::ContactState;
 using pd::detail::ActiveGuard, pd::detail::ObliqueSlip;
 using Line = pd::Line<double>;
+using ContactMode = pd::detail::ContactMode<double>;
 using ContactPoint = pd::detail::ContactPoint<double>;
 
 namespace {
@@ -70,34 +71,35 @@ ContactPoint plate(Line across, Line load = {1, 0}) {
   point.surface = {0.1, 0.5};
   point.across = across;
   point.load = load;
-  point.mode = ContactPoint::slip(1, ActiveGuard::none, 0);
+  point.mode = ContactMode::slip(1, ActiveGuard::none, 0);
   return point;
 }
 
 void asks() {
   ContactPoint point = plate({0.3, 0});
   ActiveGuard at = ActiveGuard::lower;
-  expect(pd::detail::enumerate_oblique_options(point, 0.4, at) && point.oblique() &&
+  expect(pd::detail::enumerate_oblique_candidates(point, 0.4, at) && point.oblique() &&
              at == ActiveGuard::none,
          "a plate that begins to slide across slips in the one way that is left");
-  expect(near(point.direction, 0.8, 1e-15) && point.friction == 0.03, "... along its velocity");
+  expect(near(point.direction, 0.8, 1e-15) && point.start.friction == 0.03,
+         "... along its velocity");
   ContactPoint unloaded = plate({0.3, 0}, {0, 0});
-  expect(!pd::detail::enumerate_oblique_options(unloaded, 0.4, at) && !unloaded.oblique(),
+  expect(!pd::detail::enumerate_oblique_candidates(unloaded, 0.4, at) && !unloaded.oblique(),
          "what carries nothing is not asked");
   point.across = {0, 0};
   point.load = {1, 0};
-  expect(!pd::detail::enumerate_oblique_options(point, -0.4, at) &&
+  expect(!pd::detail::enumerate_oblique_candidates(point, -0.4, at) &&
              point.mode.state == ContactState::slip_backward,
          "where it no longer slides across it slips along the axis");
   ContactPoint still = plate({0, 0.2});
-  expect(pd::detail::enumerate_oblique_options(still, 0.0, at) &&
+  expect(pd::detail::enumerate_oblique_candidates(still, 0.0, at) &&
              near(still.direction, -0.5 / std::hypot(0.5, 0.2), 1e-15),
          "from no velocity it sets out against that of its surface");
 }
 
 void sets_out_and_lands() {
   ContactPoint point = plate({0, 0.2});
-  point.friction = 0.03;
+  point.start.friction = 0.03;
   const double mass = 0.01, pull = 0.02;
   const double p = pd::detail::oblique_departure(mass, point, pull), direction = point.direction;
   expect(near(p, 0.2 * direction / std::sqrt(1 - direction * direction), 1e-12) &&

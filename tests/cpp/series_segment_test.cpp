@@ -32,8 +32,8 @@ struct Slide {
     drive.plate.branches = 2;
     ContactPoint plate(drive.plate), finger(drive.finger);
     plate.load = {1, 50};
-    plate.mode = ContactPoint::slip(1, ActiveGuard::none, 1);
-    plate.friction = plate.branch().at(state.v);
+    plate.mode = pd::detail::ContactMode<double>::slip(1, ActiveGuard::none, 1);
+    plate.start.friction = plate.branch().at(state.v);
     finger.mode = {};
     acceleration = rate({state.x, state.v}, 0)[1];
     segment.mode = {plate.mode.state, finger.mode.state, 1, 0};

@@ -29,7 +29,7 @@ int main() {
   State s = at(-1e-3, -0.2);
   rigid.initialize(s);
   expect(s.v == 0, "a rigid stop takes the velocity of a pin released towards it");
-  rigid.enumerate_options(s);
+  rigid.enumerate_candidates(s);
   expect(rigid.count() == 2 && rigid.at_edge(), "there it holds the pin or lets it go");
   rigid.choose(0);
   expect(rigid.is_holding() && rigid.state == StopState::lower && rigid.force(s) == 0,
@@ -51,7 +51,7 @@ int main() {
   expect(slow.state == StopState::beyond_upper && slow.force(s) == 0, "it never pulls");
   elastic.released = true;
   s = at(1.1e-3, -0.5);
-  elastic.enumerate_options(s);
+  elastic.enumerate_candidates(s);
   elastic.choose(1);
   expect(elastic.state == StopState::beyond_upper && elastic.is_consistent(-0.5, -1, {}) &&
              !elastic.is_consistent(-0.5, 3000, {}),
@@ -59,7 +59,7 @@ int main() {
   State met = at(-1.0000001e-3, -0.1);
   Stops below(pd::Stops<double>{1e-3, 1e4, 2});
   expect(!below.snap(met) && met.x == -1e-3, "a pin that has come to its end is exactly there");
-  below.enumerate_options(met);
+  below.enumerate_candidates(met);
   below.choose(0);
   expect(below.is_pushing() && below.force_jumped(), "and meets a force at once, by the damping");
 

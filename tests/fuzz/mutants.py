@@ -120,21 +120,21 @@ MUTANTS = (
     Mutant(
         "the force at a breakpoint is that of the wrong branch",
         "law/contact_point.hpp",
-        "contact.branch(guard_ == ActiveGuard::upper ? branch_ + 1 : branch_).force",
-        "contact.branch(guard_ == ActiveGuard::upper ? branch_ : branch_ - 1).force",
+        "contact.branch(faster ? mode.branch + 1 : mode.branch).force",
+        "contact.branch(faster ? mode.branch : mode.branch - 1).force",
     ),
     Mutant(
         "a breakpoint is passed without a change",
         "law/contact_point.hpp",
-        "branch_ + (faster ? 1 : -1),",
-        "branch_ + (faster ? 1 : 0),",
+        "mode.branch + (faster ? 1 : -1),",
+        "mode.branch + (faster ? 1 : 0),",
     ),
     Mutant(
         "skin sticks with a thousandth more stretch",
-        "law/skin.hpp",
-        "if (shortens_skin()) s.skin = skin_tension(s);",
-        "if (shortens_skin()) s.skin = skin_tension(s);\n"
-        "    if (elastic() && before != does.state) s.skin *= T(1.001);",
+        "law/contact_point.hpp",
+        "if (start.shortens_skin) s.skin = skin_tension(s);",
+        "if (start.shortens_skin) s.skin = skin_tension(s);\n"
+        "    if (elastic() && before != mode.state) s.skin *= T(1.001);",
     ),
     Mutant(
         "skin slips only while the plate holds the pin",
@@ -146,8 +146,8 @@ MUTANTS = (
     Mutant(
         "skin slips at its limit though it turns back",
         "law/contact_point.hpp",
-        "if (faster == 0) return slip_sign_ * decides >= 0;",
-        "if (faster == 0) return slip_sign_ * decides > 0;",
+        "if (faster == 0) return slip_sign * decides >= 0;",
+        "if (faster == 0) return slip_sign * decides > 0;",
     ),
     Mutant(
         "the plate holds for ever",
@@ -236,7 +236,7 @@ MUTANTS = (
     Mutant(
         "skin without static friction carries nothing until the next breakpoint",
         "law/skin.hpp",
-        "const T round = stretch_rate(largest_friction(2 * u));",
+        "const T round = point.stretch_rate(largest_friction(contact, 2 * u));",
         "const T round = most;",
     ),
     Mutant(
@@ -254,8 +254,8 @@ MUTANTS = (
     Mutant(
         "skin without static friction sticks a pin at rest as its load grows from none",
         "law/skin.hpp",
-        "if (jump_.guard == ActiveGuard::lower || (jump_.sticks && u == 0))",
-        "if (jump_.guard == ActiveGuard::lower)",
+        "if (must_jump_ && jump.sticks && u_ != 0) {",
+        "if (must_jump_ && jump.sticks) {",
     ),
     Mutant(
         "a slider of stiff skin is slow whatever speed it begins at",

@@ -56,7 +56,7 @@ class Simulation : private Selection<T> {
         segment.event = {change(segment.mode.plate, after.plate),
                          change(segment.mode.finger, after.finger)};
         segment.event.stop = change(segment.mode.stop, after.stop, struck_);
-        if (finger_.shortens_skin()) segment.event.finger = Transition::slip;
+        if (finger_.start.shortens_skin) segment.event.finger = Transition::slip;
         const bool changes = segment.event.any() || !same_mode(segment.mode, after);
         if (!(breakpoint_ < never) && (changes || turn < event))
           cycles_.visit(segment, after, time_, time_error_, state_, outcome_);
@@ -113,7 +113,7 @@ class Simulation : private Selection<T> {
   /// Flattened: calls would add a tenth to the time of a standard release; not flattened where size
   /// is optimised.
   PINDRIVE_FLAT void select() {
-    breakpoint_ = finger_.defer_first_grip(state_, time_, breakpoint_);
+    breakpoint_ = defer_first_grip(finger_, state_.v, time_, breakpoint_);
     if (!Selected::select()) outcome_.status = Status::inconsistent;
     finger_.apply_jump(state_);
   }
@@ -343,7 +343,7 @@ class Simulation : private Selection<T> {
       look_ahead();
     const T now = finger_.load.value, known = rounding<T> * (abs(value) + 2 * abs(rate) * time_);
     if (abs(value - now) > known + rounding<T> * abs(now)) return abs(value) > known ? value : T(0);
-    if (!series_.has_eliminated_slider()) finger_.keep_force(state_, value);
+    if (!series_.has_eliminated_slider()) keep_force(finger_, state_, value);
     return now;
   }
   /// Reads the inputs from here on from their breakpoints: continued from event to event they would

@@ -19,7 +19,7 @@ namespace pindrive {
 template <class T>
 class Stepper {
   using Simulation = detail::Simulation<T>;
-  using Option = typename detail::ContactPoint<T>::Option;
+  using ContactMode = detail::ContactMode<T>;
 
  public:
   /// Complete state: a stepper constructed from this state gives identical bits.
@@ -28,7 +28,7 @@ class Stepper {
     T since;                                  ///< time of the last event, s
     T since_error;                            ///< rounding error of that time, s
     detail::State<T> pin;                     ///< pin at that time
-    Option plate, finger;                     ///< modes of the contacts before
+    ContactMode plate, finger;                ///< modes of the contacts before
     detail::ActiveGuard at_plate, at_finger;  ///< active guards of the contacts
     int limit;                                ///< side of a stick force at its limit
     StopState stop;                           ///< state of the end stops before
@@ -283,8 +283,8 @@ class Stepper {
     const T sense = finger.mode.slip_sign;
     if (finger.sliding() && finger.contact.may_lag()) return;
     if (finger.sliding() && sense * v > 0) {
-      finger.mode = Option{finger.mode.state, detail::ActiveGuard::none,
-                           finger.contact.branch_of(abs(v)), sense};
+      finger.mode = ContactMode{finger.mode.state, detail::ActiveGuard::none,
+                                finger.contact.branch_of(abs(v)), sense};
     } else {
       finger.mode = {};
       finger.initialize(simulation_.state_, true);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "pindrive/law/contact_mode.hpp"
 #include "pindrive/law/oblique.hpp"
 #include "pindrive/law/skin.hpp"
 #include "pindrive/law/state.hpp"
@@ -14,33 +15,93 @@ namespace pindrive::detail {
 
 /// One contact at one instant: candidate modes and transmitted force.
 ///
-/// `enumerate_options()` lists at most three candidates in order of preference, `option(i)` returns
-/// candidate i, and `mode` is the candidate under test or, finally, the selected one. `surface`
-/// (velocity, m/s) and `load` (load factor) are linear functions of the time since this instant.
+/// `enumerate_candidates()` lists at most four candidates in order of preference; `mode` is the
+/// candidate under test or, finally, the selected one. `surface` (velocity, m/s) and `load` (load
+/// factor) are linear functions of the time since this instant.
 template <class T>
-struct ContactPoint : SlidingSkin<T> {
-  using Base = SlidingSkin<T>;
-  using Option = ContactMode<T>;
-  using Base::Base, Base::contact, Base::surface, Base::load, Base::across, Base::mode;
-  using Base::before, Base::reached_guard, Base::count, Base::friction, Base::direction;
-  using Base::has_slider_state, Base::relative_speed, Base::shortens_skin;
-  using Base::slip, Base::sliding, Base::elastic, Base::branch, Base::stick_limit;
+struct ContactPoint {
+  explicit ContactPoint(const Contact<T>& given) : contact(given) {}
 
-  bool may_stick() const { return stick_state_ == ContactState::stick; }
+  Contact<T> contact;
+  Line<T> surface{}, load{T(1), T(0)}, across{};
+  ContactMode<T> mode{};
+  ModeStart<T> start{};                          ///< friction and slider where the mode starts
+  ContactState before{};                         ///< state before the last event
+  ActiveGuard reached_guard{ActiveGuard::none};  ///< guard that became zero at the last event
+  T direction{0};  ///< axial component of the sliding direction of an oblique slip: u/√(u² + w²)
+  Candidates<T> candidates{};
+  /// sign of the sliding velocity before, or of the force at which an elastic stick slips
+  T slip_sign{0};
+  bool slips_either_way{false};  ///< skin tension and static friction are both zero
+
+  bool sliding() const { return is_slip(mode.state); }
+  bool stuck() const { return mode.state == ContactState::stick; }
+  bool elastic() const { return mode.state == ContactState::elastic_stick; }
+  bool oblique() const { return mode.state == ContactState::slip_oblique; }
+  Branch<T> branch() const { return contact.branch(mode.branch); }
+  T stick_limit() const { return contact.static_limit * load.value; }  ///< largest stick force, N
+
+  /// Takes a candidate as the mode.
+  void choose(int index) {
+    mode = candidates[index].mode;
+    start = candidates[index].start;
+  }
+  bool may_stick() const { return candidates[0].mode.state == ContactState::stick; }
   /// After stick, orders the slip candidates: slip opposite to the stick force (N) is tested first.
   /// The order matters only where both directions are consistent, which requires static > kinetic
   /// friction.
   void prefer_direction(T force) {
-    if (slip_sign_ == 0) slip_sign_ = force < 0 ? T(-1) : T(1);
+    if (slip_sign != 0) return;
+    slip_sign = force < 0 ? T(-1) : T(1);
+    if (slip_sign > 0) candidates.swap(1, 2);
   }
-  bool stuck() const { return mode.state == ContactState::stick; }
-  bool oblique() const { return mode.state == ContactState::slip_oblique; }
+
+  /// True if the slider velocity is a state of its own, beside that of the pin.
+  bool has_slider_state() const { return contact.may_lag() && sliding() && branch().slope != 0; }
+  /// Pin speed minus slider speed and stretch rate, m/s; zero within its error.
+  T relative_speed(T v) const {
+    using std::abs;
+    if (start.keeps_speed) return T(0);
+    const T relative_speed = mode.slip_sign * v - stretch_rate(start.friction) - start.slider_speed;
+    return abs(relative_speed) < rounding<T> * abs(v) ? T(0) : relative_speed;
+  }
+  /// Rate at which the skin stretches so that a friction (N at load factor 1) follows the load,
+  /// m/s.
+  T stretch_rate(T friction) const {
+    return load.rate == 0 || contact.rigid() ? T(0) : load.rate * friction / contact.stiffness;
+  }
+  /// Pin velocity at which the contact stays at its active guard, m/s.
+  T stationary_velocity() const {
+    if (contact.rigid()) return surface.value;
+    return elastic() ? -slip_sign * stretch_rate(contact.static_limit)
+                     : mode.slip_sign * stretch_rate(branch().force);
+  }
+  /// Pin velocity minus the stationary velocity, m/s; zero within its error.
+  T excess_velocity(T v) const {
+    using std::abs;
+    const T off = v - stationary_velocity();
+    return abs(off) < rounding<T> * abs(v) ? T(0) : off;
+  }
+  /// Skin tension in slip for a load factor, N.
+  T skin_force(const State<T>& s, T loaded) const {
+    const Branch<T> range = branch();
+    return mode.slip_sign *
+           range.at(has_slider_state() ? mode.slip_sign * s.slider_velocity : range.from) * loaded;
+  }
+  /// True if the slider moves noticeably within the time resolution, as under a falling load. Such
+  /// a slider advances by the stored time.
+  bool is_sensitive_to_time() const { return has_slider_state() && load.rate != 0; }
+  /// Moves the state to the start of the selected mode.
+  void apply_jump(State<T>& s) const {
+    if (mode.state == ContactState::absent) s.skin = T(0);
+    if (start.shortens_skin) s.skin = skin_tension(s);
+    if (has_slider_state()) s.slider_velocity = mode.slip_sign * start.slider_speed;
+  }
   /// True if, at pin velocity v (m/s), the relative acceleration is the first quantity that
   /// determines on which side of the active guard the motion continues.
   bool is_decided_by_acceleration(T v) const {
     if (mode.guard == ActiveGuard::none || oblique()) return false;
-    return elastic() ? this->excess_velocity(v) == 0
-                     : !has_slider_state() || relative_speed(v) == 0;
+    return elastic() ? excess_velocity(v) == 0 : !has_slider_state() || relative_speed(v) == 0;
   }
   /// Sets the initial mode: stick if pin and surface have equal velocities, otherwise slip. A
   /// compliant contact starts in elastic stick if its stretch is given or the pin is at rest.
@@ -50,11 +111,11 @@ struct ContactPoint : SlidingSkin<T> {
     const bool skin = !contact.rigid() && (stretched || s.v == 0);
     mode.state = skin ? ContactState::elastic_stick : ContactState::stick;
     if (skin || u == 0) return;
-    mode = slip(u / size, ActiveGuard::none, contact.branch_of(size));
+    mode = ContactMode<T>::slip(u / size, ActiveGuard::none, contact.branch_of(size));
     if (has_slider_state())
-      this->initialize_slider(s, size);
+      initialize_slider(*this, s, size);
     else if (!contact.rigid())
-      s.skin = this->skin_force(s, load.value);
+      s.skin = skin_force(s, load.value);
   }
 
   /// Removes a contact whose load factor is zero at all times.
@@ -66,72 +127,59 @@ struct ContactPoint : SlidingSkin<T> {
 
   /// Enumerates the candidate modes. Without an active guard, a sliding speed outside its branch of
   /// the friction curve is treated as being at the nearer end of that branch.
-  void enumerate_options(const State<T>& s) {
+  void enumerate_candidates(const State<T>& s) {
     before = mode.state;
-    count = 1;
-    guard_ = reached_guard;
+    ActiveGuard guard = reached_guard;
     reached_guard = ActiveGuard::none;
-    stick_state_ = ContactState::absent;
+    candidates.clear();
     const T u = s.v - surface.value;
-    const bool across_too = enumerate_oblique_options(*this, u, guard_);
-    default_state_ = mode.state;
-    slip_sign_ = mode.slip_sign;
-    branch_ = mode.branch;
+    const bool across_too = enumerate_oblique_candidates(*this, u, guard);
+    slip_sign = mode.slip_sign;
     if (across_too) return;
-    if (!contact.rigid()) return this->enumerate_slider_options(s, u);
+    if (!contact.rigid()) return SliderCandidates<T, ContactPoint>(*this, s, u, guard).enumerate();
     if (sliding()) {
       const Branch<T> range = branch();
-      const T speed = slip_sign_ * u;
-      if (guard_ == ActiveGuard::none && speed >= range.to) guard_ = ActiveGuard::upper;
-      if (guard_ == ActiveGuard::none && !(speed > range.from)) guard_ = ActiveGuard::lower;
-      friction = range.at(speed);
-      if (guard_ == ActiveGuard::none) return;
-      if (guard_ == ActiveGuard::upper || branch_ > 0) {
-        // Both branches have equal friction at a breakpoint.
-        friction = contact.branch(guard_ == ActiveGuard::upper ? branch_ + 1 : branch_).force;
-        count = 2;
-        return;
-      }
+      const T speed = slip_sign * u;
+      if (guard == ActiveGuard::none && speed >= range.to) guard = ActiveGuard::upper;
+      if (guard == ActiveGuard::none && !(speed > range.from)) guard = ActiveGuard::lower;
+      start.friction = range.at(speed);
+      if (guard == ActiveGuard::none || guard == ActiveGuard::upper || mode.branch > 0)
+        return add_branches(guard);
     }
-    friction = contact.branch(0).force;
-    if (before == ContactState::absent) return;
-    guard_ = ActiveGuard::none;
-    departure_guard_ = ActiveGuard::lower;
-    stick_state_ = ContactState::stick;
-    count = 3;
+    start.friction = contact.branch(0).force;
+    if (before == ContactState::absent)
+      return candidates.add({mode.state, guard, mode.branch, mode.slip_sign}, start);
+    candidates.add({ContactState::stick, ActiveGuard::none, 0, T(0)}, start);
+    const T first = slip_sign > 0 ? T(-1) : T(1);
+    candidates.add(ContactMode<T>::slip(first, ActiveGuard::lower), start);
+    candidates.add(ContactMode<T>::slip(-first, ActiveGuard::lower), start);
   }
 
-  /// Candidate mode by its index: stick comes first, then the continuation of the present mode.
-  Option option(int index) const {
-    if (this->must_jump() || this->is_reversal(index))
-      return this->after_jump(stick_state_ == ContactState::absent ? slip_sign_ : -slip_sign_,
-                              index);
-    if (stick_state_ == ContactState::absent) {
-      if (index == 0) return {default_state_, guard_, branch_, slip_sign_};
-      if (!contact.rigid()) return this->after_jump(slip_sign_, index);
-      const bool faster = guard_ == ActiveGuard::upper;
-      return {default_state_, faster ? ActiveGuard::lower : ActiveGuard::upper,
-              branch_ + (faster ? 1 : -1), slip_sign_};
-    }
-    if (index == 0) return {stick_state_, guard_, 0, T(0)};
-    const bool backward = (index == 1) == (slip_sign_ > 0);
-    const T slip_sign = backward ? T(-1) : T(1);
-    return contact.rigid() ? slip(slip_sign, departure_guard_) : this->after_jump(slip_sign);
+  /// Adds the present mode and, at a breakpoint of the friction curve, the other branch. Both
+  /// branches have equal friction there.
+  void add_branches(ActiveGuard guard) {
+    const bool faster = guard == ActiveGuard::upper;
+    if (guard != ActiveGuard::none)
+      start.friction = contact.branch(faster ? mode.branch + 1 : mode.branch).force;
+    candidates.add({mode.state, guard, mode.branch, mode.slip_sign}, start);
+    if (guard != ActiveGuard::none)
+      candidates.add({mode.state, faster ? ActiveGuard::lower : ActiveGuard::upper,
+                      mode.branch + (faster ? 1 : -1), mode.slip_sign},
+                     start);
   }
 
   /// Force on the pin, N; not defined in stick.
   T force(const State<T>& s) const {
-    if (elastic()) return -this->skin_tension(s);
-    return -(oblique() ? direction : mode.slip_sign) * this->mode_friction() * load.value;
+    if (elastic()) return -skin_tension(s);
+    return -(oblique() ? direction : mode.slip_sign) * start.friction * load.value;
   }
   /// Derivatives of the force for a pin with constant acceleration (m/s²).
-  using Rate = ForceRate<T>;
-  Rate force_rate(T v, T acceleration) const {
+  ForceRate<T> force_rate(T v, T acceleration) const {
     using std::abs;
     const T stretching = contact.stiffness * v;
     if (elastic()) return {-stretching, abs(stretching), -contact.stiffness * acceleration};
     if (!sliding()) return {};
-    if (has_slider_state()) return this->slip_force_rate(v, acceleration);
+    if (has_slider_state()) return slip_force_rate(v, acceleration);
     const Branch<T> range = branch();
     const T faster = acceleration - surface.rate;
     T rate{}, bend{};
@@ -140,8 +188,7 @@ struct ContactPoint : SlidingSkin<T> {
       rate = speed.force_rate(range, load);
       bend = speed.force_bend(range, load);
     } else {
-      rate =
-          -range.slope * load.value * faster - mode.slip_sign * this->mode_friction() * load.rate;
+      rate = -range.slope * load.value * faster - mode.slip_sign * start.friction * load.rate;
       bend = -2 * range.slope * load.rate * faster;
     }
     const T unsure = range.rounding * load.value * abs(faster);
@@ -158,8 +205,8 @@ struct ContactPoint : SlidingSkin<T> {
   T force_scale(T v) const {
     using std::abs;
     if (contact.branches == 0 || !sliding()) return stick_limit();
-    const T rounded = abs(branch().slope) * this->speed_scale(v);
-    return (contact.static_limit + rounded) * load.value + friction * load.value;
+    const T rounded = abs(branch().slope) * speed_scale(v);
+    return (contact.static_limit + rounded) * load.value + start.friction * load.value;
   }
 
   /// Force of the mode as a linear law; not defined in stick.
@@ -169,7 +216,7 @@ struct ContactPoint : SlidingSkin<T> {
   Force<T> force_law(const State<T>& s) const {
     if (elastic()) return {{-s.skin, T(0)}, T(0), contact.stiffness, T(0)};
     if (oblique()) {
-      const T axial = -direction * this->mode_friction();
+      const T axial = -direction * start.friction;
       return {{axial * load.value, axial * load.rate}};
     }
     if (!sliding()) return {};
@@ -187,7 +234,7 @@ struct ContactPoint : SlidingSkin<T> {
 
   /// True if the force is continuous after a stick force has reached its limit on a side.
   bool is_continuous(int limit) const {
-    if (shortens_skin() || before == mode.state) return !shortens_skin();
+    if (start.shortens_skin || before == mode.state) return !start.shortens_skin;
     if (contact.kinetic != contact.static_limit && load.value != 0) return false;
     return before == ContactState::stick ? mode.slip_sign == -limit
                                          : before == ContactState::elastic_stick;
@@ -216,11 +263,10 @@ struct ContactPoint : SlidingSkin<T> {
                       : mode.slip_sign * (mode.guard == ActiveGuard::lower ? decides : -decides);
       return inwards > 0 || (inwards == 0 && (mode.guard == ActiveGuard::upper || mode.branch > 0));
     }
-    if (this->slips_either_way()) return s.v == 0 && decides == 0;
-    const T stretches = contact.stiffness * slip_sign_, faster = this->excess_velocity(s.v);
-    if (faster == 0) return slip_sign_ * decides >= 0;
-    return slip_sign_ * faster > 0 ||
-           grazes(stretches * faster, stretches * decides, s.force_error);
+    if (slips_either_way) return s.v == 0 && decides == 0;
+    const T stretches = contact.stiffness * slip_sign, faster = excess_velocity(s.v);
+    if (faster == 0) return slip_sign * decides >= 0;
+    return slip_sign * faster > 0 || grazes(stretches * faster, stretches * decides, s.force_error);
   }
 
   ObliqueSlip<T> oblique_slip(T v, T acceleration) const {
@@ -228,8 +274,27 @@ struct ContactPoint : SlidingSkin<T> {
   }
 
  private:
-  using Base::default_state_, Base::slip_sign_, Base::branch_, Base::guard_, Base::stick_state_,
-      Base::departure_guard_;
+  /// Skin tension in elastic stick, N.
+  T skin_tension(const State<T>& s) const {
+    return start.shortens_skin ? (s.skin < 0 ? T(-1) : T(1)) * start.friction * load.value : s.skin;
+  }
+  /// Derivatives of the force in slip with a slider velocity: the skin stretches at the relative
+  /// speed.
+  ForceRate<T> slip_force_rate(T v, T acceleration) const {
+    using std::abs;
+    const T stiffness = contact.stiffness, sign = mode.slip_sign;
+    const T slope = branch().slope;
+    const T faster = load.value == 0
+                         ? sign * stiffness * acceleration / (stiffness + 2 * slope * load.rate)
+                         : stiffness * relative_speed(v) / (slope * load.value);
+    return {-stiffness * (v - sign * start.slider_speed), stiffness * (abs(v) + start.slider_speed),
+            -stiffness * (acceleration - sign * faster)};
+  }
+  /// Bound of the speed that the slope of the friction curve multiplies, m/s.
+  T speed_scale(T v) const {
+    using std::abs;
+    return has_slider_state() ? branch().from + start.slider_speed : abs(v) + abs(surface.value);
+  }
 };
 
 }  // namespace pindrive::detail

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "pindrive/flow/flow.hpp"
+#include "pindrive/law/contact_mode.hpp"
 #include "pindrive/law/state.hpp"
 #include "pindrive/model/input_lines.hpp"
 #include "pindrive/model/limits.hpp"
@@ -101,7 +102,7 @@ struct ObliqueSlip {
 /// `guard` is the active guard: the end of the branch that the sliding speed has just reached, or
 /// none.
 template <class Point, class T>
-bool enumerate_oblique_options(Point& side, T u, ActiveGuard& guard) {
+bool enumerate_oblique_candidates(Point& side, T u, ActiveGuard& guard) {
   using detail::hypot;
   const auto& contact = side.contact;
   if (!slides_obliquely(side.load, side.across)) {
@@ -109,8 +110,8 @@ bool enumerate_oblique_options(Point& side, T u, ActiveGuard& guard) {
     guard = ActiveGuard::none;  // the old guard belongs to another speed
     side.mode = {ContactState::stick, ActiveGuard::none, 0, T(0)};
     if (u != 0)
-      side.mode =
-          Point::slip(u < 0 ? T(-1) : T(1), ActiveGuard::none, contact.branch_of(u < 0 ? -u : u));
+      side.mode = ContactMode<T>::slip(u < 0 ? T(-1) : T(1), ActiveGuard::none,
+                                       contact.branch_of(u < 0 ? -u : u));
     return false;
   }
   if (!contact.present()) return false;
@@ -123,13 +124,10 @@ bool enumerate_oblique_options(Point& side, T u, ActiveGuard& guard) {
   if (guard == ActiveGuard::none && speed >= range.to) guard = ActiveGuard::upper;
   if (guard == ActiveGuard::none && !(speed > range.from || side.mode.branch == 0))
     guard = ActiveGuard::lower;
-  side.friction = range.at(speed);
+  side.start.friction = range.at(speed);
   const T rate = side.surface.rate;
   side.direction = speed > 0 ? u / speed : -rate / hypot(rate, side.across.rate);
-  if (guard == ActiveGuard::none) return true;
-  side.count = 2;
-  side.friction =
-      contact.branch(guard == ActiveGuard::upper ? side.mode.branch + 1 : side.mode.branch).force;
+  side.add_branches(guard);
   return true;
 }
 
@@ -139,8 +137,8 @@ template <class T, class Point>
 T oblique_departure(T mass, Point& plate, T pull) {
   using detail::hypot;
   const T rest = pull - mass * plate.surface.rate;
-  const T p =
-      departure_acceleration(mass, plate.load.value * plate.friction, plate.across.rate, rest);
+  const T p = departure_acceleration(mass, plate.load.value * plate.start.friction,
+                                     plate.across.rate, rest);
   plate.direction = p / hypot(p, plate.across.rate);
   return p;
 }
@@ -151,7 +149,7 @@ template <class T, class Point>
 void end_oblique_slip(State<T>& state, Point& plate, bool on_finger, T across, T mass, T time) {
   using std::abs;
   if (!plate.oblique() || plate.across.value != 0) return;
-  const T changes = plate.load.value * plate.friction / mass + abs(plate.surface.rate);
+  const T changes = plate.load.value * plate.start.friction / mass + abs(plate.surface.rate);
   const T crept = abs(across) + rounding<T> * (abs(state.v) + abs(plate.surface.value)) +
                   4 * rounding<T> * time * changes;
   if (abs(state.v - plate.surface.value) > crept) return;

@@ -37,14 +37,14 @@ class Selection {
   /// preferred, then the plate. Returns false if no candidate is consistent.
   bool select() {
     using std::abs;
-    plate_.enumerate_options(state_);
-    finger_.enumerate_options(state_);
+    plate_.enumerate_candidates(state_);
+    finger_.enumerate_candidates(state_);
     applied_force_ = drive_.mass * plate_.surface.rate;
     restoring_force_ = drive_.stiffness * state_.x + drive_.damping * state_.v;
     T size = drive_.stiffness * state_.position_scale + drive_.damping * abs(state_.v);
     applied_force_ += force_.value;
     size += abs(force_.rate) * time_;  // error from the time resolution
-    stop_.enumerate_options(state_);
+    stop_.enumerate_candidates(state_);
     size += stop_.force_scale(state_);
     state_.force_error =
         rounding<T> * (size + 2 * abs(applied_force_) + plate_.force_scale(state_.v) +
@@ -123,14 +123,14 @@ class Selection {
     for (ContactPoint* side : {&first, &second}) {
       ContactPoint& other = side == &first ? second : first;
       if (!side->may_stick()) continue;
-      if (!other.may_stick()) other.mode = other.option(0);
+      if (!other.may_stick()) other.choose(0);
       side->prefer_direction(stick_force(*side, other.may_stick() ? T(0) : other.force(state_)));
     }
     for (const bool kept : {false, true})
-      for (int k = first.may_stick() ? 1 : 0; k < first.count; ++k)
-        for (int l = second.may_stick() ? 1 : 0; l < second.count; ++l) {
-          first.mode = first.option(k);
-          second.mode = second.option(l);
+      for (int k = first.may_stick() ? 1 : 0; k < first.candidates.size(); ++k)
+        for (int l = second.may_stick() ? 1 : 0; l < second.candidates.size(); ++l) {
+          first.choose(k);
+          second.choose(l);
           if ((could_stick(first, second) || could_stick(second, first)) == kept && try_slip())
             return true;
         }
@@ -153,8 +153,8 @@ class Selection {
     acceleration_ = T(0);
     const T end = stop_sign(stop_.state);
     const auto goes = [&](ContactPoint& side, T apart) {
-      for (int k = 0; k < side.count; ++k) {
-        side.mode = side.option(k);
+      for (int k = 0; k < side.candidates.size(); ++k) {
+        side.choose(k);
         if (side.stuck() ? apart == 0 : side.is_admissible(state_, apart)) return true;
       }
       return false;
@@ -171,9 +171,9 @@ class Selection {
 
   /// Tests stick of one contact beside each candidate of the second contact, from `option` on.
   bool try_stick_beside(ContactPoint& on, ContactPoint& other, int option) {
-    on.mode = on.option(0);
-    for (; option < other.count; ++option) {
-      other.mode = other.option(option);
+    on.choose(0);
+    for (; option < other.candidates.size(); ++option) {
+      other.choose(option);
       if (try_stick(on, other)) return true;
     }
     return false;
@@ -306,7 +306,7 @@ class Selection {
     return {abs(rate) <= rounding<T> * size ? T(0) : rate / drive_.mass, bend / drive_.mass};
   }
   /// Derivatives of the force on a slipping pin.
-  typename ContactPoint::Rate force_rate() const {
+  ForceRate<T> force_rate() const {
     using std::abs;
     const auto plate = plate_.force_rate(state_.v, acceleration_);
     const auto finger = finger_.force_rate(state_.v, acceleration_);

@@ -32,7 +32,7 @@ class EndStops {
   }
 
   /// Enumerates the candidate states.
-  void enumerate_options(const State<T>& s) {
+  void enumerate_candidates(const State<T>& s) {
     if (!stops_.present()) return;
     const int end = s.x < 0 ? -1 : 1;
     const bool edge = end * s.x == stops_.travel;
