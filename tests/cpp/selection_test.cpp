@@ -12,20 +12,21 @@ namespace {
 
 using Drive = pd::Drive<double>;
 
-/// A pin at x that has the velocity of the plate.
-struct Carried : pd::detail::Selection<double> {
-  using Base = pd::detail::Selection<double>;
-  Carried(const Drive& drive, double x, pd::Line<double> plate, int at_limit = 0)
-      : Base(drive, 0, x, plate.value) {
-    stick_limit_side_ = at_limit;
-    plate_.surface = plate;
-    plate_.initialize(state_, false);
-    finger_.initialize(state_, false);
-    found = select();
-  }
-  using Base::acceleration_, Base::tangential_, Base::guards_, Base::stick_force_, Base::mode;
-
+/// A pin at x that has the velocity of the plate, and the mode that follows.
+struct Carried {
+  pd::detail::Pin<double> pin;
+  pd::detail::SelectedMotion<double> selected;
   bool found;
+
+  Carried(const Drive& drive, double x, pd::Line<double> plate, int at_limit = 0)
+      : pin(drive, 0, x, plate.value) {
+    pin.stick_limit_side = at_limit;
+    pin.plate.surface = plate;
+    pin.plate.initialize(pin.state, false);
+    pin.finger.initialize(pin.state, false);
+    found = pd::detail::Selection<double>(pin, selected).select();
+  }
+  pd::Mode mode() const { return pin.mode(); }
 };
 
 /// 10 g on 100 N/m without a damper: at 1 mm the spring pulls with 0.1 N.
@@ -40,17 +41,18 @@ void sticks() {
   const Carried carried(d, x, {v, 0});
   expect(carried.found && carried.mode().plate == ContactState::stick,
          "a plate whose stick limit is enough takes the pin along");
-  expect(near(carried.stick_force_.start, 0.1, 1e-15) && near(carried.stick_force_.drift, 5, 1e-15),
+  expect(near(carried.selected.stick_force.start, 0.1, 1e-15) &&
+             near(carried.selected.stick_force.drift, 5, 1e-15),
          "... with the force of the spring, that grows as it is stretched");
-  expect(carried.guards_.end() - carried.guards_.begin() == 1 &&
-             carried.guards_.begin()->side == 1 &&
-             near(carried.guards_.begin()->path.start, 0.2, 1e-15),
+  expect(carried.selected.guards.end() - carried.selected.guards.begin() == 1 &&
+             carried.selected.guards.begin()->side == 1 &&
+             near(carried.selected.guards.begin()->path.start, 0.2, 1e-15),
          "... until what is left of its limit is used up, on one side");
   const Drive drags = drive(strong, weak);
   const Carried dragged(drags, x, {v, 0});
   expect(dragged.mode().plate == ContactState::stick &&
              dragged.mode().finger == ContactState::slip_forward &&
-             near(dragged.stick_force_.start, 0.12, 1e-15),
+             near(dragged.selected.stick_force.start, 0.12, 1e-15),
          "... and carries what the finger takes too");
   const Carried rests(drags, x, {0, 0});
   expect(rests.mode().plate == ContactState::stick && rests.mode().finger == ContactState::stick,
@@ -63,8 +65,9 @@ void is_slip() {
   expect(ahead.mode().plate == ContactState::slip_forward &&
              behind.mode().plate == ContactState::slip_backward,
          "what a plate cannot hold slips to the side that it is pulled to");
-  expect(near(ahead.acceleration_, 8, 1e-14) && near(behind.acceleration_, -8, 1e-14),
-         "... with what kinetic friction leaves of the pull");
+  expect(
+      near(ahead.selected.acceleration, 8, 1e-14) && near(behind.selected.acceleration, -8, 1e-14),
+      "... with what kinetic friction leaves of the pull");
   const Drive between = drive(weak, strong);
   const Carried left(between, 0, {0, 1}), thrown(between, 0, {0, 100});
   expect(
@@ -72,19 +75,20 @@ void is_slip() {
       "a pin on two surfaces that part stays on the one that can hold it");
   expect(thrown.mode().plate == ContactState::slip_backward &&
              thrown.mode().finger == ContactState::slip_forward &&
-             near(thrown.acceleration_, 92, 1e-14),
+             near(thrown.selected.acceleration, 92, 1e-14),
          "... or on neither, between both");
 }
 
 void at_limit() {
   const Drive d = drive(even, absent);
   const Carried released(d, x, {v, 0}, 1);
-  expect(released.mode().plate == ContactState::slip_backward && released.tangential_ &&
-             released.acceleration_ == 0,
+  expect(released.mode().plate == ContactState::slip_backward && released.selected.tangential &&
+             released.selected.acceleration == 0,
          "a stick force at its limit, no force jumping, lets the pin go along with the plate");
   const Carried held(d, x, {-v, 0}, 1);
   expect(held.mode().plate == ContactState::stick &&
-             held.guards_.end() - held.guards_.begin() == 1 && held.guards_.begin()->side == -1,
+             held.selected.guards.end() - held.selected.guards.begin() == 1 &&
+             held.selected.guards.begin()->side == -1,
          "... and holds it where the force falls from there: only the other side is left to watch");
 }
 

@@ -60,14 +60,14 @@ MUTANTS = (
     Mutant(
         "always sticks at a surface velocity",
         "law/selection.hpp",
-        "if (most.value - abs(force) < -state_.force_error && (force < 0 ? -1 : 1) != at_limit)",
+        "if (most.value - abs(force) < -pin_.state.force_error && (force < 0 ? -1 : 1) != at_limit)",
         "if (most.value > 1e99)",
     ),
     Mutant(
         "slips where a tenth of the stick limit is left",
         "law/selection.hpp",
-        "const T force = stick_force(on, other.force(state_));\n    const int at_limit",
-        "const T force = stick_force(on, other.force(state_)) / T(0.9);\n    const int at_limit",
+        "const T force = holding_force(on, other.force(pin_.state));\n    const int at_limit",
+        "const T force = holding_force(on, other.force(pin_.state)) / T(0.9);\n    const int at_limit",
     ),
     Mutant(
         "static friction of the sticking contact is its kinetic friction",
@@ -84,8 +84,8 @@ MUTANTS = (
     Mutant(
         "no inertial force",
         "law/selection.hpp",
-        "applied_force_ = drive_.mass * plate_.surface.rate;",
-        "applied_force_ = 0 * plate_.surface.rate;",
+        "applied_force = pin_.drive.mass * pin_.plate.surface.rate;",
+        "applied_force = 0 * pin_.plate.surface.rate;",
     ),
     Mutant(
         "a changing load acts as if it were constant",
@@ -102,8 +102,8 @@ MUTANTS = (
     Mutant(
         "parting surfaces never throw the pin ahead of both",
         "law/selection.hpp",
-        "if (other.stuck() ? apart != 0 : !other.is_admissible(state_, apart)) return false;",
-        "if (other.stuck() ? false : !other.is_admissible(state_, apart)) return false;",
+        "if (other.stuck() ? apart != 0 : !other.is_admissible(pin_.state, apart)) return false;",
+        "if (other.stuck() ? false : !other.is_admissible(pin_.state, apart)) return false;",
     ),
     Mutant(
         "a guard at its zero is not asked by its derivatives",
@@ -152,8 +152,8 @@ MUTANTS = (
     Mutant(
         "the plate holds for ever",
         "law/selection.hpp",
-        "guards_.add_force(left,",
-        "if (!plate_.stuck()) guards_.add_force(left,",
+        "selected_.guards.add_force(left,",
+        "if (!pin_.plate.stuck()) selected_.guards.add_force(left,",
     ),
     Mutant(
         "the breakpoints of the load are overlooked",
@@ -273,9 +273,9 @@ MUTANTS = (
     # … and these two where a motion is cut in two.
     Mutant(
         "skin that is given is a thousandth tighter",
-        "events/simulation.hpp",
-        "state_.skin = drive.finger.stiffness * inputs.skin_stretch;",
-        "state_.skin = T(1.001) * drive.finger.stiffness * inputs.skin_stretch;",
+        "events/evolution.hpp",
+        "state.skin = drive.finger.stiffness * inputs.skin_stretch;",
+        "state.skin = T(1.001) * drive.finger.stiffness * inputs.skin_stretch;",
     ),
     Mutant(
         "a pin beyond an elastic stop at the start is pushed, whether it comes back or not",

@@ -35,9 +35,10 @@ class SeriesSegment {
   /// stop is exactly zero. `span`: time until the next breakpoint or the end, s. Guards are added
   /// with their zeros.
   template <class Point>
-  void begin(Segment<T>& segment, Guards<T>& guards, const Drive<T>& drive, const Point& plate,
-             const Point& finger, const Line<T>& force, const State<T>& state, T acceleration,
-             int at_limit, bool no_push, T span) {
+  [[gnu::noinline]] void begin(Segment<T>& segment, Guards<T>& guards, const Drive<T>& drive,
+                               const Point& plate, const Point& finger, const Line<T>& force,
+                               const State<T>& state, T acceleration, int at_limit, bool no_push,
+                               T span) {
     using std::abs;
     const SeriesMode<T> mode(
         drive, segment.mode,

@@ -11,14 +11,13 @@
 #include <limits>
 #include <type_traits>
 
-#include "pindrive/events/simulation.hpp"
+#include "pindrive/events/evolution.hpp"
 #include "pindrive/numbers/functions.hpp"
 
 namespace pindrive {
 
 template <class T>
 class Stepper {
-  using Simulation = detail::Simulation<T>;
   using ContactMode = detail::ContactMode<T>;
 
  public:
@@ -46,9 +45,9 @@ class Stepper {
   Stepper(const Drive<T>& drive, const Inputs<T>& inputs, T begin = T(0))
       : drive_(drive),
         inputs_(without_end(inputs)),
-        simulation_(drive_, inputs_, begin),
+        evolution_(drive_, inputs_, begin),
         now_(begin),
-        before_(simulation_.mode()) {
+        before_(evolution_.pin.mode()) {
     select();
   }
   Stepper(const Drive<T>& drive, const State& state)
@@ -56,7 +55,7 @@ class Stepper {
         inputs_(without_end({state.mouse_velocity, state.pin.x, state.pin.v, never,
                              state.plate_load, std::numeric_limits<T>::quiet_NaN(), state.force,
                              state.across_velocity, state.finger_load})),
-        simulation_(drive_, inputs_, state.since),
+        evolution_(drive_, inputs_, state.since),
         now_(state.now) {
     restore(state);
     select();
@@ -90,20 +89,20 @@ class Stepper {
       const bool together = !(tau_ > 0);
       if (stop_at_event && !together && happens_after(now_)) break;
       before_ = segment_.mode;
-      simulation_.jump(segment_, tau_);
+      evolution_.jump(segment_, tau_);
       select();
       const Event event = event_now();
       if (!together || event.plate != Transition::none) event_.plate = event.plate;
       if (!together || event.finger != Transition::none) event_.finger = event.finger;
       if (!together || event.stop != Transition::none) event_.stop = event.stop;
       standing = together ? standing + 1 : 0;
-      if (standing > detail::standstill_limit) standstill_ = true;
+      if (standing > detail::standstill_limit) status_ = Status::standstill;
       stopped = !go_on();
     }
     if (status() != Status::ok) return false;
     const bool at_event = stopped || (stop_at_event && happens_after(now_));
-    now_ = at_event ? T(plain(simulation_.time_)) : until;
-    if (now_ > simulation_.time_) event_ = {};
+    now_ = at_event ? T(plain(evolution_.pin.time)) : until;
+    if (now_ > evolution_.pin.time) event_ = {};
     return !stopped;
   }
 
@@ -139,11 +138,11 @@ class Stepper {
     event_ = event_now();
   }
 
-  Status status() const { return standstill_ ? Status::standstill : simulation_.outcome_.status; }
+  Status status() const { return status_; }
   T now() const { return now_; }  ///< s
   /// Time until which no contact changes if the inputs continue unchanged, s; infinite if none ever
   /// changes.
-  T next() const { return simulation_.time_after(tau_); }
+  T next() const { return evolution_.time_after(tau_); }
   const Event& event() const { return event_; }  ///< transitions of the contacts now
   Mode mode() const { return segment_.mode; }    ///< mode of the contacts from now on
   const Drive<T>& drive() const { return drive_; }
@@ -158,18 +157,18 @@ class Stepper {
   T tau() const { return std::min(std::max(now_ - segment_.begin, T(0)), tau_); }
   /// State of the pin now, without the tension of slipping skin.
   detail::State<T> pin() const {
-    detail::State<T> pin = simulation_.state_;
+    detail::State<T> pin = evolution_.pin.state;
     if (!(tau() > 0)) return pin;
-    simulation_.series_.move(pin, drive_, simulation_.finger_, tau());
-    if (simulation_.series_.used()) return pin;
+    evolution_.series.move(pin, drive_, evolution_.pin.finger, tau());
+    if (evolution_.series.used()) return pin;
     Segment<T> along = segment_;
     along.moved = along.flow.after(tau());
-    pin.move(along, simulation_.finger_.elastic());
+    pin.move(along, evolution_.pin.finger.elastic());
     return pin;
   }
   InputLines<T> lines() const {
-    return {segment_.plate_velocity, simulation_.plate_.load, simulation_.plate_.across,
-            simulation_.force_, simulation_.finger_.load};
+    return {segment_.plate_velocity, evolution_.pin.plate.load, evolution_.pin.plate.across,
+            evolution_.pin.force, evolution_.pin.finger.load};
   }
 
  private:
@@ -208,58 +207,58 @@ class Stepper {
   static T moved(const T& from, const T& change, const T& given) {
     return plain(change) == 0 ? from + change : given;
   }
-  bool happens_after(const T& time) const { return event_.any() && simulation_.time_ > time; }
+  bool happens_after(const T& time) const { return event_.any() && evolution_.pin.time > time; }
 
   /// Transitions at the begin of the present segment.
   Event event_now() const {
     const Mode& after = segment_.mode;
     return {change(before_.plate, after.plate), change(before_.finger, after.finger),
-            detail::change(before_.stop, after.stop, simulation_.struck_)};
+            detail::change(before_.stop, after.stop, evolution_.struck)};
   }
 
   void restore(const State& state) {
-    simulation_.time_ = state.since;
-    simulation_.time_error_ = state.since_error;
-    simulation_.state_ = state.pin;
-    simulation_.plate_.mode = state.plate;
-    simulation_.finger_.mode = state.finger;
-    simulation_.plate_.reached_guard = state.at_plate;
-    simulation_.finger_.reached_guard = state.at_finger;
-    simulation_.plate_.surface = state.plate_velocity;
-    simulation_.stick_limit_side_ = state.limit;
-    simulation_.stop_.state = state.stop;
-    simulation_.stop_.released = state.stop_released;
-    simulation_.stop_.met = state.stop_met;
-    simulation_.struck_ = state.struck;
+    evolution_.pin.time = state.since;
+    evolution_.time_error = state.since_error;
+    evolution_.pin.state = state.pin;
+    evolution_.pin.plate.mode = state.plate;
+    evolution_.pin.finger.mode = state.finger;
+    evolution_.pin.plate.reached_guard = state.at_plate;
+    evolution_.pin.finger.reached_guard = state.at_finger;
+    evolution_.pin.plate.surface = state.plate_velocity;
+    evolution_.pin.stick_limit_side = state.limit;
+    evolution_.pin.stop.state = state.stop;
+    evolution_.pin.stop.released = state.stop_released;
+    evolution_.pin.stop.met = state.stop_met;
+    evolution_.struck = state.struck;
     before_ = state.before;
     take_inputs(state.since);
   }
   /// Reads the inputs except for the plate velocity, which may be known to be exactly that of the
   /// pin.
   void take_inputs(const T& time) {
-    simulation_.plate_.load = inputs_.plate_load.from(time);
-    simulation_.plate_.across =
-        InputLines<T>::across_from(inputs_, time, simulation_.plate_.surface, simulation_.held());
-    simulation_.force_ = inputs_.force.from(time);
-    simulation_.finger_.load = inputs_.finger_load.from(time);
+    evolution_.pin.plate.load = inputs_.plate_load.from(time);
+    evolution_.pin.plate.across = InputLines<T>::across_from(
+        inputs_, time, evolution_.pin.plate.surface, evolution_.pin.held());
+    evolution_.pin.force = inputs_.force.from(time);
+    evolution_.pin.finger.load = inputs_.finger_load.from(time);
   }
 
   /// Advances the pin to now, where an input has a breakpoint; an event within the time resolution
   /// of now happens now.
   void restart() {
     using std::abs;
-    if (abs(now_ - simulation_.time_) <= detail::rounding<T> * abs(now_)) {
+    if (abs(now_ - evolution_.pin.time) <= detail::rounding<T> * abs(now_)) {
       restore(last_);
-      simulation_.time_ = now_;
-      simulation_.time_error_ = T(0);
-      simulation_.plate_.surface.rate = inputs_.mouse_velocity.held().line.rate;
+      evolution_.pin.time = now_;
+      evolution_.time_error = T(0);
+      evolution_.pin.plate.surface.rate = inputs_.mouse_velocity.held().line.rate;
       take_inputs(now_);
-      simulation_.stick_limit_side_ = 0;
-      if (simulation_.stop_.rigid()) simulation_.stop_.released = false;  // the push may jump
+      evolution_.pin.stick_limit_side = 0;
+      if (evolution_.pin.stop.rigid()) evolution_.pin.stop.released = false;  // the push may jump
     } else {
-      simulation_.breakpoint_ = now_;
+      evolution_.next_breakpoint = now_;
       before_ = segment_.mode;
-      simulation_.jump(segment_, simulation_.until_breakpoint());
+      evolution_.jump(segment_, evolution_.until_breakpoint());
     }
   }
 
@@ -267,18 +266,18 @@ class Stepper {
   /// so to the plate. Only a rigid stop moves the pin along.
   void shift(const T& jump) {
     using std::abs;
-    auto &plate = simulation_.plate_, &finger = simulation_.finger_;
+    auto &plate = evolution_.pin.plate, &finger = evolution_.pin.finger;
     plate.surface.value =
         moved(plate.surface.value, jump, inputs_.mouse_velocity.held().line.value);
-    auto& stop = simulation_.stop_;
-    T& v = simulation_.state_.v;
+    auto& stop = evolution_.pin.stop;
+    T& v = evolution_.pin.state.v;
     if (plate.stuck() && !stop.is_holding())
       v = plate.surface.value;
     else if (!(finger.stuck() || stop.is_holding()) || plain(jump) != 0)
       v += jump;
     if (plain(jump) == 0) return;
-    simulation_.struck_ = false;
-    if (stop.initialize(simulation_.state_)) return simulation_.begin_at_stop();
+    evolution_.struck = false;
+    if (stop.initialize(evolution_.pin.state)) return evolution_.begin_at_stop();
     finger.reached_guard = detail::ActiveGuard::none;
     const T sense = finger.mode.slip_sign;
     if (finger.sliding() && finger.contact.may_lag()) return;
@@ -287,36 +286,36 @@ class Stepper {
                                 finger.contact.branch_of(abs(v)), sense};
     } else {
       finger.mode = {};
-      finger.initialize(simulation_.state_, true);
+      finger.initialize(evolution_.pin.state, true);
     }
   }
 
   /// Applies a jump of the transverse velocity, which changes the sliding speed of the plate.
   void turn() {
     using detail::hypot;
-    auto& plate = simulation_.plate_;
+    auto& plate = evolution_.pin.plate;
     plate.reached_guard = detail::ActiveGuard::none;
     if (!plate.oblique()) return;
-    const T u = simulation_.state_.v - plate.surface.value;
+    const T u = evolution_.pin.state.v - plate.surface.value;
     plate.mode.branch = plate.contact.branch_of(hypot(u, plate.across.value));
   }
 
   /// Begins the next segment.
   void select() {
-    const auto &plate = simulation_.plate_, &finger = simulation_.finger_;
+    const auto &plate = evolution_.pin.plate, &finger = evolution_.pin.finger;
     last_ = {now_,
-             simulation_.time_,
-             simulation_.time_error_,
-             simulation_.state_,
+             evolution_.pin.time,
+             evolution_.time_error,
+             evolution_.pin.state,
              plate.mode,
              finger.mode,
              plate.reached_guard,
              finger.reached_guard,
-             simulation_.stick_limit_side_,
-             simulation_.stop_.state,
-             simulation_.stop_.released,
-             simulation_.stop_.met,
-             simulation_.struck_,
+             evolution_.pin.stick_limit_side,
+             evolution_.pin.stop.state,
+             evolution_.pin.stop.released,
+             evolution_.pin.stop.met,
+             evolution_.struck,
              before_,
              plate.surface,
              {},
@@ -327,14 +326,14 @@ class Stepper {
              {}};
     // Linear quantities are evaluated over a finite time.
     const bool steady = plate.surface.rate == 0 && plate.load.rate == 0 && finger.load.rate == 0 &&
-                        simulation_.force_.rate == 0;
-    simulation_.breakpoint_ = std::min({inputs_.plate_load.next_breakpoint(simulation_.time_),
-                                        inputs_.finger_load.next_breakpoint(simulation_.time_),
-                                        steady ? never : simulation_.time_ + far_});
-    simulation_.select();
-    simulation_.begin(segment_);
-    tau_ = simulation_.earliest(segment_.flow);
-    if (simulation_.series_.used()) segment_.end = simulation_.time_ + tau_;
+                        evolution_.pin.force.rate == 0;
+    evolution_.next_breakpoint = std::min({inputs_.plate_load.next_breakpoint(evolution_.pin.time),
+                                           inputs_.finger_load.next_breakpoint(evolution_.pin.time),
+                                           steady ? never : evolution_.pin.time + far_});
+    if (!evolution_.select()) status_ = Status::inconsistent;
+    evolution_.begin(segment_);
+    tau_ = evolution_.earliest(segment_.flow);
+    if (evolution_.series.used()) segment_.end = evolution_.pin.time + tau_;
   }
 
   static T far_for(const Drive<T>& drive) {
@@ -345,14 +344,14 @@ class Stepper {
   Drive<T> drive_;
   T far_{far_for(drive_)};  ///< s
   Inputs<T> inputs_;
-  Simulation simulation_;
+  detail::Evolution<T> evolution_;
   T now_;          ///< s
   Mode before_{};  ///< mode until the last event
   State last_;     ///< state at the last event, before the mode was selected
   Segment<T> segment_;
   T tau_;  ///< duration of the segment if the inputs continue, s
   Event event_{};
-  bool standstill_{false};
+  Status status_{Status::ok};
 };
 
 }  // namespace pindrive

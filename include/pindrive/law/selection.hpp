@@ -6,29 +6,28 @@
 #include "pindrive/law/contact_point.hpp"
 #include "pindrive/law/guards.hpp"
 #include "pindrive/law/oblique.hpp"
+#include "pindrive/law/pin.hpp"
 #include "pindrive/law/state.hpp"
-#include "pindrive/law/stops.hpp"
 #include "pindrive/model/limits.hpp"
 #include "pindrive/model/model.hpp"
 
 namespace pindrive::detail {
 
-/// Pin, contacts and stops at an instant, with the mode that follows.
+/// Motion that the selected mode starts, and its guards.
+template <class T>
+struct SelectedMotion {
+  T acceleration{};        ///< acceleration in slip, m/s²
+  bool tangential{false};  ///< a contact starts to slip without a relative acceleration
+  T applied_force{};       ///< inertial and external force, N
+  Path<T> stick_force{};   ///< stick force, N
+  Guards<T> guards;
+};
+
+/// Selection of the mode of a pin and of the motion that the mode starts.
 template <class T>
 class Selection {
- protected:
-  using ContactPoint = detail::ContactPoint<T>;
-
-  Selection(const Drive<T>& drive, T time, T x, T v)
-      : drive_(drive),
-        time_(time),
-        state_{x, v, T(0), T(0), T(0)},
-        plate_(drive.plate),
-        finger_(drive.finger),
-        stop_(drive.stops) {
-    using std::abs;
-    state_.position_scale = abs(x);
-  }
+ public:
+  Selection(Pin<T>& pin, SelectedMotion<T>& selected) : pin_(pin), selected_(selected) {}
 
   /// Selects the first candidate that is consistent: the first non-zero derivative of each guard
   /// that is zero is positive.
@@ -37,94 +36,60 @@ class Selection {
   /// preferred, then the plate. Returns false if no candidate is consistent.
   bool select() {
     using std::abs;
-    plate_.enumerate_candidates(state_);
-    finger_.enumerate_candidates(state_);
-    applied_force_ = drive_.mass * plate_.surface.rate;
-    restoring_force_ = drive_.stiffness * state_.x + drive_.damping * state_.v;
-    T size = drive_.stiffness * state_.position_scale + drive_.damping * abs(state_.v);
-    applied_force_ += force_.value;
-    size += abs(force_.rate) * time_;  // error from the time resolution
-    stop_.enumerate_candidates(state_);
-    size += stop_.force_scale(state_);
-    state_.force_error =
-        rounding<T> * (size + 2 * abs(applied_force_) + plate_.force_scale(state_.v) +
-                       finger_.force_scale(state_.v));
+    pin_.plate.enumerate_candidates(pin_.state);
+    pin_.finger.enumerate_candidates(pin_.state);
+    selected_.applied_force = pin_.drive.mass * pin_.plate.surface.rate;
+    restoring_force_ = pin_.drive.stiffness * pin_.state.x + pin_.drive.damping * pin_.state.v;
+    T size =
+        pin_.drive.stiffness * pin_.state.position_scale + pin_.drive.damping * abs(pin_.state.v);
+    selected_.applied_force += pin_.force.value;
+    size += abs(pin_.force.rate) * pin_.time;  // error from the time resolution
+    pin_.stop.enumerate_candidates(pin_.state);
+    size += pin_.stop.force_scale(pin_.state);
+    pin_.state.force_error = rounding<T> * (size + 2 * abs(selected_.applied_force) +
+                                            pin_.plate.force_scale(pin_.state.v) +
+                                            pin_.finger.force_scale(pin_.state.v));
     const T pull = restoring_force_;
     for (const bool stick : {true, false})
-      for (int option = 0; option < stop_.count(); ++option) {
-        stop_.choose(option);
-        restoring_force_ = pull - stop_.force(state_);
-        if (stop_.is_holding() ? stick && try_stop() : stick ? try_any_stick() : try_any_slip())
+      for (int option = 0; option < pin_.stop.count(); ++option) {
+        pin_.stop.choose(option);
+        restoring_force_ = pull - pin_.stop.force(pin_.state);
+        if (pin_.stop.is_holding() ? stick && try_stop() : stick ? try_any_stick() : try_any_slip())
           return true;
       }
     return false;
   }
 
-  /// Selected mode.
-  Mode mode() const {
-    return {plate_.mode.state, finger_.mode.state, plate_.mode.branch, finger_.mode.branch,
-            stop_.state};
-  }
-
-  bool held() const { return pindrive::held(drive_, mode()); }
-
-  /// True if a stick force at its limit stays there exactly, because no force jumps.
-  bool stays_at_limit() const {
-    return stick_limit_side_ != 0 && plate_.is_continuous(stick_limit_side_) &&
-           finger_.is_continuous(stick_limit_side_) && !stop_.force_jumped();
-  }
-
-  /// True if the push of a stop is exactly zero: it has reached zero and no force jumps. A pin at
-  /// rest at a rigid stop is not pushed.
-  bool no_push() const {
-    if (!stop_.no_push() || !stop_.rigid()) return stop_.no_push();
-    const auto alike = [&](const ContactPoint& side) {
-      const bool rested = side.before == ContactState::stick || side.before == ContactState::absent;
-      return side.is_continuous(0) || (rested && side.force(state_) == 0);
-    };
-    return alike(plate_) && alike(finger_);
-  }
-
-  const Drive<T>& drive_;
-  T time_;  ///< time of the instant, s
-  State<T> state_;
-  ContactPoint plate_, finger_;  ///< contacts in the selected mode
-  EndStops<T> stop_;             ///< end stops in the selected state
-  int stick_limit_side_{0};      ///< side of a stick force that has just reached its limit, else 0
-  Line<T> force_{};              ///< external force, N
-  /// inertial and external force; force of spring and damper less that of a stop, N
-  T applied_force_{}, restoring_force_{};
-
-  T acceleration_{};  ///< acceleration in slip, m/s²
-  bool tangential_{false};
-  Path<T> stick_force_{};  ///< stick force, N
-  Guards<T> guards_;       ///< guards of the mode
-
  private:
+  using ContactPoint = detail::ContactPoint<T>;
+
   /// Stiffness of spring and pushing stop, N/m.
-  T stiffness() const { return drive_.stiffness + stop_.stiffness(); }
-  T damping() const { return drive_.damping + stop_.damping(); }
+  T stiffness() const { return pin_.drive.stiffness + pin_.stop.stiffness(); }
+  T damping() const { return pin_.drive.damping + pin_.stop.damping(); }
 
   /// True if the finger is evaluated before the plate.
   bool finger_first() const {
-    return finger_.before == ContactState::stick && plate_.before != ContactState::stick;
+    return pin_.finger.before == ContactState::stick && pin_.plate.before != ContactState::stick;
   }
   /// Selects a mode in which a contact sticks; false if none is consistent.
   bool try_any_stick() {
     const bool finger = finger_first();
-    ContactPoint &first = finger ? finger_ : plate_, &second = finger ? plate_ : finger_;
+    ContactPoint &first = finger ? pin_.finger : pin_.plate,
+                 &second = finger ? pin_.plate : pin_.finger;
     if (first.may_stick() && try_stick_beside(first, second, 0)) return true;
     return second.may_stick() && try_stick_beside(second, first, first.may_stick() ? 1 : 0);
   }
   /// Selects a mode in which no contact sticks; false if none is consistent.
   bool try_any_slip() {
     const bool finger = finger_first();
-    ContactPoint &first = finger ? finger_ : plate_, &second = finger ? plate_ : finger_;
+    ContactPoint &first = finger ? pin_.finger : pin_.plate,
+                 &second = finger ? pin_.plate : pin_.finger;
     for (ContactPoint* side : {&first, &second}) {
       ContactPoint& other = side == &first ? second : first;
       if (!side->may_stick()) continue;
       if (!other.may_stick()) other.choose(0);
-      side->prefer_direction(stick_force(*side, other.may_stick() ? T(0) : other.force(state_)));
+      side->prefer_direction(
+          holding_force(*side, other.may_stick() ? T(0) : other.force(pin_.state)));
     }
     for (const bool kept : {false, true})
       for (int k = first.may_stick() ? 1 : 0; k < first.candidates.size(); ++k)
@@ -141,32 +106,32 @@ class Selection {
   bool could_stick(const ContactPoint& side, const ContactPoint& other) const {
     using std::abs;
     if (side.before != ContactState::stick || !side.may_stick() || other.may_stick()) return false;
-    const T force = stick_force(side, other.force(state_));
-    return stick_limit_side_ == 0 && side.stick_limit() - abs(force) > state_.force_error;
+    const T force = holding_force(side, other.force(pin_.state));
+    return pin_.stick_limit_side == 0 && side.stick_limit() - abs(force) > pin_.state.force_error;
   }
 
   /// Tests the mode in which a rigid stop holds the pin. The pin is at rest, which determines the
   /// modes of its contacts; a rigid finger transmits no force.
   bool try_stop() {
     using std::abs;
-    tangential_ = false;
-    acceleration_ = T(0);
-    const T end = stop_sign(stop_.state);
+    selected_.tangential = false;
+    selected_.acceleration = T(0);
+    const T end = stop_sign(pin_.stop.state);
     const auto goes = [&](ContactPoint& side, T apart) {
       for (int k = 0; k < side.candidates.size(); ++k) {
         side.choose(k);
-        if (side.stuck() ? apart == 0 : side.is_admissible(state_, apart)) return true;
+        if (side.stuck() ? apart == 0 : side.is_admissible(pin_.state, apart)) return true;
       }
       return false;
     };
-    if (!goes(plate_, -plate_.surface.rate) || !goes(finger_, T(0))) return false;
-    const T force =
-        applied_force_ - restoring_force_ + plate_.force(state_) + finger_.force(state_);
-    const auto rate = plate_.force_rate(T(0), T(0)), skin = finger_.force_rate(T(0), T(0));
-    const Path<T> push{end * force, T(0), T(0), end * (force_.rate + rate.value + skin.value),
+    if (!goes(pin_.plate, -pin_.plate.surface.rate) || !goes(pin_.finger, T(0))) return false;
+    const T force = selected_.applied_force - restoring_force_ + pin_.plate.force(pin_.state) +
+                    pin_.finger.force(pin_.state);
+    const auto rate = pin_.plate.force_rate(T(0), T(0)), skin = pin_.finger.force_rate(T(0), T(0));
+    const Path<T> push{end * force, T(0), T(0), end * (pin_.force.rate + rate.value + skin.value),
                        end * (rate.second + skin.second)};
-    return stop_.try_hold(push, abs(force_.rate) + rate.scale + skin.scale, no_push(),
-                          state_.force_error, guards_);
+    return pin_.stop.try_hold(push, abs(pin_.force.rate) + rate.scale + skin.scale, pin_.no_push(),
+                              pin_.state.force_error, selected_.guards);
   }
 
   /// Tests stick of one contact beside each candidate of the second contact, from `option` on.
@@ -181,19 +146,20 @@ class Selection {
 
   /// Force that keeps the pin on the surface of a contact, beside the force of the second contact,
   /// N.
-  T stick_force(const ContactPoint& on, T of_other) const {
-    return restoring_force_ - (applied_force_ - drive_.mass * on.surface.rate) - of_other;
+  T holding_force(const ContactPoint& on, T of_other) const {
+    return restoring_force_ - (selected_.applied_force - pin_.drive.mass * on.surface.rate) -
+           of_other;
   }
   /// Stick force as a function of time; `size` is the magnitude of the terms of its slope.
-  Path<T> stick_force_from(T force, const ContactPoint& on, const ContactPoint& other,
-                           T& size) const {
+  Path<T> holding_force_from(T force, const ContactPoint& on, const ContactPoint& other,
+                             T& size) const {
     using std::abs;
-    const T a = on.surface.rate, spring = stiffness() * state_.v, damper = damping() * a;
-    const auto rate = other.force_rate(state_.v, a);
+    const T a = on.surface.rate, spring = stiffness() * pin_.state.v, damper = damping() * a;
+    const auto rate = other.force_rate(pin_.state.v, a);
     size = abs(spring) + abs(damper) + rate.scale;
     T drift = spring + damper - rate.value;
-    drift -= force_.rate;
-    size += abs(force_.rate);
+    drift -= pin_.force.rate;
+    size += abs(pin_.force.rate);
     return {force, T(0), T(0), drift, stiffness() * a - rate.second};
   }
 
@@ -201,29 +167,29 @@ class Selection {
   bool try_stick(const ContactPoint& on, const ContactPoint& other) {
     using std::abs;
     const T apart = on.surface.rate - other.surface.rate;
-    if (other.stuck() ? apart != 0 : !other.is_admissible(state_, apart)) return false;
-    if (!stop_.is_consistent(state_.v, on.surface.rate, {})) return false;
+    if (other.stuck() ? apart != 0 : !other.is_admissible(pin_.state, apart)) return false;
+    if (!pin_.stop.is_consistent(pin_.state.v, on.surface.rate, {})) return false;
     const T of_on = on.contact.static_limit;
     const T of_other = other.stuck() ? other.contact.static_limit : T(0);
     const Line<T> most{of_on * on.load.value + of_other * other.load.value,
                        of_on * on.load.rate + of_other * other.load.rate};
-    const T force = stick_force(on, other.force(state_));
-    const int at_limit = stays_at_limit() ? stick_limit_side_ : 0;
-    if (most.value - abs(force) < -state_.force_error && (force < 0 ? -1 : 1) != at_limit)
+    const T force = holding_force(on, other.force(pin_.state));
+    const int at_limit = pin_.stays_at_limit() ? pin_.stick_limit_side : 0;
+    if (most.value - abs(force) < -pin_.state.force_error && (force < 0 ? -1 : 1) != at_limit)
       return false;
     T size;
-    stick_force_ = stick_force_from(force, on, other, size);
-    guards_.clear();
+    selected_.stick_force = holding_force_from(force, on, other, size);
+    selected_.guards.clear();
     for (const int side : {1, -1}) {
-      Path<T> left = Path<T>(most) + T(-side) * stick_force_;
-      if (!(left.start > state_.force_error) || side == at_limit) {
+      Path<T> left = Path<T>(most) + T(-side) * selected_.stick_force;
+      if (!(left.start > pin_.state.force_error) || side == at_limit) {
         left.start = T(0);
         if (abs(left.drift) <= rounding<T> * (size + abs(most.rate)) ||
-            grazes(left.drift, left.curvature, state_.force_error))
+            grazes(left.drift, left.curvature, pin_.state.force_error))
           left.drift = T(0);
         if ((left.drift != 0 ? left.drift : left.curvature) < 0) return false;
       }
-      guards_.add_force(left, plate_.stuck(), side);
+      selected_.guards.add_force(left, pin_.plate.stuck(), side);
     }
     return true;
   }
@@ -232,50 +198,55 @@ class Selection {
   /// error is exactly zero: the pin starts tangentially to that surface.
   bool try_slip() {
     using std::abs;
-    tangential_ = false;
-    guards_.clear();
-    const T finger = finger_.force(state_);
+    selected_.tangential = false;
+    selected_.guards.clear();
+    const T finger = pin_.finger.force(pin_.state);
     // On a plate that begins to slide across, all forces may balance within rounding.
-    const bool across =
-        plate_.oblique() && plate_.across.value == 0 && state_.v == plate_.surface.value;
-    const T parting =
-        across ? oblique_departure(drive_.mass, plate_, applied_force_ - restoring_force_ + finger)
-               : T(0);
-    const T plate = plate_.force(state_);
-    acceleration_ = across ? plate_.surface.rate + parting
-                           : (applied_force_ - restoring_force_ + plate + finger) / drive_.mass;
+    const bool across = pin_.plate.oblique() && pin_.plate.across.value == 0 &&
+                        pin_.state.v == pin_.plate.surface.value;
+    const T parting = across
+                          ? oblique_departure(pin_.drive.mass, pin_.plate,
+                                              selected_.applied_force - restoring_force_ + finger)
+                          : T(0);
+    const T plate = pin_.plate.force(pin_.state);
+    selected_.acceleration =
+        across ? pin_.plate.surface.rate + parting
+               : (selected_.applied_force - restoring_force_ + plate + finger) / pin_.drive.mass;
     const auto parts = [&](const ContactPoint& side, T own, T of_other) {  // times the mass
-      if (!side.is_decided_by_acceleration(state_.v)) return acceleration_;
-      const T force = across ? drive_.mass * (acceleration_ - side.surface.rate)
-                             : own - stick_force(side, of_other);
-      const bool releases = side.before == ContactState::stick && stays_at_limit();
-      const T known = across ? T(0) : state_.force_error + plate_.force_error(state_.v);
+      if (!side.is_decided_by_acceleration(pin_.state.v)) return selected_.acceleration;
+      const T force = across ? pin_.drive.mass * (selected_.acceleration - side.surface.rate)
+                             : own - holding_force(side, of_other);
+      const bool releases = side.before == ContactState::stick && pin_.stays_at_limit();
+      const T known = across ? T(0) : pin_.state.force_error + pin_.plate.force_error(pin_.state.v);
       const bool none = abs(force) <= known;
-      if (!tangential_ && (none || releases || turns_at_once(side, force))) {
-        tangential_ = true;
-        acceleration_ = side.surface.rate;
+      if (!selected_.tangential && (none || releases || turns_at_once(side, force))) {
+        selected_.tangential = true;
+        selected_.acceleration = side.surface.rate;
       }
       return force;
     };
-    const T at_plate = parts(plate_, plate, finger), at_finger = parts(finger_, finger, plate);
-    if (stop_.is_undecided() && !leaves_stop()) return false;
+    const T at_plate = parts(pin_.plate, plate, finger),
+            at_finger = parts(pin_.finger, finger, plate);
+    if (pin_.stop.is_undecided() && !leaves_stop()) return false;
     const auto leaves = [&](const ContactPoint& side, const ContactPoint& other, T force) {
       if (side.oblique()) {
         const Line<T> jerk = this->jerk();
-        return side.is_admissible(state_, acceleration_ - side.surface.rate, jerk.value, jerk.rate);
+        return side.is_admissible(pin_.state, selected_.acceleration - side.surface.rate,
+                                  jerk.value, jerk.rate);
       }
-      if (!tangential_) return side.is_admissible(state_, force);
-      const T apart = acceleration_ - side.surface.rate;
-      if (drive_.mass * abs(apart) > state_.force_error ||
-          !side.is_decided_by_acceleration(state_.v))
-        return side.is_admissible(state_, apart);
+      if (!selected_.tangential) return side.is_admissible(pin_.state, force);
+      const T apart = selected_.acceleration - side.surface.rate;
+      if (pin_.drive.mass * abs(apart) > pin_.state.force_error ||
+          !side.is_decided_by_acceleration(pin_.state.v))
+        return side.is_admissible(pin_.state, apart);
       T size;
-      const Path<T> needed = stick_force_from(T(0), side, other, size);
-      const T own = side.force_rate(state_.v, acceleration_).value, jerk = own - needed.drift;
+      const Path<T> needed = holding_force_from(T(0), side, other, size);
+      const T own = side.force_rate(pin_.state.v, selected_.acceleration).value,
+              jerk = own - needed.drift;
       const bool none = abs(jerk) <= rounding<T> * (size + abs(own));
-      return side.is_admissible(state_, T(0), none ? T(0) : jerk, -needed.curvature);
+      return side.is_admissible(pin_.state, T(0), none ? T(0) : jerk, -needed.curvature);
     };
-    return leaves(plate_, finger_, at_plate) && leaves(finger_, plate_, at_finger);
+    return leaves(pin_.plate, pin_.finger, at_plate) && leaves(pin_.finger, pin_.plate, at_finger);
   }
 
   /// True if the force that moves a sliding speed off a breakpoint changes its sign within the time
@@ -284,37 +255,42 @@ class Selection {
     using std::abs;
     if (side.may_stick() || side.has_slider_state() || !side.sliding()) return false;
     const T rate = force_rate().value;
-    return force * rate < 0 && 2 * abs(force) <= rounding<T> * time_ * abs(rate);
+    return force * rate < 0 && 2 * abs(force) <= rounding<T> * pin_.time * abs(rate);
   }
 
   /// True if a slipping pin is consistent with the state of the stops.
   bool leaves_stop() {
     using std::abs;
-    const bool none =
-        drive_.mass * abs(acceleration_) <= state_.force_error || (stop_.rigid() && no_push());
-    if (!tangential_ && stop_.at_edge() && none) {
-      tangential_ = true;
-      acceleration_ = T(0);
+    const bool none = pin_.drive.mass * abs(selected_.acceleration) <= pin_.state.force_error ||
+                      (pin_.stop.rigid() && pin_.no_push());
+    if (!selected_.tangential && pin_.stop.at_edge() && none) {
+      selected_.tangential = true;
+      selected_.acceleration = T(0);
     }
-    return stop_.is_consistent(state_.v, acceleration_, jerk());
+    return pin_.stop.is_consistent(pin_.state.v, selected_.acceleration, jerk());
   }
 
   /// Jerk of a slipping pin, m/s³, zero within its error; and the derivative of the jerk.
   Line<T> jerk() const {
     using std::abs;
     const auto [rate, size, bend] = force_rate();
-    return {abs(rate) <= rounding<T> * size ? T(0) : rate / drive_.mass, bend / drive_.mass};
+    return {abs(rate) <= rounding<T> * size ? T(0) : rate / pin_.drive.mass,
+            bend / pin_.drive.mass};
   }
   /// Derivatives of the force on a slipping pin.
   ForceRate<T> force_rate() const {
     using std::abs;
-    const auto plate = plate_.force_rate(state_.v, acceleration_);
-    const auto finger = finger_.force_rate(state_.v, acceleration_);
-    const T spring = stiffness() * state_.v, damper = damping() * acceleration_;
-    return {force_.rate + plate.value + finger.value - spring - damper,
-            abs(force_.rate) + plate.scale + finger.scale + abs(spring) + abs(damper),
-            plate.second + finger.second - stiffness() * acceleration_};
+    const auto plate = pin_.plate.force_rate(pin_.state.v, selected_.acceleration);
+    const auto finger = pin_.finger.force_rate(pin_.state.v, selected_.acceleration);
+    const T spring = stiffness() * pin_.state.v, damper = damping() * selected_.acceleration;
+    return {pin_.force.rate + plate.value + finger.value - spring - damper,
+            abs(pin_.force.rate) + plate.scale + finger.scale + abs(spring) + abs(damper),
+            plate.second + finger.second - stiffness() * selected_.acceleration};
   }
+
+  Pin<T>& pin_;
+  SelectedMotion<T>& selected_;
+  T restoring_force_{};  ///< force of spring and damper less that of a stop, N
 };
 
 }  // namespace pindrive::detail
