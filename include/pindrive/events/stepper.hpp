@@ -12,6 +12,7 @@
 #include <type_traits>
 
 #include "pindrive/events/evolution.hpp"
+#include "pindrive/events/set_inputs.hpp"
 #include "pindrive/numbers/functions.hpp"
 
 namespace pindrive {
@@ -36,15 +37,15 @@ class Stepper {
     Mode before;                   ///< mode before
     Line<T> plate_velocity;        ///< plate velocity from that time on
     /// Inputs as set.
-    Held<T> mouse_velocity, plate_load, across_velocity, force, finger_load;
-    Event event;  ///< transitions of contacts and stops now
+    Held<T> mouse_velocity{}, plate_load{}, across_velocity{}, force{}, finger_load{};
+    Event event{};  ///< transitions of contacts and stops now
   };
 
   /// Release at the time `begin`, s. The duration of the inputs is ignored. The friction curves of
   /// the drive are referenced, not copied.
   Stepper(const Drive<T>& drive, const Inputs<T>& inputs, T begin = T(0))
       : drive_(drive),
-        inputs_(without_end(inputs)),
+        inputs_(detail::without_end(inputs)),
         evolution_(drive_, inputs_, begin),
         now_(begin),
         before_(evolution_.pin.mode()) {
@@ -52,9 +53,9 @@ class Stepper {
   }
   Stepper(const Drive<T>& drive, const State& state)
       : drive_(drive),
-        inputs_(without_end({state.mouse_velocity, state.pin.x, state.pin.v, never,
-                             state.plate_load, std::numeric_limits<T>::quiet_NaN(), state.force,
-                             state.across_velocity, state.finger_load})),
+        inputs_(detail::without_end<T>({state.mouse_velocity, state.pin.x, state.pin.v, never,
+                                        state.plate_load, std::numeric_limits<T>::quiet_NaN(),
+                                        state.force, state.across_velocity, state.finger_load})),
         evolution_(drive_, inputs_, state.since),
         now_(state.now) {
     restore(state);
@@ -115,25 +116,27 @@ class Stepper {
     Held<T>&velocity = inputs_.mouse_velocity.held(), &load = inputs_.plate_load.held();
     Held<T>&across = inputs_.across_velocity.held(), &force = inputs_.force.held();
     Held<T>& touch = inputs_.finger_load.held();
-    const bool turns = differs(given.plate_velocity, velocity),
-               loads = differs(given.plate_load, load);
-    const bool drifts = differs(given.across_velocity, across),
-               pushes = differs(given.force, force);
-    const bool touches = differs(given.finger_load, touch);
+    const bool turns = detail::differs(given.plate_velocity, velocity, now_),
+               loads = detail::differs(given.plate_load, load, now_);
+    const bool drifts = detail::differs(given.across_velocity, across, now_),
+               pushes = detail::differs(given.force, force, now_);
+    const bool touches = detail::differs(given.finger_load, touch, now_);
     if (!turns && !loads && !drifts && !pushes && !touches) return;
-    const T jump = change_to(given.plate_velocity.value, velocity);
-    const bool across_jumps = plain(change_to(given.across_velocity.value, across)) != 0;
+    const T jump = detail::change_to(given.plate_velocity.value, velocity, now_);
+    const bool across_jumps =
+        plain(detail::change_to(given.across_velocity.value, across, now_)) != 0;
     if (turns) velocity = {now_, {velocity.from(now_).value, given.plate_velocity.rate}};
-    if (loads) load = load_from(now_, given.plate_load.value, given.plate_load.rate);
+    if (loads) load = detail::falling_load(now_, given.plate_load.value, given.plate_load.rate);
     if (drifts) across = {now_, given.across_velocity};
     if (pushes) force = {now_, given.force};
-    if (touches) touch = load_from(now_, given.finger_load.value, given.finger_load.rate);
+    if (touches)
+      touch = detail::falling_load(now_, given.finger_load.value, given.finger_load.rate);
     restart();
-    if (!zero(jump)) {
-      velocity.line.value = moved(velocity.line.value, jump, given.plate_velocity.value);
-      shift(jump);
+    if (!detail::is_zero(jump)) {
+      velocity.line.value = detail::moved(velocity.line.value, jump, given.plate_velocity.value);
+      detail::shift(evolution_, jump, velocity.line.value);
     }
-    if (across_jumps) turn();
+    if (across_jumps) detail::turn(evolution_.pin.plate, evolution_.pin.state.v);
     select();
     event_ = event_now();
   }
@@ -174,39 +177,6 @@ class Stepper {
  private:
   static constexpr T never = std::numeric_limits<T>::infinity();
 
-  /// Load that falls to zero at most, as friction never pushes.
-  static Held<T> load_from(T now, T value, T rate) {
-    Held<T> load(now, {value, rate});
-    if (rate < 0) load.ends = now - value / rate;
-    return load;
-  }
-  static Inputs<T> without_end(Inputs<T> inputs) {
-    inputs.duration = never;
-    for (Held<T>* load : {&inputs.plate_load.held(), &inputs.finger_load.held()})
-      if (!(load->ends < never)) *load = load_from(load->since, load->line.value, load->line.rate);
-    return inputs;
-  }
-  /// True if a number and its derivative are zero.
-  static bool zero(const T& x) {
-    if constexpr (std::is_floating_point_v<T>)
-      return x == 0;
-    else
-      return x.value == 0 && x.slope == 0;
-  }
-  /// Difference between an input and its continuation; zero within rounding.
-  T change_to(const T& given, const Held<T>& held) const {
-    using std::abs;
-    const Line<T> line = held.from(now_);
-    const T change = given - line.value;
-    const T size = abs(held.line.value) + abs(line.rate * (now_ - held.since)) + abs(given);
-    return abs(change) <= detail::rounding<T> * size ? change - plain(change) : change;
-  }
-  bool differs(const Line<T>& given, const Held<T>& held) const {
-    return !zero(change_to(given.value, held)) || !zero(given.rate - held.from(now_).rate);
-  }
-  static T moved(const T& from, const T& change, const T& given) {
-    return plain(change) == 0 ? from + change : given;
-  }
   bool happens_after(const T& time) const { return event_.any() && evolution_.pin.time > time; }
 
   /// Transitions at the begin of the present segment.
@@ -262,44 +232,6 @@ class Stepper {
     }
   }
 
-  /// Applies a jump of the mouse velocity: the pin keeps its velocity relative to the housing, and
-  /// so to the plate. Only a rigid stop moves the pin along.
-  void shift(const T& jump) {
-    using std::abs;
-    auto &plate = evolution_.pin.plate, &finger = evolution_.pin.finger;
-    plate.surface.value =
-        moved(plate.surface.value, jump, inputs_.mouse_velocity.held().line.value);
-    auto& stop = evolution_.pin.stop;
-    T& v = evolution_.pin.state.v;
-    if (plate.stuck() && !stop.is_holding())
-      v = plate.surface.value;
-    else if (!(finger.stuck() || stop.is_holding()) || plain(jump) != 0)
-      v += jump;
-    if (plain(jump) == 0) return;
-    evolution_.struck = false;
-    if (stop.initialize(evolution_.pin.state)) return evolution_.begin_at_stop();
-    finger.reached_guard = detail::ActiveGuard::none;
-    const T sense = finger.mode.slip_sign;
-    if (finger.sliding() && finger.contact.may_lag()) return;
-    if (finger.sliding() && sense * v > 0) {
-      finger.mode = ContactMode{finger.mode.state, detail::ActiveGuard::none,
-                                finger.contact.branch_of(abs(v)), sense};
-    } else {
-      finger.mode = {};
-      finger.initialize(evolution_.pin.state, true);
-    }
-  }
-
-  /// Applies a jump of the transverse velocity, which changes the sliding speed of the plate.
-  void turn() {
-    using detail::hypot;
-    auto& plate = evolution_.pin.plate;
-    plate.reached_guard = detail::ActiveGuard::none;
-    if (!plate.oblique()) return;
-    const T u = evolution_.pin.state.v - plate.surface.value;
-    plate.mode.branch = plate.contact.branch_of(hypot(u, plate.across.value));
-  }
-
   /// Begins the next segment.
   void select() {
     const auto &plate = evolution_.pin.plate, &finger = evolution_.pin.finger;
@@ -317,13 +249,7 @@ class Stepper {
              evolution_.pin.stop.met,
              evolution_.struck,
              before_,
-             plate.surface,
-             {},
-             {},
-             {},
-             {},
-             {},
-             {}};
+             plate.surface};
     // Linear quantities are evaluated over a finite time.
     const bool steady = plate.surface.rate == 0 && plate.load.rate == 0 && finger.load.rate == 0 &&
                         evolution_.pin.force.rate == 0;

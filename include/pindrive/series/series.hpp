@@ -1,5 +1,4 @@
-/// Power series of modes without a closed form: a friction curve under a changing load, a friction
-/// curve on a compliant finger, a plate that also slides in the transverse direction.
+/// Power series of modes without a closed form (docs/theory.md, section 11).
 ///
 /// The Taylor coefficients follow from the equation by recurrences. Order and length of a step
 /// follow from the series, with a proven bound of the truncation error.

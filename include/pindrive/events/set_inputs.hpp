@@ -1,0 +1,101 @@
+/// Inputs that are set during a simulation: how they differ from their continuation, and what their
+/// jumps do to the pin.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+#include "pindrive/events/evolution.hpp"
+#include "pindrive/law/contact_point.hpp"
+#include "pindrive/model/limits.hpp"
+#include "pindrive/model/model.hpp"
+#include "pindrive/numbers/functions.hpp"
+
+namespace pindrive::detail {
+
+/// Load from a time on, of which a falling load stops at zero, as friction never pushes.
+template <class T>
+Held<T> falling_load(T now, T value, T rate) {
+  Held<T> load(now, {value, rate});
+  if (rate < 0) load.ends = now - value / rate;
+  return load;
+}
+
+/// Inputs without an end, whose falling loads stop at zero.
+template <class T>
+Inputs<T> without_end(Inputs<T> inputs) {
+  constexpr T never = std::numeric_limits<T>::infinity();
+  inputs.duration = never;
+  for (Held<T>* load : {&inputs.plate_load.held(), &inputs.finger_load.held()})
+    if (!(load->ends < never)) *load = falling_load(load->since, load->line.value, load->line.rate);
+  return inputs;
+}
+
+/// True if a number and its derivative are zero.
+template <class T>
+bool is_zero(const T& x) {
+  if constexpr (std::is_floating_point_v<T>)
+    return x == 0;
+  else
+    return x.value == 0 && x.slope == 0;
+}
+
+/// Difference between an input and its continuation; zero within rounding.
+template <class T>
+T change_to(const T& given, const Held<T>& held, T now) {
+  using std::abs;
+  const Line<T> line = held.from(now);
+  const T change = given - line.value;
+  const T size = abs(held.line.value) + abs(line.rate * (now - held.since)) + abs(given);
+  return abs(change) <= rounding<T> * size ? change - plain(change) : change;
+}
+
+/// True if an input differs from its continuation in value or rate.
+template <class T>
+bool differs(const Line<T>& given, const Held<T>& held, T now) {
+  return !is_zero(change_to(given.value, held, now)) || !is_zero(given.rate - held.from(now).rate);
+}
+
+/// Value after a change: the given value, or the value before where only the derivative changes.
+template <class T>
+T moved(const T& from, const T& change, const T& given) {
+  return plain(change) == 0 ? from + change : given;
+}
+
+/// Applies a jump of the mouse velocity: the pin keeps its velocity relative to the housing, and so
+/// to the plate, whose velocity is `given` afterwards. Only a rigid stop moves the pin along.
+template <class T>
+void shift(Evolution<T>& evolution, const T& jump, const T& given) {
+  using std::abs;
+  ContactPoint<T>&plate = evolution.pin.plate, &finger = evolution.pin.finger;
+  auto& stop = evolution.pin.stop;
+  T& v = evolution.pin.state.v;
+  plate.surface.value = moved(plate.surface.value, jump, given);
+  if (plate.stuck() && !stop.is_holding())
+    v = plate.surface.value;
+  else if (!(finger.stuck() || stop.is_holding()) || plain(jump) != 0)
+    v += jump;
+  if (plain(jump) == 0) return;
+  evolution.struck = false;
+  if (stop.initialize(evolution.pin.state)) return evolution.begin_at_stop();
+  finger.reached_guard = ActiveGuard::none;
+  const T sign = finger.mode.slip_sign;
+  if (finger.sliding() && finger.contact.may_lag()) return;
+  if (finger.sliding() && sign * v > 0) {
+    finger.mode = {finger.mode.state, ActiveGuard::none, finger.contact.branch_of(abs(v)), sign};
+  } else {
+    finger.mode = {};
+    finger.initialize(evolution.pin.state, true);
+  }
+}
+
+/// Applies a jump of the transverse velocity, which changes the sliding speed of the plate.
+template <class T>
+void turn(ContactPoint<T>& plate, const T& v) {
+  plate.reached_guard = ActiveGuard::none;
+  if (!plate.oblique()) return;
+  plate.mode.branch = plate.contact.branch_of(hypot(v - plate.surface.value, plate.across.value));
+}
+
+}  // namespace pindrive::detail

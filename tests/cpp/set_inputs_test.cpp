@@ -1,0 +1,42 @@
+// Inputs that are set during a simulation: their differences and their jumps.
+#include "pindrive/events/set_inputs.hpp"
+
+#include <limits>
+
+#include "check.hpp"
+#include "pindrive/numbers/dual.hpp"
+
+namespace pd = pindrive;
+using check::expect;
+using check::near;
+using pd::ContactState;
+using Held = pd::Held<double>;
+using Line = pd::Line<double>;
+
+int main() {
+  constexpr double never = std::numeric_limits<double>::infinity();
+  expect(pd::detail::falling_load(2.0, 1.0, -4.0).ends == 2.25, "a falling load ends at zero");
+  expect(!(pd::detail::falling_load(2.0, 1.0, 4.0).ends < never), "a growing load does not end");
+
+  const Held held(1, Line{0.3, 2});
+  expect(!pd::detail::differs(Line{0.5, 2}, held, 1.1), "an input within rounding is continued");
+  expect(pd::detail::differs(Line{0.5, 1}, held, 1.1), "an input with another rate differs");
+  expect(near(pd::detail::change_to(0.6, held, 1.1), 0.1, 1e-15), "a jump is a difference");
+  using Dual = pd::Dual<double>;
+  expect(!pd::detail::is_zero(Dual{0, 1}) && pd::detail::is_zero(Dual{0, 0}),
+         "a number with a derivative is not zero");
+
+  const pd::Drive<double> drive{0.01, 100, 0, {0.1, 0.1}, {}};
+  const pd::Inputs<double> inputs{{0, {0.05, 0}}, 1e-4, 0.05, never};
+  pd::detail::Evolution<double> evolution(drive, inputs, 0);
+  evolution.select();
+  pd::detail::shift(evolution, 0.02, 0.07);
+  expect(evolution.pin.plate.stuck() && evolution.pin.plate.surface.value == 0.07 &&
+             evolution.pin.state.v == 0.07,
+         "a pin that sticks to the plate takes part in a jump of the mouse velocity");
+  evolution.pin.plate.mode.state = ContactState::slip_forward;
+  pd::detail::shift(evolution, 0.01, 0.08);
+  expect(near(evolution.pin.state.v, 0.08, 1e-15) && evolution.pin.plate.surface.value == 0.08,
+         "a sliding pin keeps its velocity relative to the housing");
+  return check::status();
+}
