@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from threading import Lock
 from typing import Any, Self
 from zipfile import ZipFile
 
@@ -16,6 +17,9 @@ from fmpy.fmi3 import FMU3Slave
 from pindrive.files.device import DeviceFile
 from pindrive.files.fmu import write_fmu
 
+LOADING = Lock()
+"""FMPy changes the folder of the whole process while it loads a library."""
+
 
 class Unit:
     """An instance of an FMU of either version, by the names of its variables."""
@@ -24,12 +28,13 @@ class Unit:
         self.numbers = {v.name: v.valueReference for v in description.modelVariables}
         self.version = int(description.fmiVersion[0])
         made = FMU2Slave if self.version == 2 else FMU3Slave
-        self.slave = made(
-            guid=description.guid if self.version == 2 else description.instantiationToken,
-            unzipDirectory=str(folder),
-            modelIdentifier=description.coSimulation.modelIdentifier,
-            instanceName="pin",
-        )
+        with LOADING:
+            self.slave = made(
+                guid=description.guid if self.version == 2 else description.instantiationToken,
+                unzipDirectory=str(folder),
+                modelIdentifier=description.coSimulation.modelIdentifier,
+                instanceName="pin",
+            )
         self.slave.instantiate(**events)
 
     def begin(self, **start: float) -> Self:
