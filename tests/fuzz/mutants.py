@@ -60,14 +60,15 @@ MUTANTS = (
     Mutant(
         "always sticks at a surface velocity",
         "law/selection.hpp",
-        "if (most.value - abs(force) < -pin_.state.force_error && (force < 0 ? -1 : 1) != at_limit)",
-        "if (most.value > 1e99)",
+        "if (most.value - abs(force) < -pin_.state.force_error && (force",
+        "if (most.value > 1e99 && (force",
     ),
     Mutant(
         "slips where a tenth of the stick limit is left",
         "law/selection.hpp",
         "const T force = holding_force(on, other.force(pin_.state));\n    const int at_limit",
-        "const T force = holding_force(on, other.force(pin_.state)) / T(0.9);\n    const int at_limit",
+        "const T force = holding_force(on, other.force(pin_.state)) / T(0.9);\n"
+        "    const int at_limit",
     ),
     Mutant(
         "static friction of the sticking contact is its kinetic friction",
