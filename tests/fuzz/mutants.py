@@ -255,8 +255,8 @@ MUTANTS = (
     Mutant(
         "skin without static friction sticks a pin at rest as its load grows from none",
         "law/skin.hpp",
-        "if (must_jump_ && jump.sticks && u_ != 0) {",
-        "if (must_jump_ && jump.sticks) {",
+        "if (must_jump_ && jump.sticks && u_ != 0)",
+        "if (must_jump_ && jump.sticks)",
     ),
     Mutant(
         "a slider of stiff skin is slow whatever speed it begins at",

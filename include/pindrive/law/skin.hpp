@@ -72,6 +72,12 @@ class SliderCandidates {
   }
 
   [[gnu::noinline]] void enumerate() {
+    add_all();
+    point_.start = start_;
+  }
+
+ private:
+  void add_all() {
     point_.slips_either_way = false;
     if (!contact_.present()) return add_present();
     if (point_.load.value == 0 && !may_grip()) return;
@@ -80,11 +86,7 @@ class SliderCandidates {
     stick_or_slip();
   }
 
- private:
-  void add_present() {
-    point_.start = start_;
-    point_.candidates.add(present_, start_);
-  }
+  void add_present() { point_.candidates.add(present_, start_); }
 
   /// Adds a mode after a jump. A jump that ends where the slider is changes nothing.
   void add(const ContactMode<T>& mode, const SliderJump<T>& jump) {
@@ -102,7 +104,6 @@ class SliderCandidates {
   /// side. If the jump ends at the begin of a branch with the speed of the pin, the acceleration of
   /// the pin decides.
   void add_jump(SliderJump<T> jump, const Slider<T>& slider, T slip_sign, bool both_ways = false) {
-    point_.start = start_;
     if (jump.sticks && contact_.static_limit == 0) {
       if (u_ == 0) {
         point_.slips_either_way = true;
@@ -130,7 +131,6 @@ class SliderCandidates {
     SliderJump<T> jump{};
     if (!(point_.load.rate > 0)) {
       jump.shortens_skin = s_.skin != 0;
-      point_.start = start_;
       add({}, jump);
       return false;
     }
@@ -140,12 +140,10 @@ class SliderCandidates {
     must_jump_ =
         !jump.sticks || s_.skin != 0 || slider.stationary_speed(contact_.static_limit) != 0;
     jump.shortens_skin = s_.skin != 0;
-    if (must_jump_ && jump.sticks && u_ != 0) {
-      point_.start = start_;
+    if (must_jump_ && jump.sticks && u_ != 0)
       add(mode_after(jump, slip_sign), jump);
-    } else if (must_jump_) {
+    else if (must_jump_)
       add_jump(jump, slider, slip_sign);
-    }
     return !must_jump_;
   }
 
@@ -184,7 +182,10 @@ class SliderCandidates {
           slider, slip_sign);
       return true;
     }
-    if (guard == ActiveGuard::none) return add_present(), true;
+    if (guard == ActiveGuard::none) {
+      add_present();
+      return true;
+    }
     const bool upper = guard == ActiveGuard::upper;
     if (!upper && branch == 0) return false;
     const int beyond = branch + (upper ? 1 : 0);
