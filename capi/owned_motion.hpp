@@ -163,8 +163,8 @@ class OwnedMotion {
 /// Of a segment that is a step of a series, what its acceleration stays below; NaN of a closed form.
 inline double acceleration_bound(const Motion<double>& motion, const Segment<double>& segment) {
   return motion.along(segment, [](const auto& along) {
-    if constexpr (std::is_same_v<std::decay_t<decltype(along)>, BySeries<double>>)
-      return largest_size(along.acceleration());
+    if constexpr (std::is_same_v<std::decay_t<decltype(along)>, detail::BySeries<double>>)
+      return detail::largest_size(along.acceleration());
     else
       return std::numeric_limits<double>::quiet_NaN();
   });

@@ -32,6 +32,28 @@ LAYERS = (
     "kernel",
 )
 """The folders of the core, each built on those before it alone."""
+PUBLIC = {
+    "certificate": {"certificate", "certify"},
+    "events": {"simulate", "stepper"},
+    "flow": {"flow", "oscillator"},
+    "model": {"input_lines", "model"},
+    "motion": {
+        "batch",
+        "contact_use",
+        "crossings",
+        "duration",
+        "energy",
+        "instant",
+        "motion",
+        "steady_numbers",
+        "steady_since",
+        "trajectory",
+        "transient",
+        "transient_numbers",
+    },
+    "numbers": {"dual", "functions", "limits", "named_number"},
+}
+"""Headers with names that a user of the core may use; the others stand in `pindrive::detail`."""
 PATH = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
 
 
@@ -183,3 +205,12 @@ def test_no_sanitizer_complains(tmp_path: Path) -> None:
     run("cmake", "--build", tmp_path)
     assert b"__ubsan_handle" in (tmp_path / "fuzz").read_bytes()
     run("ctest", "--test-dir", tmp_path, "--output-on-failure", "--parallel", "2")
+
+
+def test_what_is_not_public_is_in_detail() -> None:
+    for path in HEADERS:
+        if path.stem in PUBLIC.get(path.parent.name, ()):
+            continue
+        text = path.read_text("utf-8")
+        opened = re.findall(r"^namespace ([\w:]+) \{", text, re.MULTILINE)
+        assert set(opened) <= {"pindrive::detail", "std"}, path.relative_to(ROOT)

@@ -33,7 +33,7 @@ int main() {
   outcome.until = 1;
   const pd::Motion<double> motion(drive, inputs, segments.data(), 2, outcome);
 
-  const auto used = pd::ContactMeasurement<double>(motion).measure(0, 1);
+  const auto used = pd::detail::ContactMeasurement<double>(motion).measure(0, 1);
   expect(near(used.plate.distance_slid, 0.02, 1e-15), "it slid 20 mm");
   expect(near(used.plate.dissipated, 0.2 * 0.02, 1e-15), "friction took force times distance");
   expect(used.plate.reversals == 1 && near(used.plate.time_stuck, 0.6, 1e-15),
@@ -45,13 +45,13 @@ int main() {
   expect(used.finger.distance_slid == 0 && near(used.finger.time_stuck, 1, 1e-15),
          "an elastic stick does not slide");
 
-  const auto half = pd::ContactMeasurement<double>(motion).measure(0, 0.2);
+  const auto half = pd::detail::ContactMeasurement<double>(motion).measure(0, 0.2);
   expect(half.plate.reversals == 0 && near(half.plate.distance_slid, 0.015, 1e-15),
          "no more than until the duration");
 
   const pd::Drive<double> rigid{0.01, 1e-9, 0, {0.2, 0.3}, {}};
   const pd::Motion<double> other(rigid, inputs, segments.data(), 2, outcome);
-  expect(std::isnan(pd::ContactMeasurement<double>(other).measure(0, 1).peak_stretch),
+  expect(std::isnan(pd::detail::ContactMeasurement<double>(other).measure(0, 1).peak_stretch),
          "a finger that is not compliant has no stretch");
   return check::status();
 }

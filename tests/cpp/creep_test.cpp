@@ -111,7 +111,7 @@ void joins_the_aligned_case() {
       const double part = (0.02 + 100 * (1e-3 + 0.06 * t) + 0.64 * 0.06) / 0.697;
       return part / std::sqrt(1 - part * part);
     };
-    const double first = across * pd::gauss<double>(rate, 0.0, 0.05);
+    const double first = across * pd::detail::gauss<double>(rate, 0.0, 0.05);
     expect(std::abs(short_of - first) <= 300 * across * first + 2e-18, "reduced creep",
            short_of - first);
     before = short_of;
@@ -149,7 +149,7 @@ void through_zero() {
         expect(std::abs(force - friction) < 1e-13 + 2 * known, "friction", force - friction);
       expect(std::abs(step.speed.at(tau) - std::hypot(u, w)) < 1e-15, "sliding speed", w);
     }
-    energy += pd::gauss<double>(
+    energy += pd::detail::gauss<double>(
         [&](double tau) {
           const double v = step.velocity.at(tau);
           return step.plate_force.at(tau) * v - 0.02 * v - 0.64 * v * v;

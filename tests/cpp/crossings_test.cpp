@@ -33,7 +33,7 @@ struct Course {
   double at(double time, pd::Side side) const {
     const auto place = motion.locate(time, side);
     return motion.along(*place.segment, [&](const auto& along) {
-      return along.at(pd::quantity_of(along, quantity), place.tau);
+      return along.at(pd::detail::quantity_of(along, quantity), place.tau);
     });
   }
   /// The rounding of a value: of the forces behind an acceleration and of the time at which it is.

@@ -29,10 +29,10 @@ int main() {
         const pd::Path<double> path{1e-3, 2e-3, 0.05, drift};
         segment.flow.velocity = path;
         segment.moved = o.after(segment.end);
-        const pd::ClosedForm<double> along(segment);
+        const pd::detail::ClosedForm<double> along(segment);
         std::vector<Point> found;
         const auto add = [&](double tau, double value) { found.push_back({tau, value}); };
-        pd::extrema(along, path, from, segment.end, add);
+        pd::detail::extrema(along, path, from, segment.end, add);
         turns += static_cast<int>(found.size()) - 2;
         ends = ends && found.front().tau == from && found.back().tau == segment.end;
         double low = 1, high = -1;
@@ -46,12 +46,12 @@ int main() {
             bounded = bounded && value >= least - slack && value <= most + slack;
           }
         }
-        pd::highest_and_lowest(along, path, from, segment.end, [&](double, double value) {
+        pd::detail::highest_and_lowest(along, path, from, segment.end, [&](double, double value) {
           low = std::min(low, value + 1e-15);
           high = std::max(high, value - 1e-15);
         });
         double least = 1, most = -1;
-        pd::highest_and_lowest(along, path, from, segment.end, [&](double, double value) {
+        pd::detail::highest_and_lowest(along, path, from, segment.end, [&](double, double value) {
           least = std::min(least, value);
           most = std::max(most, value);
         });

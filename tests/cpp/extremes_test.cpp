@@ -43,9 +43,9 @@ int main() {
     const double from = i % 4 > 0 ? 0 : to * std::abs(uniform(random));
 
     Range walk, ends;
-    const pd::ClosedForm<double> along(segment);
-    pd::extrema(along, path, from, to, walk);
-    pd::highest_and_lowest(along, path, from, to, ends);
+    const pd::detail::ClosedForm<double> along(segment);
+    pd::detail::extrema(along, path, from, to, walk);
+    pd::detail::highest_and_lowest(along, path, from, to, ends);
     const double rounding = 1e-15 * (10 + omega0 * to) * std::max(walk.high, -walk.low);
     longest = std::max(longest, walk.visits);
     most = std::max(most, ends.visits);

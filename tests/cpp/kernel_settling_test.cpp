@@ -8,7 +8,7 @@
 namespace pk = pindrive::detail;
 using check::expect;
 using check::near;
-using Settling = pk::Settling<double>;
+using Settling = pk::KernelSettling<double>;
 using Forward = pk::ForwardRelease<double>;
 
 namespace {

@@ -1,5 +1,5 @@
 // The limits that are not physics: each is where its reason puts it, and those that end a motion do.
-#include "pindrive/model/limits.hpp"
+#include "pindrive/numbers/limits.hpp"
 
 #include "check.hpp"
 #include "pindrive/events/simulate.hpp"

@@ -10,7 +10,7 @@
 namespace pd = pindrive;
 using check::expect;
 using check::near;
-using P = pd::Polynomial<double>;
+using P = pd::detail::Polynomial<double>;
 
 namespace {
 
@@ -56,13 +56,13 @@ void encloses() {
     for (double s = 0; s <= 1; s += 1.0 / 512) {
       const double value = p.at(s);
       inside = inside && value >= *least - 1e-14 && value <= *most + 1e-14 &&
-               std::abs(value) <= pd::largest_size(p) + 1e-14;
+               std::abs(value) <= pd::detail::largest_size(p) + 1e-14;
       dips = std::min(dips, value);
     }
     auto upper = b, lower = b;
     pd::detail::halve(upper, lower, p.degree);
     halves = halves && near(upper[0], p.at(0.5), 1e-14) && lower[p.degree] == upper[0];
-    const double bound = pd::lowest(p, 1e-3);
+    const double bound = pd::detail::lowest(p, 1e-3);
     const bool says = bound < -1e-3;
     lowest = lowest && (says ? dips <= -0.99e-3 : dips >= -1e-3);
   }
@@ -70,13 +70,13 @@ void encloses() {
   expect(inside, "... and all of them enclose the values between");
   expect(halves, "halving meets the value in the middle");
   expect(lowest, "a dip below zero is found where there is one, and only there");
-  expect(pd::lowest(with_zeros({0.4, 0.6}, 10), 1e-6) <= -0.099,
+  expect(pd::detail::lowest(with_zeros({0.4, 0.6}, 10), 1e-6) <= -0.099,
          "a dip between two positive ends is found");
 }
 
 std::vector<double> changes(const P& p, int side) {
   std::vector<double> found;
-  pd::sign_changes(p, side, [&](double tau) {
+  pd::detail::sign_changes(p, side, [&](double tau) {
     found.push_back(tau);
     return true;
   });
@@ -94,17 +94,18 @@ void zeros() {
   expect(changes(with_zeros({-0.2, 1.3}), -1).empty(), "what lies outside of the step is none");
   expect(changes(with_zeros({0.0, 0.5}, -1), 1).size() == 1,
          "a start at zero is left to the side that is given, and is none");
-  expect(pd::first_zero(with_zeros({0.25, 0.75}, 1, 4)) == 1, "the first zero of a guard");
-  expect(std::isinf(pd::first_zero(with_zeros({1.5}, -1))), "... is never where it stays positive");
+  expect(pd::detail::first_zero(with_zeros({0.25, 0.75}, 1, 4)) == 1, "the first zero of a guard");
+  expect(std::isinf(pd::detail::first_zero(with_zeros({1.5}, -1))),
+         "... is never where it stays positive");
 }
 
 void derivative_of_zero() {
   using D = pd::Dual<double>;
-  pd::Polynomial<D> p;  // a − σ², whose zero √a moves by 1/(2 √a)
+  pd::detail::Polynomial<D> p;  // a − σ², whose zero √a moves by 1/(2 √a)
   p.degree = 2;
   p.c[0] = D(0.25, 1);
   p.c[2] = D(-1);
-  const D root = pd::first_zero(p);
+  const D root = pd::detail::first_zero(p);
   expect(near(root.value, 0.5, 1e-15) && near(root.slope, 1, 1e-14),
          "a zero moves with the coefficients");
 }

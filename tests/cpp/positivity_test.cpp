@@ -12,7 +12,7 @@ namespace pd = pindrive;
 
 namespace {
 
-using PositivityBound = pd::PositivityBound<double>;
+using PositivityBound = pd::detail::PositivityBound<double>;
 
 constexpr double unseen = 1e-10;
 

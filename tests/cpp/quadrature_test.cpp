@@ -13,17 +13,17 @@ namespace {
 template <class Rule>
 double error_of(const Rule& rule, double kappa) {
   double sum = 0;
-  pd::gauss_nodes(rule, -1.0, 1.0,
-                  [&](double s, double weight) { sum += weight * std::exp(kappa * s); });
+  pd::detail::gauss_nodes(rule, -1.0, 1.0,
+                          [&](double s, double weight) { sum += weight * std::exp(kappa * s); });
   return std::abs(sum / (2 * std::sinh(kappa) / kappa) - 1);
 }
 
 }  // namespace
 
 int main() {
-  expect(error_of(pd::gauss16, 8) < 1e-14 && error_of(pd::gauss16, 0.1) < 1e-14,
+  expect(error_of(pd::detail::gauss16, 8) < 1e-14 && error_of(pd::detail::gauss16, 0.1) < 1e-14,
          "16 nodes are exact to rounding for e^(8 s)");
-  expect(error_of(pd::gauss8, 1.2) < 1e-14 && error_of(pd::gauss8, 8) > 1e-9,
+  expect(error_of(pd::detail::gauss8, 1.2) < 1e-14 && error_of(pd::detail::gauss8, 8) > 1e-9,
          "8 nodes for e^(1.2 s), and not for e^(8 s)");
 
   double worst = 0, additive = 0;
@@ -34,15 +34,15 @@ int main() {
       const auto product = [&](double t) { return p.at(o, t) * q.at(o, t); };
       double sum = 0, size = 0;
       for (int i = 0; i < 200; ++i) {
-        const double part = pd::gauss<double>(product, to * i / 200, to * (i + 1) / 200);
+        const double part = pd::detail::gauss<double>(product, to * i / 200, to * (i + 1) / 200);
         sum += part;
         size += std::abs(part);
       }
-      const double whole = pd::product_integral(o, p, q, 0.0, to);
+      const double whole = pd::detail::product_integral(o, p, q, 0.0, to);
       worst = std::max(worst, std::abs(whole - sum) / size);
       const double middle = 0.3 * to;
-      const double parts =
-          pd::product_integral(o, p, q, 0.0, middle) + pd::product_integral(o, p, q, middle, to);
+      const double parts = pd::detail::product_integral(o, p, q, 0.0, middle) +
+                           pd::detail::product_integral(o, p, q, middle, to);
       additive = std::max(additive, std::abs(whole - parts) / size);
     }
   std::printf("worst %.1e, in two parts %.1e\n", worst, additive);

@@ -17,7 +17,7 @@ template <int Degree>
 std::vector<double> isolated(const pd::Oscillator<double>& oscillator, const pd::Path<double>& path,
                              int side, double horizon) {
   std::vector<double> roots;
-  pd::Roots<double, Degree> search(oscillator, path, side, horizon);
+  pd::detail::Roots<double, Degree> search(oscillator, path, side, horizon);
   for (;;) {
     const double root = search.next();
     if (!(root <= horizon)) return roots;

@@ -16,7 +16,7 @@ namespace {
 
 using Drive = pd::Drive<double>;
 using Certificate = pd::Certificate<double>;
-using Along = pd::ClosedForm<double>;
+using Along = pd::detail::ClosedForm<double>;
 using Evaluated = pd::detail::EvaluatedSegment<double, Along>;
 using Guards = pd::detail::SegmentGuards<double, Along>;
 

@@ -292,8 +292,8 @@ void bounds() {
 }
 
 /// The product of factors (root − σ), scaled.
-pd::Polynomial<double> with_roots(const std::vector<double>& roots, double scale) {
-  pd::Polynomial<double> p;
+pd::detail::Polynomial<double> with_roots(const std::vector<double>& roots, double scale) {
+  pd::detail::Polynomial<double> p;
   p.c[0] = scale;
   for (const double root : roots) {
     ++p.degree;
@@ -321,10 +321,10 @@ void zeros() {
     for (int k = 0; k < (i / 7) % 6; ++k) roots.push_back(-0.1 - 3 * uniform(random));
     double positive = 1;  // its sign at 0
     for (const double root : roots) positive *= root > 0 ? 1 : -1;
-    pd::Polynomial<double> p =
+    pd::detail::Polynomial<double> p =
         with_roots(roots, positive * std::pow(10, 20 * uniform(random) - 10));
     p.span = 1e-3;
-    const double zero = pd::first_zero(p);
+    const double zero = pd::detail::first_zero(p);
     if (first > 1) {
       expect(zero == never, "a zero that is none", zero);
       ++none;
@@ -335,25 +335,28 @@ void zeros() {
   }
   expect(found > 5000 && none > 300, "too few polynomials", found);
   // Two zeros a millionth apart, and a touch: zero to rounding, and never below.
-  expect(abs(pd::first_zero(with_roots({0.4, 0.400001, 3}, 1)) - 0.4) < 1e-9, "two near zeros", 0);
-  pd::Polynomial<double> touch;  // (σ − 1/2)²
+  expect(abs(pd::detail::first_zero(with_roots({0.4, 0.400001, 3}, 1)) - 0.4) < 1e-9,
+         "two near zeros", 0);
+  pd::detail::Polynomial<double> touch;  // (σ − 1/2)²
   touch.degree = 2;
   touch.c = {0.25, -1, 1};
-  expect(pd::first_zero(touch) == never, "a touch", pd::first_zero(touch));
+  expect(pd::detail::first_zero(touch) == never, "a touch", pd::detail::first_zero(touch));
   touch.c[0] += 1e-15;
-  expect(pd::first_zero(touch) == never, "just no touch", pd::first_zero(touch));
+  expect(pd::detail::first_zero(touch) == never, "just no touch", pd::detail::first_zero(touch));
   touch.c[0] = 0.25 - 1e-12;
-  expect(abs(pd::first_zero(touch) - (0.5 - 1e-6)) < 1e-9, "just a crossing",
-         pd::first_zero(touch));
+  expect(abs(pd::detail::first_zero(touch) - (0.5 - 1e-6)) < 1e-9, "just a crossing",
+         pd::detail::first_zero(touch));
   // It leaves a zero at its start to its positive side: straight, tangentially, and but for rounding.
-  pd::Polynomial<double> leaves = with_roots({0.6}, 1);
+  pd::detail::Polynomial<double> leaves = with_roots({0.6}, 1);
   for (int order = 1; order < 4; ++order) {
     for (int n = ++leaves.degree; n > 0; --n) leaves.c[n] = leaves.c[n - 1];
     leaves.c[0] = 0;
-    expect(abs(pd::first_zero(leaves) - 0.6) < 1e-15, "leaves its zero", pd::first_zero(leaves));
+    expect(abs(pd::detail::first_zero(leaves) - 0.6) < 1e-15, "leaves its zero",
+           pd::detail::first_zero(leaves));
   }
   leaves.c[0] = -1e-18;
-  expect(abs(pd::first_zero(leaves) - 0.6) < 1e-15, "below by rounding", pd::first_zero(leaves));
+  expect(abs(pd::detail::first_zero(leaves) - 0.6) < 1e-15, "below by rounding",
+         pd::detail::first_zero(leaves));
 }
 
 /// Derivatives through the event beside differences of two answers.

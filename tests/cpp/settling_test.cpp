@@ -37,7 +37,7 @@ int main() {
     for (const double band : {0.3, 0.05, 0.002}) {
       const Decay decay(ratio, never);
       const pd::Motion<double> motion = decay.motion();
-      const double since = pd::Settling<double>(motion, never).within(0.0, band);
+      const double since = pd::detail::Settling<double>(motion, never).within(0.0, band);
       const double width = band * 1e-3;
       enters = enters && std::abs(std::abs(decay.x(since)) - width) < 1e-12 * 1e-3;
       for (int i = 1; i < 2000; ++i)
@@ -48,14 +48,14 @@ int main() {
 
   const Decay decay(0.1, never);
   const pd::Motion<double> motion = decay.motion();
-  expect(std::isnan(pd::Settling<double>(motion, 0.05).within(0.0, 0.05)),
+  expect(std::isnan(pd::detail::Settling<double>(motion, 0.05).within(0.0, 0.05)),
          "what settles after the duration has not settled");
-  expect(pd::Settling<double>(motion, never).last_outside(0.0, 2e-3) == 0,
+  expect(pd::detail::Settling<double>(motion, never).last_outside(0.0, 2e-3) == 0,
          "what was never outside is settled from the start");
   Decay moving(0.1, 0.02);
   moving.outcome.end = pd::End::moving;
   const pd::Motion<double> cut = moving.motion();
-  expect(std::isnan(pd::Settling<double>(cut, never).within(0.0, 0.05)),
+  expect(std::isnan(pd::detail::Settling<double>(cut, never).within(0.0, 0.05)),
          "a motion whose ending is not known has no settling time");
   return check::status();
 }

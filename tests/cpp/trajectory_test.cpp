@@ -37,11 +37,11 @@ void compare(const pd::Drive<double>& drive, const pd::Inputs<double>& inputs,
   if (!(span > 0)) return;
   segment.end = segment.begin + span;
   segment.moved = segment.flow.after(span);
-  const pd::ClosedForm<double> closed(segment);
+  const pd::detail::ClosedForm<double> closed(segment);
   pd::Segment<double> step = segment;  // of which a series has the begin alone
   step.flow.velocity.drift = segment.flow.acceleration().start;
-  const pd::BySeries<double> series(drive, step,
-                                    pd::InputLines<double>::of(drive, inputs, segment));
+  const pd::detail::BySeries<double> series(drive, step,
+                                            pd::InputLines<double>::of(drive, inputs, segment));
   ++agree.count;
   for (const double part : {0.0, 0.3, 0.7, 1.0}) {
     const double tau = part * span;
@@ -95,8 +95,8 @@ void lines() {
   segment.begin = 1;
   segment.end = 2;
   segment.mode = {pd::ContactState::absent, pd::ContactState::absent};
-  const pd::ClosedForm<double> closed(segment);
-  const pd::BySeries<double> series({0.01, 100, 0.1, {}, {}}, segment, {});
+  const pd::detail::ClosedForm<double> closed(segment);
+  const pd::detail::BySeries<double> series({0.01, 100, 0.1, {}, {}}, segment, {});
   const pd::Line<double> line{3, -1};
   expect(closed.at(closed.line(line), 0.5) == 2.5 && series.at(series.line(line), 0.5) == 2.5,
          "a line is a quantity of either form");
@@ -105,7 +105,8 @@ void lines() {
          "... and constant without a rate");
   expect(!closed.waves() && closed.terms(closed.line(line), 0.5) == 3.5,
          "a pin at rest does not wave");
-  expect(pd::quantity_of(closed, pd::Quantity::velocity).start == 0, "a quantity has a name");
+  expect(pd::detail::quantity_of(closed, pd::Quantity::velocity).start == 0,
+         "a quantity has a name");
 }
 
 }  // namespace

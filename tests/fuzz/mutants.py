@@ -170,7 +170,7 @@ MUTANTS = (
     ),
     Mutant(
         "a cycle is closed a thousandth too soon",
-        "model/limits.hpp",
+        "numbers/limits.hpp",
         "return_tolerance = 1e-12;",
         "return_tolerance = 1e-3;",
     ),

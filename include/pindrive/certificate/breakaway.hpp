@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pindrive/model/limits.hpp"
 #include "pindrive/model/model.hpp"
 #include "pindrive/motion/evaluated_segment.hpp"
 #include "pindrive/numbers/functions.hpp"
+#include "pindrive/numbers/limits.hpp"
 
-namespace pindrive {
+namespace pindrive::detail {
 
 /// Instant at the begin of a segment: pin, friction, inputs, and the rigid contacts with zero
 /// relative velocity within rounding.
@@ -49,8 +49,6 @@ T spare_stick_limit(const Drive<T>& drive, const Mode& mode, const Beginning<T>&
     spare = std::max(spare, at_finger - abs(pull - inertia - of_plate));
   return std::max(spare, T(0));
 }
-
-namespace detail {
 
 /// Checks the segments of a motion in order. Segments too short for any change count as one instant
 /// with the next segment, except for sticking within the limit.
@@ -99,7 +97,7 @@ class Breakaways {
              T(brief_turn) * scales.force;
     };
     return segment.segment.end - segment.segment.begin <= T(brief_segment) / rate &&
-           !(within_limit(segment, s) > 8 * rounding<T> * scales.force) &&
+           !(within_limit(segment, s) > end_error<T> * scales.force) &&
            !(segment.oblique() && turned());
   }
 
@@ -160,5 +158,4 @@ class Breakaways {
   bool brief_{false};
 };
 
-}  // namespace detail
-}  // namespace pindrive
+}  // namespace pindrive::detail

@@ -17,12 +17,12 @@
 #include "pindrive/certificate/certificate.hpp"
 #include "pindrive/certificate/segment_guards.hpp"
 #include "pindrive/flow/positivity.hpp"
-#include "pindrive/model/limits.hpp"
 #include "pindrive/motion/evaluated_segment.hpp"
 #include "pindrive/motion/motion.hpp"
 #include "pindrive/motion/period_samples.hpp"
 #include "pindrive/motion/quadrature.hpp"
 #include "pindrive/motion/steady_since.hpp"
+#include "pindrive/numbers/limits.hpp"
 
 namespace pindrive {
 
@@ -86,7 +86,7 @@ class Certifier {
   using Evaluated = detail::EvaluatedSegment<T, Trajectory>;
   template <class Trajectory>
   using Guards = detail::SegmentGuards<T, Trajectory>;
-  using Closed = Evaluated<ClosedForm<T>>;
+  using Closed = Evaluated<detail::ClosedForm<T>>;
   using ClosedState = typename Closed::State;
   using Numbers = detail::PinState<T>;
 
@@ -159,9 +159,9 @@ class Certifier {
   Numbers walk(const Closed& evaluated) {
     const Oscillator<T>& oscillator = evaluated.segment.flow.oscillator;
     const T alpha = oscillator.alpha(), fastest = oscillator.fastest_rate();
-    const T quick = exact_over / fastest;
+    const T quick = detail::exact_over / fastest;
     const bool waves = evaluated.along.waves();
-    const Guards<ClosedForm<T>> guards(evaluated);
+    const Guards<detail::ClosedForm<T>> guards(evaluated);
     Errors errors;
     auto from = evaluated.at(T(0));
     laws(evaluated, from, errors);
@@ -187,18 +187,18 @@ class Certifier {
   }
 
   /// Compares the laws along a step of a series, whose quantities are all smooth.
-  Numbers walk(const Evaluated<BySeries<T>>& evaluated) {
+  Numbers walk(const Evaluated<detail::BySeries<T>>& evaluated) {
     Errors errors;
     const auto from = evaluated.at(T(0)), to = evaluated.at(evaluated.span);
     const T known = std::max(evaluated.unsure(from), evaluated.unsure(to));
-    for (const auto& [guard, law, scale, slid] : Guards<BySeries<T>>(evaluated)) {
+    for (const auto& [guard, law, scale, slid] : Guards<detail::BySeries<T>>(evaluated)) {
       const T least = lowest(guard, T(detail::unseen_violation) * scale) +
                       (law == &Certificate<T>::force_bound ? known : slid);
       if (!(least >= 0)) worst(result_.*law, least, scale);
     }
     laws(evaluated, from, errors);
     Sums sums;
-    gauss_nodes(gauss16, T(0), evaluated.span, [&](T tau, T weight) {
+    detail::gauss_nodes(detail::gauss16, T(0), evaluated.span, [&](T tau, T weight) {
       const auto now = evaluated.at(tau);
       laws(evaluated, now, errors);
       gather(evaluated, now, weight, sums);
@@ -219,10 +219,12 @@ class Certifier {
     worst(result_.sticking, errors.sticking, scales_.v);
   }
 
-  void panel(const Closed& evaluated, const Guards<ClosedForm<T>>& guards, const ClosedState& from,
-             const ClosedState& to, bool brief, Errors& errors) {
+  void panel(const Closed& evaluated, const Guards<detail::ClosedForm<T>>& guards,
+             const ClosedState& from, const ClosedState& to, bool brief, Errors& errors) {
     const Oscillator<T>& oscillator = evaluated.segment.flow.oscillator;
-    std::array<typename PositivityBound<T>::Flatness, Guards<ClosedForm<T>>::capacity> flatness;
+    std::array<typename detail::PositivityBound<T>::Flatness,
+               Guards<detail::ClosedForm<T>>::capacity>
+        flatness;
     for (int i = 0; i < guards.size(); ++i)
       flatness[i] = guards[i].guard.flatness(oscillator, from.moment, from.tau, to.tau - from.tau);
     ClosedState before = from;
@@ -243,9 +245,9 @@ class Certifier {
       gather(evaluated, now, weight, sums);
     };
     if (brief)
-      gauss_nodes(gauss8, from.tau, to.tau, visit);
+      detail::gauss_nodes(detail::gauss8, from.tau, to.tau, visit);
     else
-      gauss_nodes(gauss16, from.tau, to.tau, visit);
+      detail::gauss_nodes(detail::gauss16, from.tau, to.tau, visit);
     follow(to);
     balance(evaluated, from, to, sums);
   }
@@ -269,7 +271,7 @@ class Certifier {
     const Path<T>&v = segment.flow.velocity, plate = segment.plate_force;
     const Path<T> v_plate = evaluated.plate_velocity;
     const auto over = [&](const Path<T>& p, const Path<T>& q) {
-      return product_integral(segment.flow.oscillator, p, q, from.tau, to.tau);
+      return detail::product_integral(segment.flow.oscillator, p, q, from.tau, to.tau);
     };
     Line<T> push = evaluated.force;
     push.value += drive_.mass * evaluated.plate_velocity.rate;
@@ -415,7 +417,7 @@ class Certifier {
     const T slope = is_slip(mode.finger) ? finger.branch(mode.finger_branch).slope : T(0);
     const T limit = finger.static_limit;
     const T follows = slope > 0 ? 1 / slope : limit > 0 ? abs(v) / limit : T(0);
-    const T known = 65 * detail::rounding<T> * time;
+    const T known = (detail::first_grip<T> + detail::rounding<T>)*time;
     return load.value <= known * (finger.stiffness * follows - load.rate);
   }
 

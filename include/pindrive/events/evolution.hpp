@@ -13,8 +13,8 @@
 #include "pindrive/law/oblique.hpp"
 #include "pindrive/law/pin.hpp"
 #include "pindrive/law/selection.hpp"
-#include "pindrive/model/limits.hpp"
 #include "pindrive/model/model.hpp"
+#include "pindrive/numbers/limits.hpp"
 
 #ifdef __OPTIMIZE_SIZE__
 #define PINDRIVE_FLAT

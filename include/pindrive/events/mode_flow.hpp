@@ -3,13 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "pindrive/flow/flow.hpp"
 #include "pindrive/law/pin.hpp"
 #include "pindrive/law/selection.hpp"
-#include "pindrive/model/limits.hpp"
 #include "pindrive/model/model.hpp"
+#include "pindrive/numbers/limits.hpp"
 
 namespace pindrive::detail {
 
@@ -43,8 +42,7 @@ Flow<T> mode_flow(const Pin<T>& pin, const SelectedMotion<T>& selected,
   Oscillator<T> oscillator = plain_oscillator;
   if (!has_plain_flow(pin)) {
     // Damping cancelled by falling friction within rounding is zero.
-    const T known = 2 * std::numeric_limits<T>::epsilon() * pin.drive.damping + plate.rounding +
-                    finger.rounding;
+    const T known = rounding<T> / 2 * pin.drive.damping + plate.rounding + finger.rounding;
     if (abs(damping) <= known) damping -= plain(damping);
     oscillator = Oscillator<T>(pin.drive.mass, damping, stiffness);
   }

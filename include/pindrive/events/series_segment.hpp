@@ -8,8 +8,8 @@
 
 #include "pindrive/law/contact_point.hpp"
 #include "pindrive/law/guards.hpp"
-#include "pindrive/model/limits.hpp"
 #include "pindrive/model/model.hpp"
+#include "pindrive/numbers/limits.hpp"
 #include "pindrive/series/series_mode.hpp"
 
 namespace pindrive::detail {
@@ -59,7 +59,7 @@ class SeriesSegment {
     const T turns = abs(equation.across.rate) + abs(equation.plate_velocity.rate);
     const T left = abs(equation.across.at(span)) + abs(equation.plate_velocity.at(span));
     stops_ = equation.held && equation.side == 0 &&
-             left <= 4 * rounding<T> * (segment.begin + span) * turns;
+             left <= difference_error<T> * (segment.begin + span) * turns;
     first_ = guards.earliest_known(step.span());
     // An immediate end may be deferred to the end of the step, as to a breakpoint.
     const T breakpoint = step.span() < span && first_ > 0 ? never : step.span();
@@ -93,7 +93,7 @@ class SeriesSegment {
   /// resolutions before a breakpoint at which the plate comes to rest in both directions: the
   /// sliding direction under a pin that is held is undetermined there.
   T earliest(T since, T breakpoint) const {
-    const T known = (stops_ ? 128 : 1) * rounding<T> * (since + breakpoint);
+    const T known = (stops_ ? before_rest<T> : rounding<T>)*(since + breakpoint);
     return breakpoint < never && breakpoint - first_ <= known ? breakpoint : first_;
   }
 

@@ -8,9 +8,9 @@
 
 #include "pindrive/events/evolution.hpp"
 #include "pindrive/law/contact_point.hpp"
-#include "pindrive/model/limits.hpp"
 #include "pindrive/model/model.hpp"
 #include "pindrive/numbers/functions.hpp"
+#include "pindrive/numbers/limits.hpp"
 
 namespace pindrive::detail {
 

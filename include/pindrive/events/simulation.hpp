@@ -1,4 +1,5 @@
-/// Simulation of one pin: segments from event to event until the motion ends. No step, no tolerance.
+/// Simulation of one pin: segments from event to event until the motion ends. There is no time step
+/// and no tolerance of integration; tolerances of rest and of cycles are in limits.hpp.
 #pragma once
 
 #include <algorithm>
@@ -6,8 +7,8 @@
 
 #include "pindrive/events/evolution.hpp"
 #include "pindrive/events/recurrence.hpp"
-#include "pindrive/model/limits.hpp"
 #include "pindrive/model/model.hpp"
+#include "pindrive/numbers/limits.hpp"
 
 namespace pindrive::detail {
 

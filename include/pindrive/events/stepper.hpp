@@ -14,6 +14,7 @@
 #include "pindrive/events/evolution.hpp"
 #include "pindrive/events/set_inputs.hpp"
 #include "pindrive/numbers/functions.hpp"
+#include "pindrive/numbers/limits.hpp"
 
 namespace pindrive {
 
@@ -264,7 +265,7 @@ class Stepper {
 
   static T far_for(const Drive<T>& drive) {
     using std::sqrt;
-    return T(1e6) * sqrt(drive.mass / drive.stiffness);
+    return T(detail::longest_segment) * sqrt(drive.mass / drive.stiffness);
   }
 
   Drive<T> drive_;

@@ -7,8 +7,9 @@
 
 #include "pindrive/flow/flow.hpp"
 #include "pindrive/numbers/dual.hpp"
+#include "pindrive/numbers/limits.hpp"
 
-namespace pindrive {
+namespace pindrive::detail {
 
 /// Derivative of a root; plain numbers have none.
 template <class T>
@@ -36,7 +37,6 @@ T root_between(const Oscillator<T>& oscillator, const Path<T>& path, T low, T hi
                T guess) {
   using std::abs;
   using std::sqrt;
-  constexpr T rounding = 2 * std::numeric_limits<T>::epsilon();
   T tau = guess > low && guess < high ? guess : low + (high - low) / 2;
   T step = high - low, step_before = step;
   for (;;) {
@@ -49,12 +49,12 @@ T root_between(const Oscillator<T>& oscillator, const Path<T>& path, T low, T hi
     const T twist = newton * newton * rates.third / (6 * rates.first);
     const bool near = abs(bend) < T(0.25) && abs(twist) < T(0.25);
     T next = tau - (near ? newton * (1 - bend) / (1 - 2 * bend + twist) : newton);
-    if (abs(newton) <= rounding * tau) return next;
+    if (abs(newton) <= root_error<T> * tau) return next;
     if (near && next > low && next < high) {
       // What such a step leaves is of third order in how far the path is from straight.
       const T curved =
           std::max({bend * bend, abs(twist), oscillator.hurry_squared() * newton * newton});
-      if (8 * curved * sqrt(curved) * abs(newton) <= rounding * tau) return next;
+      if (8 * curved * sqrt(curved) * abs(newton) <= root_error<T> * tau) return next;
     }
     // Steps that do not shrink creep through rounding: halving the bracket comes to an end.
     const bool creeps = 2 * abs(next - tau) > step_before;
@@ -93,8 +93,7 @@ Path<T> exact_at_start(const Oscillator<T>& oscillator, Path<T> path, int side) 
 template <class T>
 Path<T> exact_at_centre(Path<T> path) {
   using std::abs;
-  constexpr T rounding = 4 * std::numeric_limits<T>::epsilon();
-  if (path.straight() && abs(path.centre()) <= rounding * (abs(path.start) + abs(path.value)))
+  if (path.straight() && abs(path.centre()) <= rounding<T> * (abs(path.start) + abs(path.value)))
     path.value = path.start;
   return path;
 }
@@ -113,4 +112,4 @@ T parabola_root(Path<T> path, int side) {
   return root > 0 ? root : never;
 }
 
-}  // namespace pindrive
+}  // namespace pindrive::detail

@@ -11,7 +11,6 @@
 #pragma once
 
 #include <cmath>
-#include <limits>
 
 #include "pindrive/flow/oscillator.hpp"
 #include "pindrive/numbers/functions.hpp"

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "pindrive/numbers/functions.hpp"
+#include "pindrive/numbers/limits.hpp"
 
 namespace pindrive {
 
@@ -166,10 +167,9 @@ class Oscillator {
     using detail::log1p;
     using std::abs;
     constexpr T never = std::numeric_limits<T>::infinity();
-    constexpr T rounding = 4 * std::numeric_limits<T>::epsilon();
     const T steady = gentle() * value, apart = to_other_root(), other = steady + apart * value;
     const auto cancels = [&](T wave) {
-      return abs(wave - slope) <= rounding * (abs(wave) + abs(slope));
+      return abs(wave - slope) <= detail::rounding<T> * (abs(wave) + abs(slope));
     };
     if (cancels(steady) || cancels(other)) return never;
     const T ratio = value / (steady - slope);

@@ -8,8 +8,9 @@
 #include <limits>
 
 #include "pindrive/flow/flow.hpp"
+#include "pindrive/numbers/limits.hpp"
 
-namespace pindrive {
+namespace pindrive::detail {
 
 /// Highest order of a series. A step is then about a fifth of the radius of convergence.
 inline constexpr int series_order = 24;
@@ -70,8 +71,6 @@ struct Polynomial {
     return p;
   }
 };
-
-namespace detail {
 
 /// Bernstein coefficients on [0, 1] of a polynomial in powers. The values lie between the smallest
 /// and the largest coefficient; the first and the last are the values at the ends.
@@ -135,8 +134,6 @@ class SignIsolation {
   }
 
  private:
-  static constexpr Real narrowest = 4 * std::numeric_limits<Real>::epsilon();
-
   bool beyond(Real value) const { return side_ * value < 0; }
 
   template <class Visitor>
@@ -153,7 +150,7 @@ class SignIsolation {
     if (beyond(b[0]) && !change(left_ < low ? root(left_, low) : low, low, visit)) return false;
     int changes = 0;
     for (int i = 0; i < degree_; ++i) changes += beyond(b[i]) != beyond(b[i + 1]);
-    if (changes > 1 && width > narrowest * (low + width)) {
+    if (changes > 1 && width > rounding<Real> * (low + width)) {
       Coefficients lower, upper = b;
       halve(upper, lower, degree_);
       const Real half = width / 2;
@@ -178,7 +175,7 @@ class SignIsolation {
       const Real newton = s - sum / rate;
       const bool inside = newton > low && newton < high && tries % 4 != 3;
       const Real next = inside ? newton : low + (high - low) / 2;
-      if (std::abs(next - s) <= std::numeric_limits<Real>::epsilon() * s) return next;
+      if (std::abs(next - s) <= last_digit<Real> * s) return next;
       s = next;
     }
     return s;
@@ -188,8 +185,6 @@ class SignIsolation {
   int degree_, side_;
   Real left_{0};
 };
-
-}  // namespace detail
 
 /// Calls visit(τ) at each sign change of a polynomial in (0, span], in order, until visit returns
 /// false. `side` is the sign just after τ = 0: a start at zero, or beyond zero by rounding, belongs
@@ -203,7 +198,7 @@ void sign_changes(const Polynomial<T>& p, int side, Visitor&& visit) {
   while (zeros <= p.degree && plain(p.c[zeros]) == 0) ++zeros;
   if (zeros > p.degree) return;
   for (int n = zeros; n <= p.degree; ++n) powers[n - zeros] = plain(p.c[n]);
-  detail::SignIsolation<Real>(powers, p.degree - zeros, side).each([&](Real s) {
+  SignIsolation<Real>(powers, p.degree - zeros, side).each([&](Real s) {
     // A zero moves so that the polynomial stays zero; of plain numbers there is nothing to say.
     const T root = s * p.span, value = p.at(root);
     const Real rate = plain(p.derivative().at(root));
@@ -215,13 +210,13 @@ void sign_changes(const Polynomial<T>& p, int side, Visitor&& visit) {
 /// minimum is no lower below zero than this value or `unseen`.
 template <class T>
 T lowest(const Polynomial<T>& p, T unseen) {
-  return detail::lowest(detail::bernstein(p.c, p.degree), p.degree, unseen, 40);
+  return lowest(bernstein(p.c, p.degree), p.degree, unseen, 40);
 }
 
 /// Bound of the absolute value over the span, from the Bernstein coefficients.
 template <class T>
 T largest_size(const Polynomial<T>& p) {
-  const auto b = detail::bernstein(p.c, p.degree);
+  const auto b = bernstein(p.c, p.degree);
   T most{0};
   for (int n = 0; n <= p.degree; ++n) most = std::max(most, std::abs(b[n]));
   return most;
@@ -239,4 +234,4 @@ T first_zero(const Polynomial<T>& guard) {
   return first;
 }
 
-}  // namespace pindrive
+}  // namespace pindrive::detail

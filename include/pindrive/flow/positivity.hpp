@@ -7,7 +7,7 @@
 
 #include "pindrive/flow/flow.hpp"
 
-namespace pindrive {
+namespace pindrive::detail {
 
 /// Quantity that must stay positive along a mode: distance of a speed from the end of its branch,
 /// margin to the stick limit.
@@ -37,7 +37,6 @@ class PositivityBound {
   /// one.
   Flatness flatness(const Oscillator<T>& oscillator, const Propagator<T>& moved, T from,
                     T length) const {
-    using detail::exp;
     using std::abs;
     using std::sqrt;
     if (!path_.oscillates()) return {};
@@ -99,4 +98,4 @@ class PositivityBound {
   Path<T> path_{}, rate_{};
 };
 
-}  // namespace pindrive
+}  // namespace pindrive::detail

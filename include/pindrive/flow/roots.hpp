@@ -11,8 +11,9 @@
 
 #include "pindrive/flow/bracket.hpp"
 #include "pindrive/flow/flow.hpp"
+#include "pindrive/numbers/limits.hpp"
 
-namespace pindrive {
+namespace pindrive::detail {
 
 /// Sign changes of a path in (0, horizon], one by one; infinity after the last. Degree 1: an
 /// oscillation with a constant; 2: with a line too (finite horizon).
@@ -86,7 +87,6 @@ class Roots {
 
   /// Last extremum of a growing oscillation that turns back before zero.
   T skip_short_swings(T value) {
-    using detail::log;
     using std::abs;
     using std::floor;
     const T growth = 2 * oscillator_.alpha() * extrema_.spacing();  // in a period
@@ -152,8 +152,6 @@ class Roots<T, 0> {
 /// growing oscillation gets half of the distance, the line the second half.
 template <class T>
 T out_of_reach(const Oscillator<T>& oscillator, const Path<T>& path, int side) {
-  using detail::hypot;
-  using detail::log1p;
   constexpr T never = std::numeric_limits<T>::infinity();
   const T alpha = oscillator.alpha();
   const T reach = hypot(path.value, (path.slope - alpha * path.value) / oscillator.omega());
@@ -241,14 +239,14 @@ T first_root(const Oscillator<T>& oscillator, const Path<T>& path, int side, T h
 template <class T>
 int side_after_start(const Oscillator<T>& oscillator, const Path<T>& path) {
   using std::abs;
-  constexpr T rounding = 4 * std::numeric_limits<T>::epsilon();
   const auto sign = [](T value) { return value > 0 ? 1 : value < 0 ? -1 : 0; };
   if (path.start != 0) return sign(path.start);
   if (path.slope + path.drift != 0) return sign(path.slope + path.drift);
   const T pulled = oscillator.bend(path.value, T(0)), damped = oscillator.bend(T(0), path.slope);
   const T bend = pulled + damped + path.curvature;
-  if (abs(bend) > rounding * (abs(pulled) + abs(damped) + abs(path.curvature))) return sign(bend);
+  if (abs(bend) > rounding<T> * (abs(pulled) + abs(damped) + abs(path.curvature)))
+    return sign(bend);
   return sign(oscillator.bend(path.slope, -path.curvature));
 }
 
-}  // namespace pindrive
+}  // namespace pindrive::detail

@@ -18,7 +18,7 @@
 #pragma once
 
 #include "pindrive/kernel/kernel_progress.hpp"
-#include "pindrive/model/limits.hpp"
+#include "pindrive/numbers/limits.hpp"
 
 namespace pindrive::detail {
 inline namespace PINDRIVE_TARGET {

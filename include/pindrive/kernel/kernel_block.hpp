@@ -126,7 +126,8 @@ class PackRound {
         column += KernelBlock::stride;
       });
     } else if constexpr (Measured) {
-      if (knows_rest) progress.settling = Settling<V>(in(block.rest, slots) * release_.mirror);
+      if (knows_rest)
+        progress.settling = KernelSettling<V>(in(block.rest, slots) * release_.mirror);
     }
     round_.to_first_rest();
   }

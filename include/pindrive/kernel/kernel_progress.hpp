@@ -38,7 +38,7 @@ template <class V>
 struct Progress<V, true> {
   Standing<V> standing;
   TransientNumbers<V> numbers;
-  Settling<V> settling;
+  KernelSettling<V> settling;
   explicit Progress(const ForwardRelease<V>& r) : standing(r), numbers(r) {}
   template <class F>
   void columns(const F& f) {
@@ -46,8 +46,9 @@ struct Progress<V, true> {
     numbers.columns(f);
     settling.columns(f);
   }
-  static constexpr int column_count =
-      Standing<V>::column_count + TransientNumbers<V>::column_count + Settling<V>::column_count;
+  static constexpr int column_count = Standing<V>::column_count +
+                                      TransientNumbers<V>::column_count +
+                                      KernelSettling<V>::column_count;
 };
 
 }  // namespace PINDRIVE_TARGET

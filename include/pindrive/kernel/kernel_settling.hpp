@@ -24,12 +24,12 @@ struct LastTurns {
 };
 
 template <class V>
-class Settling {
+class KernelSettling {
  public:
   using Mask = MaskOf<V>;
 
   /// Starts with a known place of rest, or NaN.
-  explicit Settling(const V& known_rest = V(__builtin_nan(""))) : rest_(known_rest) {}
+  explicit KernelSettling(const V& known_rest = V(__builtin_nan(""))) : rest_(known_rest) {}
 
   /// Calls f with all members that later stretches need.
   template <class F>

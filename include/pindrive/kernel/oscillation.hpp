@@ -2,8 +2,8 @@
 /// points, extreme velocities and given velocities for the kernel.
 #pragma once
 
-#include "pindrive/model/limits.hpp"
 #include "pindrive/numbers/elementary.hpp"
+#include "pindrive/numbers/limits.hpp"
 
 namespace pindrive::detail {
 inline namespace PINDRIVE_TARGET {
@@ -53,7 +53,7 @@ PastTurn<V> past_turn(const V& part, const V& rho) {
     const V rest = change * (third * V(0.5) + change * fourth * V(1.0 / 6));
     last_slope = select(open, slope + change * (bend + rest), last_slope);
     angle = select(open, next, angle);
-    open = open & !(absolute(change) <= V(1e-4) * smaller(next, pi - next));
+    open = open & !(absolute(change) <= V(last_change) * smaller(next, pi - next));
   }
   return {select(zero < lack, angle, zero), last_slope};
 }

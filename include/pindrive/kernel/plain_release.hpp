@@ -2,7 +2,7 @@
 #pragma once
 
 #include "pindrive/kernel/oscillation.hpp"
-#include "pindrive/model/limits.hpp"
+#include "pindrive/numbers/limits.hpp"
 
 namespace pindrive::detail {
 inline namespace PINDRIVE_TARGET {

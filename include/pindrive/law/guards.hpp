@@ -8,7 +8,7 @@
 
 #include "pindrive/flow/roots.hpp"
 #include "pindrive/law/contact_point.hpp"
-#include "pindrive/model/limits.hpp"
+#include "pindrive/numbers/limits.hpp"
 
 namespace pindrive::detail {
 

@@ -2,14 +2,13 @@
 #pragma once
 
 #include <cmath>
-#include <limits>
 
 #include "pindrive/flow/flow.hpp"
 #include "pindrive/law/contact_mode.hpp"
 #include "pindrive/law/state.hpp"
 #include "pindrive/model/input_lines.hpp"
-#include "pindrive/model/limits.hpp"
 #include "pindrive/model/model.hpp"
+#include "pindrive/numbers/limits.hpp"
 
 namespace pindrive::detail {
 
@@ -33,7 +32,7 @@ T departure_acceleration(T mass, T friction, T across_rate, T pull) {
     // A change of sign is an overshoot.
     const T kept = next * t < 0 ? t / 64 : next;
     const bool done = converged;
-    converged = abs(kept - t) <= 2 * std::numeric_limits<detail::Real<T>>::epsilon() * abs(t);
+    converged = abs(kept - t) <= root_error<Real<T>> * abs(t);
     t = kept;
     if (done) break;
   }
@@ -151,7 +150,7 @@ void end_oblique_slip(State<T>& state, Point& plate, bool on_finger, T across, T
   if (!plate.oblique() || plate.across.value != 0) return;
   const T changes = plate.load.value * plate.start.friction / mass + abs(plate.surface.rate);
   const T crept = abs(across) + rounding<T> * (abs(state.v) + abs(plate.surface.value)) +
-                  4 * rounding<T> * time * changes;
+                  difference_error<T> * time * changes;
   if (abs(state.v - plate.surface.value) > crept) return;
   if (on_finger)
     plate.surface.value = state.v;

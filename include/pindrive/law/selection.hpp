@@ -8,8 +8,8 @@
 #include "pindrive/law/oblique.hpp"
 #include "pindrive/law/pin.hpp"
 #include "pindrive/law/state.hpp"
-#include "pindrive/model/limits.hpp"
 #include "pindrive/model/model.hpp"
+#include "pindrive/numbers/limits.hpp"
 
 namespace pindrive::detail {
 

@@ -7,8 +7,8 @@
 #include "pindrive/law/contact_mode.hpp"
 #include "pindrive/law/slider.hpp"
 #include "pindrive/law/state.hpp"
-#include "pindrive/model/limits.hpp"
 #include "pindrive/model/model.hpp"
+#include "pindrive/numbers/limits.hpp"
 
 namespace pindrive::detail {
 
@@ -165,7 +165,7 @@ class SliderCandidates {
     // A slider without its own velocity follows a jump of the pin velocity.
     const T jumps = guard == ActiveGuard::upper ? speed - range.to : range.from - speed;
     must_jump_ = !own_speed && came_to == ActiveGuard::none && guard != ActiveGuard::none &&
-                 jumps > 2 * rounding<T> * (range.from + (speed < 0 ? -speed : speed));
+                 jumps > branch_end_error<T> * (range.from + (speed < 0 ? -speed : speed));
     start_.keeps_speed = !own_speed && !must_jump_;
     start_.slider_speed = guard == ActiveGuard::none    ? speed
                           : guard == ActiveGuard::upper ? range.to

@@ -11,8 +11,8 @@
 #include <limits>
 
 #include "pindrive/law/state.hpp"
-#include "pindrive/model/limits.hpp"
 #include "pindrive/model/model.hpp"
+#include "pindrive/numbers/limits.hpp"
 
 namespace pindrive::detail {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pindrive/model/limits.hpp"
 #include "pindrive/model/model.hpp"
+#include "pindrive/numbers/limits.hpp"
 
 namespace pindrive {
 
@@ -50,10 +50,12 @@ struct InputLines {
     const T rest = std::min(inputs.across_velocity.next_breakpoint(time),
                             inputs.mouse_velocity.next_breakpoint(time)) -
                    time;
-    const T known = detail::rounding<T> * time * (abs(line.rate) + abs(along.rate));
-    if (held && along.rate != 0 && abs(line.at(rest)) + abs(along.at(rest)) <= 4 * known)
+    const T changes = time * (abs(line.rate) + abs(along.rate));
+    if (held && along.rate != 0 &&
+        abs(line.at(rest)) + abs(along.at(rest)) <= detail::difference_error<T> * changes)
       return {-line.rate * rest, line.rate};
-    if (abs(line.value) <= 64 * (known + detail::rounding<T> * abs(along.value))) line.value = T(0);
+    if (abs(line.value) <= detail::least_across<T> * (changes + abs(along.value)))
+      line.value = T(0);
     return line;
   }
 };

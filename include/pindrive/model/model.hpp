@@ -7,7 +7,7 @@
 #include <type_traits>
 
 #include "pindrive/flow/flow.hpp"
-#include "pindrive/model/limits.hpp"
+#include "pindrive/numbers/limits.hpp"
 
 namespace pindrive {
 
@@ -36,14 +36,14 @@ int branches_of(const T* speeds, const T* forces, int count, Branch<T>* branches
   using std::abs;
   if (count < 2) return 0;
   constexpr T never = std::numeric_limits<T>::infinity();
-  constexpr T unit = 2 * std::numeric_limits<T>::epsilon();
+  constexpr T half = detail::rounding<T> / 2;  // a force is rounded once
   int made = 0;
   for (int i = 0; i + 1 < count; ++i) {
     const T width = speeds[i + 1] - speeds[i];
     T slope = (forces[i + 1] - forces[i]) / width;
     const T rounding =
-        unit * (forces[i] + forces[i + 1] + abs(slope) * (speeds[i] + speeds[i + 1])) / width;
-    if (abs(slope) <= unit * (forces[i] + forces[i + 1]) / width) slope -= plain(slope);
+        half * (forces[i] + forces[i + 1] + abs(slope) * (speeds[i] + speeds[i + 1])) / width;
+    if (abs(slope) <= half * (forces[i] + forces[i + 1]) / width) slope -= plain(slope);
     const bool bends =
         made == 0 || abs(slope - branches[made - 1].slope) > rounding + branches[made - 1].rounding;
     if (bends) branches[made++] = {speeds[i], never, forces[i], slope, rounding};

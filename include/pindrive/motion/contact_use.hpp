@@ -33,6 +33,8 @@ struct ContactsUse {
   T peak_stretch_rate{std::numeric_limits<T>::quiet_NaN()};  ///< m/s
 };
 
+namespace detail {
+
 /// Measures the use of the contacts of a motion, which outlives the measurement.
 template <class T, class GoOn = Unattended>
 class ContactMeasurement {
@@ -110,7 +112,6 @@ class ContactMeasurement {
     const auto lines = InputLines<T>::of(drive, motion_.inputs(), segment);
     const auto speed = [&](T tau) {
       const T u = along.at(along.velocity(), tau) - lines.plate_velocity.at(tau);
-      using detail::hypot;
       return hypot(u, lines.across_velocity.at(tau));
     };
     result.plate.distance_slid += times * gauss<T>(speed, from, to);
@@ -171,5 +172,7 @@ class ContactMeasurement {
   const Motion<T>& motion_;
   GoOn go_on_;
 };
+
+}  // namespace detail
 
 }  // namespace pindrive

@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
 #include "pindrive/flow/roots.hpp"
-#include "pindrive/model/limits.hpp"
 #include "pindrive/motion/motion.hpp"
+#include "pindrive/numbers/limits.hpp"
 
 namespace pindrive {
 
@@ -101,7 +100,7 @@ void extrema(const Motion<T>& motion, Quantity quantity, T until, Visitor&& visi
     const T forces =
         drive.stiffness * abs(flow.position.start) + drive.damping * abs(flow.velocity.start);
     const T terms = abs(value) + abs(end) + forces / drive.mass;
-    return abs(value - end) > 8 * detail::rounding<T> * terms;
+    return abs(value - end) > detail::end_error<T> * terms;
   };
   motion.expanded(T(0), until, [&](const Segment<T>& segment, T begin, T span) {
     return motion.along(segment, [&](const auto& along) {

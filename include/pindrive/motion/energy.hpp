@@ -60,6 +60,8 @@ inline constexpr NamedNumber<T, Ledger<T>> ledger_numbers[] = {
     {"residual", [](const Ledger<T>& l) { return l.residual(); }},
 };
 
+namespace detail {
+
 /// Energy dissipated by the end stops in a stretch of a segment with known ∫ v² dτ, and at its end,
 /// J.
 template <class Trajectory, class T>
@@ -77,6 +79,8 @@ T lost_at_stop(const Motion<T>& motion, const Trajectory& along, const Segment<T
   const auto energy = [&](T tau) { return motion.stop_energy(along.at(along.position(), tau)); };
   return segment.mode.stop == StopState::apart ? T(0) : energy(from) - energy(to);
 }
+
+}  // namespace detail
 
 /// Computes the energy ledger of a motion over [0, duration].
 template <class T, class GoOn = Unattended>
@@ -120,14 +124,15 @@ Ledger<T> energy_ledger(const Motion<T>& motion, T duration, GoOn go_on = {}) {
         largest += std::max(abs(push.at(from)), abs(push.at(to)));
       }
       ledger.stop_dissipated +=
-          times * lost_at_stop(motion, along, segment, from, to, v_squared / times);
+          times * detail::lost_at_stop(motion, along, segment, from, to, v_squared / times);
       // What goes in and comes out again within a segment leaves its rounding in their sum: by Schwarz's
       // inequality no part of it is larger.
       ledger.exchanged += abs(plate_work) + largest * sqrt((to - from) * times * v_squared);
     });
     return go_on();
   });
-  const ContactsUse<T> used = ContactMeasurement<T, GoOn>(motion, go_on).measure(T(0), duration);
+  const ContactsUse<T> used =
+      detail::ContactMeasurement<T, GoOn>(motion, go_on).measure(T(0), duration);
   ledger.plate_work += used.across_dissipated;
   ledger.plate_dissipated = used.plate.dissipated;
   ledger.finger_dissipated = used.finger.dissipated;

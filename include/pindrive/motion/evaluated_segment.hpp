@@ -7,9 +7,9 @@
 #include <type_traits>
 #include <utility>
 
-#include "pindrive/model/limits.hpp"
 #include "pindrive/motion/motion.hpp"
 #include "pindrive/numbers/functions.hpp"
+#include "pindrive/numbers/limits.hpp"
 
 namespace pindrive::detail {
 
@@ -131,7 +131,7 @@ class EvaluatedSegment {
   /// within the time resolution, N.
   T lifted_unsure() const {
     if (!drive.finger.compliant() || finger_load.rate == 0 || !(span > 0)) return T(0);
-    return 256 * rounding<T> * scales.force * (segment.begin + span) / span;
+    return unloaded_stretch<T> * scales.force * (segment.begin + span) / span;
   }
   /// Error of the slider speed under a changing load, m/s: from the time resolution and from the
   /// error of the force.
@@ -150,7 +150,7 @@ class EvaluatedSegment {
     const T moves = scales.v + time * (abs(s.a) + abs(plate_velocity.rate));
     if (!(speed > 0)) return T(0);
     const T turns = w / speed;
-    return 4 * rounding<T> * moves * strength * turns * turns / speed;
+    return difference_error<T> * moves * strength * turns * turns / speed;
   }
 
   T unsure_slider() const {

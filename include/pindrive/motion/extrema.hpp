@@ -7,14 +7,13 @@
 #include "pindrive/model/model.hpp"
 #include "pindrive/motion/trajectory.hpp"
 
-namespace pindrive {
+namespace pindrive::detail {
 
 /// Calls visit(τ, value) at the turning points of an oscillation without drift between two times.
 /// Times and values are computed from its start; at `from` a decayed oscillation may have fewer
 /// digits.
 template <class T, class Visitor>
 void turns(const Oscillator<T>& oscillator, const Path<T>& path, T from, T to, Visitor& visit) {
-  using detail::exp;
   using std::floor;
   const Path<T> slope = path.derivative(oscillator);
   const int side = side_after_start(oscillator, slope);
@@ -83,4 +82,4 @@ void highest_and_lowest(const BySeries<T>& along, const Polynomial<T>& path, T f
   extrema(along, path, from, to, visit);
 }
 
-}  // namespace pindrive
+}  // namespace pindrive::detail

@@ -15,14 +15,14 @@ namespace pindrive {
 enum class Side : signed char { left, right };
 
 /// Calls visit with the trajectory of a segment whose inputs are linear from its begin on: a
-/// ClosedForm, else a BySeries. Returns the result of visit.
+/// `detail::ClosedForm`, else a `detail::BySeries`. Returns the result of visit.
 template <class T, class Visitor>
 auto visit_trajectory(const Drive<T>& drive, const Segment<T>& segment, const InputLines<T>& lines,
                       Visitor&& visit) {
   if (!(segment.end > segment.begin) || segment.eliminated == EliminatedPart::motion ||
       detail::SeriesMode<T>(drive, segment.mode, lines).has_closed_form())
-    return visit(ClosedForm<T>(segment));
-  return visit(BySeries<T>(drive, segment, lines));
+    return visit(detail::ClosedForm<T>(segment));
+  return visit(detail::BySeries<T>(drive, segment, lines));
 }
 
 /// Friction of each contact on the pin, N.
@@ -119,7 +119,7 @@ class Motion {
     const bool bilinear = (drive_.plate.branches > 0 && !inputs_.plate_load.constant()) ||
                           (drive_.finger.branches > 0 && !inputs_.finger_load.constant());
     if (!bilinear && !drive_.finger.may_lag() && segment.mode.plate != ContactState::slip_oblique)
-      return visit(ClosedForm<T>(segment));
+      return visit(detail::ClosedForm<T>(segment));
     return visit_trajectory(drive_, segment, InputLines<T>::of(drive_, inputs_, segment), visit);
   }
 

@@ -9,6 +9,7 @@
 #include <iterator>
 
 #include "pindrive/motion/motion.hpp"
+#include "pindrive/numbers/limits.hpp"
 
 namespace pindrive::detail {
 
@@ -26,7 +27,7 @@ class PeriodSamples {
     for (int i = 0; i < samples; ++i) last_[static_cast<std::size_t>(i)] = position(time(i));
     const auto [low, high] = std::minmax_element(last_.begin(), last_.end());
     amplitude_ = (*high - *low) / 2;
-    rounding_ = 4 * rounding<T> * std::max(-*low, *high);
+    rounding_ = difference_error<T> * std::max(-*low, *high);
   }
 
   /// Largest difference from a time on, as a part of the amplitude.

@@ -8,7 +8,7 @@
 #include "pindrive/flow/flow.hpp"
 #include "pindrive/model/model.hpp"
 
-namespace pindrive {
+namespace pindrive::detail {
 
 /// Positive nodes and weights of a Gauss–Legendre rule on [−1, 1].
 template <std::size_t Half>
@@ -74,9 +74,6 @@ T panels(const Oscillator<T>& oscillator, T to, Function&& f) {
 /// ∫₀^to p q for two quantities of a mode, each a line plus an oscillation.
 template <class T>
 T product_integral(const Oscillator<T>& oscillator, const Path<T>& p, const Path<T>& q, T to) {
-  using detail::exp;
-  using detail::expm1;
-  using detail::sine_and_cosine_of;
   const T alpha = oscillator.alpha(), omega = oscillator.omega();
   const auto product = [&](T tau) { return p.at(oscillator, tau) * q.at(oscillator, tau); };
   if (!p.oscillates() && !q.oscillates()) return gauss<T>(product, T(0), to);  // a polynomial
@@ -123,4 +120,4 @@ T product_integral(const Oscillator<T>& oscillator, const Path<T>& p, const Path
   return product_integral(oscillator, p, q, to);
 }
 
-}  // namespace pindrive
+}  // namespace pindrive::detail

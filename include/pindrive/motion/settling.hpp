@@ -10,7 +10,7 @@
 #include "pindrive/motion/extrema.hpp"
 #include "pindrive/motion/motion.hpp"
 
-namespace pindrive {
+namespace pindrive::detail {
 
 /// True if a pin slides on a finger at rest, and therefore does not turn back.
 template <class T>
@@ -36,7 +36,7 @@ class Settling {
       size = std::max(size, abs(segment.flow.position.start));
     // What turns at the edge of the band to its error stays within.
     const bool by_criterion = std::prev(motion_.end())->eliminated == EliminatedPart::motion;
-    const T part = by_criterion ? T(detail::band_error_at_rest) : detail::band_error<T>;
+    const T part = by_criterion ? T(band_error_at_rest) : band_error<T>;
     const T error = part * size;
     const bool returns = !(abs(way) > error);  // to where it began: the band has no width
     const bool rests = motion_.outcome().end == End::resting;
@@ -124,7 +124,6 @@ class Settling {
     if (turns.first < never) follow_to(turns.first, x.at(oscillator, turns.first));
     if (turns.spacing < never && abs(before) > width) {
       // The extrema of a free decay shrink by one factor, so the last one outside is known.
-      using detail::log;
       using std::floor;
       const T count = floor(log(abs(before) / width) / (-oscillator.alpha() * turns.spacing));
       low = turns.first + count * turns.spacing;
@@ -169,4 +168,4 @@ class Settling {
   GoOn go_on_;
 };
 
-}  // namespace pindrive
+}  // namespace pindrive::detail

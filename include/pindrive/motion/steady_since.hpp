@@ -6,10 +6,10 @@
 #include <iterator>
 #include <limits>
 
-#include "pindrive/model/limits.hpp"
 #include "pindrive/model/model.hpp"
 #include "pindrive/motion/motion.hpp"
 #include "pindrive/motion/steady_numbers.hpp"
+#include "pindrive/numbers/limits.hpp"
 
 namespace pindrive {
 

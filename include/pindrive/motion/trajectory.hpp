@@ -17,6 +17,8 @@ namespace pindrive {
 /// Quantity of a motion.
 enum class Quantity : signed char { position, velocity, acceleration };
 
+namespace detail {
+
 /// Quantity along a segment, by its name.
 template <class Trajectory>
 std::decay_t<decltype(std::declval<Trajectory>().position())> quantity_of(const Trajectory& t,
@@ -68,15 +70,15 @@ class ClosedForm {
   T hurry_squared() const { return oscillator().hurry_squared(); }
 
   int side_after_start(const Path<T>& path) const {
-    return pindrive::side_after_start(oscillator(), path);
+    return detail::side_after_start(oscillator(), path);
   }
   /// Calls visit(τ) at each sign change in (0, horizon], until visit returns false.
   template <class Visitor>
   void each_root(const Path<T>& path, int side, T horizon, Visitor&& visit) const {
-    pindrive::each_root(oscillator(), path, side, horizon, visit);
+    detail::each_root(oscillator(), path, side, horizon, visit);
   }
   T product_integral(const Path<T>& p, const Path<T>& q, T from, T to) const {
-    return pindrive::product_integral(oscillator(), p, q, from, to);
+    return detail::product_integral(oscillator(), p, q, from, to);
   }
 
  private:
@@ -154,29 +156,28 @@ class BySeries {
   }
 
  private:
-  static detail::SeriesStep<T> expand(const Drive<T>& drive, const Segment<T>& segment,
-                                      const InputLines<T>& lines) {
-    const detail::SeriesMode<T> mode(drive, segment.mode, lines);
+  static SeriesStep<T> expand(const Drive<T>& drive, const Segment<T>& segment,
+                              const InputLines<T>& lines) {
+    const SeriesMode<T> mode(drive, segment.mode, lines);
     const Path<T>& v = segment.flow.velocity;
     const Path<T>& of_finger = segment.finger_force;
     // The slider velocity of a finger is the pin velocity minus the stretch rate.
     const T skin = mode.has_slider_state() ? v.start + of_finger.drift / drive.finger.stiffness
                                            : -of_finger.start;
-    const detail::SeriesState<T> start{segment.flow.position.start, v.start, skin, v.drift};
+    const SeriesState<T> start{segment.flow.position.start, v.start, skin, v.drift};
     const T span = segment.end - segment.begin;
-    const detail::SeriesEquation<T> e = mode.equation();
+    const SeriesEquation<T> e = mode.equation();
     if (segment.eliminated == EliminatedPart::of_slider)
-      if (const detail::SlowSliderFlow<T> slow(e, start, span, true); slow.is_valid()) return slow;
+      if (const SlowSliderFlow<T> slow(e, start, span, true); slow.is_valid()) return slow;
     if (segment.eliminated == EliminatedPart::of_friction)
       for (const bool within_step : {true, false})
-        if (const detail::CreepFlow<T> creep(e, start, span, within_step); creep.is_valid())
-          return creep;
-    return detail::SeriesFlow<T>(e, start, span, true);
+        if (const CreepFlow<T> creep(e, start, span, within_step); creep.is_valid()) return creep;
+    return SeriesFlow<T>(e, start, span, true);
   }
   /// Friction of a rigid finger, or of slipping skin.
   Polynomial<T> of_finger(const Drive<T>& drive, const Mode& mode, const Line<T>& load) const {
     const Branch<T> branch = drive.finger.branch(mode.finger_branch);
-    const bool has_slider_state = detail::SeriesMode<T>(drive, mode, {}).has_slider_state();
+    const bool has_slider_state = SeriesMode<T>(drive, mode, {}).has_slider_state();
     Polynomial<T> force = Line<T>{-branch.slope * load.value, -branch.slope * load.rate} *
                           (has_slider_state ? step_.skin : step_.velocity);
     const T at_rest = -along(mode.finger, branch.force - branch.slope * branch.from);
@@ -184,8 +185,10 @@ class BySeries {
     return force;
   }
 
-  detail::SeriesStep<T> step_;
+  SeriesStep<T> step_;
   Polynomial<T> plate_force_, finger_force_;
 };
+
+}  // namespace detail
 
 }  // namespace pindrive

@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "pindrive/flow/roots.hpp"
-#include "pindrive/model/limits.hpp"
 #include "pindrive/motion/contact_use.hpp"
 #include "pindrive/motion/extrema.hpp"
 #include "pindrive/motion/motion.hpp"
@@ -15,6 +14,7 @@
 #include "pindrive/motion/steady_numbers.hpp"
 #include "pindrive/motion/steady_since.hpp"
 #include "pindrive/motion/transient_numbers.hpp"
+#include "pindrive/numbers/limits.hpp"
 
 namespace pindrive {
 
@@ -74,7 +74,7 @@ class Measurement {
       result.settling_time = settling().within(result.end_position, band);
   }
 
-  Settling<T, GoOn> settling() const { return {motion_, duration_, go_on_}; }
+  detail::Settling<T, GoOn> settling() const { return {motion_, duration_, go_on_}; }
 
   T length(const Segment<T>& segment) const {
     return std::min(segment.end, duration_) - segment.begin;
@@ -99,7 +99,7 @@ class Measurement {
       if (direction * start < 0 || (direction != 0 && start == 0))
         if (!visit(segment.begin, segment.flow.position.start)) return;
       direction = start;
-      if (direction == 0 || !may_turn(segment)) continue;
+      if (direction == 0 || !detail::may_turn(segment)) continue;
       // A velocity of zero that ends the segment belongs to the next one.
       const Segment<T>* following = &segment + 1;
       const bool turns_at_end = following != motion_.end() && following->flow.velocity.start == 0;
@@ -165,7 +165,7 @@ class Measurement {
         result.return_velocity_time = segment.begin + tau;
       };
       motion_.along(segment, [&](const auto& along) {
-        highest_and_lowest(along, along.velocity(), from, to, compare);
+        detail::highest_and_lowest(along, along.velocity(), from, to, compare);
       });
     }
   }
@@ -214,7 +214,7 @@ class Measurement {
     if (outcome.end == End::decaying) end = result.last_event_time;
     if (outcome.steady()) end = result.steady_since;
     result.end_time = std::min({end, duration_, motion_.known_until()});
-    const ContactMeasurement<T, GoOn> measurement(motion_, go_on_);
+    const detail::ContactMeasurement<T, GoOn> measurement(motion_, go_on_);
     const ContactsUse<T> used = measurement.measure(T(0), result.end_time);
     result.plate = used.plate;
     result.finger = used.finger;
@@ -236,7 +236,7 @@ class Measurement {
     const Drive<T>& drive = motion_.drive();
     const Segment<T>& last = *std::prev(motion_.end());
     if (outcome.steady()) {
-      const ContactMeasurement<T, GoOn> measurement(motion_, go_on_);
+      const detail::ContactMeasurement<T, GoOn> measurement(motion_, go_on_);
       const T begin = outcome.cycles() ? outcome.cycle_begin : last.begin;
       const ContactsUse<T> period = measurement.measure(begin, begin + outcome.period);
       result.plate_afterwards.add(period.plate, outcome.period);

@@ -16,7 +16,7 @@
 #include <cmath>
 #include <limits>
 
-#include "pindrive/model/limits.hpp"
+#include "pindrive/numbers/limits.hpp"
 #include "pindrive/series/series.hpp"
 #include "pindrive/series/slow_slider.hpp"
 
@@ -55,7 +55,8 @@ class CreepFlow : public SeriesStep<T> {
       // The iteration contracts.
       const Real v = plain(e.plate_velocity.value + e.across.value * t_), off = plain(start.v) - v;
       if (!within_step && round > 0 &&
-          abs(off) > 4 * abs(v - before) + 64 * unit * (abs(v) + abs(off)) + unsure(e, start))
+          abs(off) >
+              4 * abs(v - before) + direction_error<Real> * (abs(v) + abs(off)) + unsure(e, start))
         return;
       before = v;
       // The first iteration computes a and its rate, enough to decide about convergence.
@@ -65,7 +66,7 @@ class CreepFlow : public SeriesStep<T> {
       Real part = within_step ? left : std::min(this->suggested_part(), left);
       const bool converged = converged_;
       const Real changed = change(part);
-      converged_ = changed <= unit * this->size_of(plate_force, part) / plain(e.mass);
+      converged_ = changed <= last_digit<Real> * this->size_of(plate_force, part) / plain(e.mass);
       if (!within_step && round > 2 && !converged_ && changed > last / 2) return;  // no convergence
       last = changed;
       if (within_step && changed < least) {
@@ -93,7 +94,7 @@ class CreepFlow : public SeriesStep<T> {
   bool is_valid() const { return holds_; }
 
  private:
-  using SeriesStep<T>::N, SeriesStep<T>::unit, SeriesStep<T>::beyond, SeriesStep<T>::sums_of;
+  using SeriesStep<T>::N, SeriesStep<T>::beyond, SeriesStep<T>::sums_of;
   using typename SeriesStep<T>::Sums;
 
   Polynomial<T>& inner(int i) { return this->inner_[i]; }  // t, √(1 + t²), t/√(1 + t²)
@@ -113,7 +114,7 @@ class CreepFlow : public SeriesStep<T> {
       const T slope = e.plate_force / (root * root * root) + linear;
       const T missing = needed - direct - linear * t, move = missing / slope;
       const bool balanced =
-          abs(missing) <= 4 * unit * (abs(needed) + abs(direct) + abs(linear * t));
+          abs(missing) <= rounding<Real> * (abs(needed) + abs(direct) + abs(linear * t));
       const T most = 1 + abs(t);  // a longer move overshoots near the friction limit
       t += move > most ? most : move < -most ? -most : move;
       if (!(slope > 0 && abs(t) < Real(detail::steepest_creep)))
@@ -247,13 +248,13 @@ class CreepFlow : public SeriesStep<T> {
     speed_bound = v_bound + most_w * root;
     return v_bound <= rounding_of(v) && (K == 0 || skin_bound <= rounding_of(sums_of(skin.c)));
   }
-  static Real rounding_of(const Sums& sums) { return 8 * unit * sums[0]; }
+  static Real rounding_of(const Sums& sums) { return eliminated_error<Real> * sums[0]; }
 
   /// True if the pin has the velocity of creep: a deviation within rounding decays at once.
   bool starts_from(const SeriesEquation<T>& e, const SeriesState<T>& start) const {
     using std::abs;
     return abs(plain(start.v - velocity.c[0])) <=
-           16 * unit * sums_of(velocity.c)[0] + unsure(e, start);
+           difference_error<Real> * sums_of(velocity.c)[0] + unsure(e, start);
   }
   /// Error of the creep velocity from the rounding of forces and time: large near the friction
   /// limit, but limited to a small part of the velocity.
@@ -265,10 +266,11 @@ class CreepFlow : public SeriesStep<T> {
                        abs(plain(e.skin_factor.value) * plain(start.skin));
     const Real changes = abs(plain(e.plate_velocity.rate)) + abs(plain(e.across.rate * t_));
     const Real root = detail::hypot(Real(1), plain(t_));
-    const Real by_forces =
-        16 * unit * sizes * plain(e.across.value) / (plain(e.load.value) * plain(e.plate_force));
-    const Real here = std::min(by_forces * root * root * root, 4096 * unit * abs(plain(start.v)));
-    return std::max(by_forces, here) + 4 * unit * plain(start.time) * changes;
+    const Real by_forces = difference_error<Real> * sizes * plain(e.across.value) /
+                           (plain(e.load.value) * plain(e.plate_force));
+    const Real here =
+        std::min(by_forces * root * root * root, creep_error<Real> * abs(plain(start.v)));
+    return std::max(by_forces, here) + rounding<Real> * plain(start.time) * changes;
   }
 
   T t_{0};                               // at the start

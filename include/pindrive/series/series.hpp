@@ -10,7 +10,7 @@
 
 #include "pindrive/flow/polynomial.hpp"
 #include "pindrive/law/oblique.hpp"
-#include "pindrive/model/limits.hpp"
+#include "pindrive/numbers/limits.hpp"
 #include "pindrive/series/series_equation.hpp"
 #include "pindrive/series/series_step.hpp"
 
@@ -50,7 +50,7 @@ class SeriesFlow : public SeriesStep<T> {
   }
 
  protected:
-  using SeriesStep<T>::N, SeriesStep<T>::unit, SeriesStep<T>::beyond, SeriesStep<T>::sums_of;
+  using SeriesStep<T>::N, SeriesStep<T>::beyond, SeriesStep<T>::sums_of;
   using typename SeriesStep<T>::Sums;
 
  private:
@@ -286,14 +286,14 @@ class SeriesFlow : public SeriesStep<T> {
     x_bound = std::min(h * v_bound, error / sqrt(k));
     skin_bound = e.skin_error(h, sqrt(K) * error, v_bound, missed_skin);
     speed_bound = v_bound + turning.root;
-    const auto rounding_of = [&](const Sums& sums) { return 2 * unit * sums[0]; };
+    const auto rounding_of = [&](const Sums& sums) { return step_error<Real> * sums[0]; };
     // Slider beside a pin at rest: error of its velocity from the rounding of the forces.
     const Real forces =
         decay != 0 ? most_f * sums_of(skin.c)[0] + k * sums_of(position.c)[0] : Real(0);
-    return v_bound <= rounding_of(sums_of(velocity.c)) + 2 * unit * forces * h / m &&
+    return v_bound <= rounding_of(sums_of(velocity.c)) + step_error<Real> * forces * h / m &&
            (K == 0 || skin_bound <= rounding_of(sums_of(skin.c))) &&
            speed_bound <= rounding_of(from_rest(speed.c)) + rounding_of(sums_of(velocity.c)) &&
-           !(e.held && turning.direction > 64 * unit);
+           !(e.held && turning.direction > direction_error<Real>);
   }
 };
 

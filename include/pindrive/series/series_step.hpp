@@ -9,6 +9,7 @@
 
 #include "pindrive/flow/polynomial.hpp"
 #include "pindrive/model/model.hpp"
+#include "pindrive/numbers/limits.hpp"
 #include "pindrive/series/series_equation.hpp"
 
 namespace pindrive::detail {
@@ -33,7 +34,6 @@ class SeriesStep {
 
  protected:
   static constexpr int N = series_order;
-  static constexpr Real unit = std::numeric_limits<Real>::epsilon();
 
   /// Sets all polynomials to order N over a length of time.
   void begin(Real step) {
@@ -55,7 +55,7 @@ class SeriesStep {
       const Real largest = std::max({size(0), size(1), size(2)});
       for (int n = N - 2; n <= N; ++n)
         if (size(n) > 0 && largest > 0)
-          least = std::min(least, exp(log(unit / 4 * largest / size(n)) / n));
+          least = std::min(least, exp(log(truncation_error<Real> * largest / size(n)) / n));
     }
     return least;
   }
@@ -103,7 +103,7 @@ class SeriesStep {
       Real total{0}, tail{0};
       for (int n = 0; n <= N; ++n) total += size(n);
       int n = N;
-      while (n > needed && tail + size(n) <= unit / 8 * total) tail += size(n--);
+      while (n > needed && tail + size(n) <= removed_terms<Real> * total) tail += size(n--);
       needed = std::max(needed, n);
     }
     const auto drop = [&](Polynomial<T>& p, int degree, Real& bound) {

@@ -14,8 +14,8 @@
 #include <array>
 #include <cmath>
 
-#include "pindrive/model/limits.hpp"
 #include "pindrive/model/model.hpp"
+#include "pindrive/numbers/limits.hpp"
 #include "pindrive/series/series.hpp"
 
 namespace pindrive::detail {
@@ -56,7 +56,7 @@ class SlowSliderFlow : public SeriesFlow<T> {
       // Dual derivatives converge one iteration later.
       if (converged) break;
       const Real changed = change(part);
-      converged = changed <= unit * plain(e.skin_decay) * this->size_of(skin, part);
+      converged = changed <= last_digit<Real> * plain(e.skin_decay) * this->size_of(skin, part);
       if (round == detail::slow_iterations || (round > 2 && !converged && changed > last / 2))
         return;
       last = changed;
@@ -76,7 +76,7 @@ class SlowSliderFlow : public SeriesFlow<T> {
   bool is_valid() const { return holds_; }
 
  private:
-  using SeriesStep<T>::N, SeriesStep<T>::unit, SeriesStep<T>::sums_of;
+  using SeriesStep<T>::N, SeriesStep<T>::sums_of;
   using typename SeriesStep<T>::Sums;
 
   /// Estimate of the fastest rate of the slow motion, 1/s; the skin acts as a damper φ.
@@ -121,7 +121,7 @@ class SlowSliderFlow : public SeriesFlow<T> {
     const Real load_change = plain(e.load.rate) * h, K = plain(e.skin_stiffness);
     const auto last = [](const Polynomial<T>& p, int n) { return abs(plain(p.c[n])); };
     const auto turning = this->bound_turning(e);
-    if (!turning.known || (e.held && turning.direction > 64 * unit)) return false;
+    if (!turning.known || (e.held && turning.direction > direction_error<Real>)) return false;
     const Real missed =
         e.held
             ? Real(0)
@@ -134,23 +134,24 @@ class SlowSliderFlow : public SeriesFlow<T> {
     const Real falls = min(b, b + b_change) + min({Real(0), S * load, S * (load + load_change)});
     const Real grown = h / m * (k * h + most_f * K / stays + max(Real(0), -falls));
     // May end with its load, within the time resolution.
-    const Real ends = f + f_change + 4 * unit * (plain(time) + h) * abs(plain(e.skin_factor.rate));
+    const Real ends =
+        f + f_change + rounding<Real> * (plain(time) + h) * abs(plain(e.skin_factor.rate));
     if (!(ends >= 0) || (!e.held && grown > Real(0.5))) return false;
     v_bound = e.held ? Real(0) : 2 * h / m * (missed + most_f * missed_skin / stays);
     x_bound = h * v_bound;
     skin_bound = (K * v_bound + missed_skin) / stays;
     speed_bound = v_bound + turning.root;
-    return v_bound <= 4 * unit * sums_of(velocity.c)[0] &&
-           turning.root <= 4 * unit * sums_of(speed.c)[0] &&
-           skin_bound <= 8 * unit * sums_of(skin.c)[0];
+    return v_bound <= rounding<Real> * sums_of(velocity.c)[0] &&
+           turning.root <= rounding<Real> * sums_of(speed.c)[0] &&
+           skin_bound <= eliminated_error<Real> * sums_of(skin.c)[0];
   }
 
   /// True if the slider starts with the slow velocity: a deviation decays at once.
   bool starts_from(const SeriesState<T>& start) const {
     using std::abs;
     const Real changes = abs(plain(velocity.c[1])) / span() + abs(plain(skin.c[1])) / span();
-    return abs(plain(start.skin - skin.c[0])) <=
-           16 * unit * sums_of(skin.c)[0] + 4 * unit * plain(start.time) * changes;
+    return abs(plain(start.skin - skin.c[0])) <= difference_error<Real> * sums_of(skin.c)[0] +
+                                                     rounding<Real> * plain(start.time) * changes;
   }
 
   std::array<T, N + 1> stretching_{};  // (φ y)', in the time σ

@@ -12,6 +12,37 @@ namespace detail {
 template <class T>
 inline constexpr T rounding = 4 * std::numeric_limits<T>::epsilon();
 
+/// Relative error of a root, at which Newton's iteration ends.
+template <class T>
+inline constexpr T root_error = 2 * std::numeric_limits<T>::epsilon();
+/// Relative change of an iteration at its fixed point: its last digit.
+template <class T>
+inline constexpr T last_digit = std::numeric_limits<T>::epsilon();
+
+/// Relative error of the difference of two computed values: of two positions, of two friction
+/// forces of one sliding speed, of two velocities that reach zero together.
+template <class T>
+inline constexpr T difference_error = 4 * rounding<T>;
+
+/// Relative error of a force at the end of a segment: it is a sum whose terms are closed forms.
+template <class T>
+inline constexpr T end_error = 8 * rounding<T>;
+
+/// Relative distance of the stationary speed of a slider from the end of its branch, below which
+/// the slider has not left the branch: both are rounded.
+template <class T>
+inline constexpr T branch_end_error = 2 * rounding<T>;
+
+/// Relative transverse velocity below which an oblique plate moves along the axis: closer to zero
+/// the steps of a pin that comes to rest on the plate become short.
+template <class T>
+inline constexpr T least_across = 64 * rounding<T>;
+
+/// Relative time before a breakpoint at which an oblique plate comes to rest, within which an event
+/// belongs to the breakpoint: the sliding direction under a held pin is undetermined there.
+template <class T>
+inline constexpr T before_rest = 128 * rounding<T>;
+
 /// Relative time of the first stick of skin that has no first mode as its load grows from zero:
 /// some time resolutions, for each period in which the load grows by a half.
 template <class T>
@@ -74,6 +105,25 @@ inline constexpr double turning_at_end = 1e-9;
 
 // ---- series ------------------------------------------------------------------------------------
 
+/// Relative truncation error of a step of a series, and of the terms that are removed from it:
+/// together less than one rounding.
+template <class T>
+inline constexpr T truncation_error = std::numeric_limits<T>::epsilon() / 4;
+template <class T>
+inline constexpr T removed_terms = std::numeric_limits<T>::epsilon() / 8;
+/// Relative truncation error of an accepted step, beside the coefficients of the step; and of the
+/// motion in which friction or a slider is eliminated, whose equations are solved by iteration.
+template <class T>
+inline constexpr T step_error = 2 * std::numeric_limits<T>::epsilon();
+template <class T>
+inline constexpr T eliminated_error = 2 * rounding<T>;
+/// Error of a sliding direction, rad, above which a step of an oblique slip is rejected; and relative
+/// velocity beside creep above which the pin does not creep.
+template <class T>
+inline constexpr T direction_error = 16 * rounding<T>;
+/// Largest error of the creep velocity close to the friction limit, as a fraction of the pin velocity.
+template <class T>
+inline constexpr T creep_error = 1024 * rounding<T>;
 /// Longest step of a series in units of its fastest time constant, even at rest: rounding of the
 /// start then remains rounding.
 inline constexpr double longest_step = 8;
@@ -89,6 +139,12 @@ inline constexpr int slow_iterations = 16, slow_reductions = 40;
 /// Largest ratio t = (x' − v_p)/w of creep: closer to the friction limit the boundary layer is never thin.
 inline constexpr double steepest_creep = 1e4;
 
+// ---- stepper -----------------------------------------------------------------------------------
+
+/// Periods, in units of 1/ω0, after which a stepper selects its mode again under inputs that change:
+/// a double still resolves the time of an event.
+inline constexpr double longest_segment = 1e6;
+
 // ---- kernel ------------------------------------------------------------------------------------
 
 /// Relative difference below which the kernel leaves a decision to the general core: a thousand times
@@ -99,6 +155,9 @@ inline constexpr double near_tie = 1e-12;
 inline constexpr double near_grazing = 1e-9;
 /// Smallest 1 − ζ² in the kernel: closer to critical damping the sine of a half period loses digits.
 inline constexpr double least_discriminant = 0.02;
+/// Relative change of an angle after which the kernel's iteration of order 4 ends: its next change
+/// is below the rounding.
+inline constexpr double last_change = 1e-4;
 /// Half periods evaluated by the kernel; each costs a few operations, of a whole pack if one drive
 /// needs it.
 inline constexpr int most_half_turns = 4096;
@@ -110,6 +169,10 @@ inline constexpr int most_rounds = 1 << 18;
 /// Depth, as a fraction of the largest value, to which a guard may be negative between two nodes
 /// unnoticed.
 inline constexpr double unseen_violation = 1e-10;
+/// Relative part of the force scale by which skin may stretch near a load of zero, where it is not
+/// simulated.
+template <class T>
+inline constexpr T unloaded_stretch = 256 * rounding<T>;
 /// Panels at each end of a segment that are evaluated before its middle is skipped.
 inline constexpr int walked_panels = 2048;
 /// Duration of a segment in time constants below which nothing changes, and relative change of the
