@@ -42,7 +42,7 @@ int rounds_until_cycle(double offset, double q) {
   const pd::Drive<double> drive{0.01, 100, 0, {0.1, 0.2}, {}};
   pd::detail::CycleDetector<double> cycles(drive);
   pd::Outcome<double> outcome;
-  for (int i = 0; i < 200; ++i, offset *= q) {
+  for (int i = 0; i < 500; ++i, offset *= q) {
     pd::Segment<double> carried{};
     carried.begin = 0.5 * i;
     carried.end = 0.5 * i + 0.2;
@@ -60,8 +60,11 @@ int rounds_until_cycle(double offset, double q) {
 
 void cycles() {
   expect(rounds_until_cycle(0, 1) == 4, "a return to the first kept state closes a cycle");
-  const int rounds = rounds_until_cycle(1e-2, 0.5);
-  expect(rounds > 25 && rounds < 80, "one that is approached does so when it has been reached");
+  expect(rounds_until_cycle(4e-13, -1) == 4 && rounds_until_cycle(6e-13, -1) == 5,
+         "states closer than the return tolerance are one");
+  expect(rounds_until_cycle(1e-2, 0.5) == 27,
+         "a cycle is closed when the next return is within 1e-10");
+  expect(rounds_until_cycle(1e-2, 0.95) == 316, "... and all further returns are within 1e-9");
   expect(rounds_until_cycle(1e-9, 1.5) == -1, "states that part close none");
 }
 

@@ -28,6 +28,24 @@ struct Decay {
   pd::Outcome<double> outcome;
 };
 
+/// A turning point beyond the band by less than the error of the band counts as within: by rounding, or by what
+/// remains of a motion that ends by the rest criterion.
+void turns_at_the_edge() {
+  Decay decay(0.1, std::numeric_limits<double>::infinity());
+  const pd::Flow<double>& flow = decay.segment.flow;
+  const double turn = flow.oscillator.zeros(flow.position.slope, flow.velocity.slope).at(1);
+  const double edge = std::abs(decay.x(turn)) / 1e-3;
+  const auto settled = [&](double band, bool rests) {
+    decay.segment.eliminated = rests ? pd::EliminatedPart::motion : pd::EliminatedPart::none;
+    const pd::Motion<double> motion = decay.motion();
+    return pd::detail::Settling<double>(motion, 1.0).within(0.0, band);
+  };
+  expect(settled(edge * (1 - 1e-15), false) < turn, "a turn beyond the band by rounding is within");
+  expect(settled(edge * (1 - 1e-13), false) > turn, "... and by more is not");
+  expect(settled(edge * (1 - 1e-9), true) < turn, "a turn beyond by the rest criterion is within");
+  expect(settled(edge * (1 - 1e-8), true) > turn, "... and by more is not");
+}
+
 }  // namespace
 
 int main() {
@@ -46,6 +64,7 @@ int main() {
   expect(enters, "it comes into the band when it has settled");
   expect(stays, "... and stays there");
 
+  turns_at_the_edge();
   const Decay decay(0.1, never);
   const pd::Motion<double> motion = decay.motion();
   expect(std::isnan(pd::detail::Settling<double>(motion, 0.05).within(0.0, 0.05)),

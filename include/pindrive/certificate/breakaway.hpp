@@ -28,7 +28,6 @@ struct Beginning {
 /// is not checked.
 template <class T>
 T spare_stick_limit(const Drive<T>& drive, const Mode& mode, const Beginning<T>& now) {
-  using std::abs;
   const bool plate = now.rests_on_plate && is_slip(mode.plate);
   const bool finger = now.rests_on_finger && is_slip(mode.finger);
   if (mode.stuck() || !(plate || finger)) return T(0);
@@ -86,8 +85,6 @@ class Breakaways {
 
   template <class Trajectory>
   static bool is_brief(const EvaluatedSegment<T, Trajectory>& segment, const PinState<T>& s) {
-    using std::abs;
-    using std::sqrt;
     const Scales<T>& scales = segment.scales;
     const Drive<T>& drive = segment.drive;
     const T rate = sqrt((drive.stiffness + drive.finger.stiffness) / drive.mass);
@@ -104,7 +101,6 @@ class Breakaways {
   /// Margin of the stick force to its limit, N; 0 without stick.
   template <class Trajectory>
   static T within_limit(const EvaluatedSegment<T, Trajectory>& segment, const PinState<T>& s) {
-    using std::abs;
     const Mode& mode = segment.mode();
     T most{0}, force{0};
     if (mode.plate == ContactState::stick) {
@@ -122,7 +118,6 @@ class Breakaways {
   template <class Trajectory>
   static T spare_at(const EvaluatedSegment<T, Trajectory>& segment, PinState<T> s, bool plate,
                     bool finger) {
-    using std::abs;
     const Drive<T>& drive = segment.drive;
     const Line<T>& plate_velocity = segment.plate_velocity;
     const T still = T(still_velocity) * segment.scales.v;

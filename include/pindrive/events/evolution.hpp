@@ -36,7 +36,6 @@ class Evolution {
         plain_(drive.mass, drive.damping, drive.stiffness),
         half_period_(plain_.zeros(T(0), T(1)).first),
         half_turn_(plain_.oscillates() ? plain_.half_turn() : Propagator<T>{}) {
-    using std::isnan;
     look_ahead();
     const bool given = !isnan(inputs.skin_stretch);
     if (given) pin.state.skin = drive.finger.stiffness * inputs.skin_stretch;
@@ -123,7 +122,6 @@ class Evolution {
   /// Ends a segment and advances the state to the event: each guard at its zero is exactly zero
   /// there.
   void jump(Segment<T>& segment, T tau) {
-    using std::abs;
     const T coincident = tau + rounding<T> * (pin.time + tau);
     const bool breakpoint = tau == until_breakpoint();
     const T end = breakpoint ? next_breakpoint : time_after(tau);
@@ -202,14 +200,12 @@ class Evolution {
   /// Speed below which a pin is at rest, m/s. The scale is the largest term of x, as the position
   /// of rest may be 0.
   T rest_speed() const {
-    using std::sqrt;
     return T(rest_tolerance) * pin.state.position_scale *
            sqrt(pin.drive.stiffness / pin.drive.mass);
   }
   /// True if a pin that no contact holds is at rest by the rest criterion (MODEL, section 10), for ever: under
   /// constant inputs forces balance and the speed has decayed.
   bool in_equilibrium() const {
-    using std::abs;
     const State<T>& s = pin.state;
     if (next_breakpoint < never || pin.held() || pin.plate.surface.rate != 0 ||
         pin.plate.across.rate != 0)
@@ -234,7 +230,6 @@ class Evolution {
   /// Applies the rest criterion (MODEL, section 10) where an input changes: a pin that slides so slowly on a
   /// rigid surface at rest is at rest, and its friction may hold it.
   void come_to_rest() {
-    using std::abs;
     if (pin.state.v == 0 || !(abs(pin.state.v) <= rest_speed())) return;
     for (ContactPoint<T>* side : {&pin.plate, &pin.finger}) {
       if (!side->sliding() || side->oblique() || !side->contact.rigid()) continue;
@@ -255,7 +250,6 @@ class Evolution {
   /// at `rate`, if the load jumps; the present load if the difference is within the time
   /// resolution.
   T load_before(T value, T rate) {
-    using std::abs;
     if (inputs_.constant())
       pin.plate.surface = inputs_.mouse_velocity.from(pin.time);
     else

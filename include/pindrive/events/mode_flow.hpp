@@ -25,7 +25,6 @@ template <class T>
 Flow<T> mode_flow(const Pin<T>& pin, const SelectedMotion<T>& selected,
                   const Oscillator<T>& plain_oscillator, const Force<T>& plate,
                   const Force<T>& finger) {
-  using std::abs;
   const State<T>& s = pin.state;
   if (pin.stop.is_holding()) return Flow<T>::stuck(s.x, Line<T>{});
   if (pin.plate.stuck() || pin.finger.stuck())

@@ -10,6 +10,7 @@
 #include <iterator>
 #include <limits>
 
+#include "pindrive/events/irregularity.hpp"
 #include "pindrive/law/state.hpp"
 #include "pindrive/model/model.hpp"
 #include "pindrive/numbers/limits.hpp"
@@ -36,26 +37,6 @@ void end_with(const Segment<T>& last, Outcome<T>& outcome) {
   }
 }
 
-/// Natural scales of a motion, measured along its events: range of the position and largest speed.
-template <class T>
-class Extent {
- public:
-  /// Includes an event, between a segment and the state after the event.
-  void add(const Flow<T>& ended, T x, T v) {
-    using std::abs;
-    lowest_ = std::min(lowest_, x);
-    highest_ = std::max(highest_, x);
-    amplitude_ = std::max(amplitude_, abs(ended.position.value));
-    speed_ = std::max({speed_, abs(v), abs(ended.velocity.value)});
-  }
-  T length() const { return std::max(highest_ - lowest_, amplitude_); }  ///< m
-  T speed() const { return speed_; }                                     ///< m/s
-
- private:
-  T lowest_{std::numeric_limits<T>::infinity()}, highest_{-std::numeric_limits<T>::infinity()};
-  T amplitude_{0}, speed_{0};
-};
-
 /// Detects that a motion between constant inputs has returned to an earlier state. Events of every kind are
 /// compared.
 ///
@@ -65,9 +46,7 @@ class Extent {
 /// that is approached geometrically is followed from return to return, and closed when the contraction bounds its
 /// remaining distance by `approach_tolerance`.
 ///
-/// A motion that has not returned after many events is irregular (chaotic or quasi-periodic), unless it grows
-/// or decays: then the durations of windows of equally many events increase or decrease without exception, or
-/// the ranges of the position in blocks of windows do.
+/// A motion that has not returned after many events may be irregular (irregularity.hpp).
 template <class T>
 class CycleDetector {
  public:
@@ -87,10 +66,7 @@ class CycleDetector {
       if (count_ > short_memory && returns_to(recent_, ended, now, outcome)) return;
       if (period_ > 0 && approaches(ended, now, outcome)) return;
     }
-    if (count_ >= irregular_window) {
-      block_.add(ended.flow, state.x, state.v);
-      if (++in_window_ == irregular_window) end_window(time, outcome);
-    }
+    if (count_ >= irregular_window) irregularity_.visit(ended, time, state, outcome);
     if (count_ % short_memory == 0) keep(recent_, now);
     if (count_ == next_) {
       keep(kept_, now);
@@ -116,7 +92,6 @@ class CycleDetector {
     T stuck{0};  ///< time of stick on the plate since then, s
   };
 
-  static constexpr int windows_in_block = irregular_windows / 8;
   static constexpr T never = std::numeric_limits<T>::infinity();
 
   void keep(Visit& visit, const Event& now) const {
@@ -131,8 +106,6 @@ class CycleDetector {
   /// Distance between the states after two events as a fraction of the natural scales; infinite for
   /// different modes, or if the motion in between is within the rounding of its position.
   T separation(const Visit& earlier, const Event& now) const {
-    using std::abs;
-    using std::sqrt;
     if (!same_mode(earlier.mode, now.mode) || !(now.time > earlier.time)) return never;
     const T length = earlier.extent.length();
     if (!(length > T(rest_tolerance) * abs(now.state.x))) return never;
@@ -190,38 +163,6 @@ class CycleDetector {
     return false;
   }
 
-  /// Compares the durations of a window of events and of the window before.
-  void end_window(T time, Outcome<T>& outcome) {
-    using std::abs;
-    const T lasts = time - window_begin_, longer = lasts - lasted_;
-    if (abs(longer) > T(repeat_tolerance) * lasts) {
-      if (windows_ > 1 && (longer > 0) != grew_) ++turns_;
-      grew_ = longer > 0;
-    }
-    lasted_ = lasts;
-    window_begin_ = time;
-    in_window_ = 0;
-    if (++windows_ == irregular_windows / 2) half_time_ = time;
-    if (windows_ % windows_in_block == 0) end_block();
-    if (windows_ < irregular_windows) return;
-    if (4 * turns_ >= irregular_windows && !grows_ && !decays_) {
-      outcome.end = End::irregular;
-      outcome.cycle_begin = half_time_;
-    }
-    windows_ = turns_ = 0;
-    grows_ = decays_ = true;
-  }
-  /// Compares the ranges of the position in a block of windows and in the block before.
-  void end_block() {
-    const T length = block_.length();
-    if (windows_ > windows_in_block) {
-      grows_ = grows_ && length > length_;
-      decays_ = decays_ && length < length_;
-    }
-    length_ = length;
-    block_ = {};
-  }
-
   bool close(const Visit& begin, const Event& now, Outcome<T>& outcome) const {
     outcome.period = (now.time - begin.time) + (now.time_error - begin.time_error);
     const bool sticks = begin.stuck > T(repeat_tolerance) * outcome.period;  // sticks, not grazes
@@ -236,15 +177,7 @@ class CycleDetector {
   long long next_{first_kept_event};  ///< count at which the kept visit is renewed
   long long period_{0};               ///< period of the followed approach, in events; 0 without one
   T distance_{0}, ratio_{1};          ///< distance of its last return; ratio to the distance before
-
-  int in_window_{0}, windows_{0};  ///< events in the window, windows so far
-  int turns_{0};                   ///< changes between longer and shorter windows
-  bool grew_{false};
-  bool grows_{true}, decays_{true};  ///< in each block of windows
-  Extent<T> block_;
-  T length_{0};                    ///< range in the block before, m
-  T window_begin_{0}, lasted_{0};  ///< begin of the window; duration of the window before, s
-  T half_time_{0};                 ///< time after half of the windows, s
+  IrregularityDetector<T> irregularity_;
 };
 
 }  // namespace pindrive::detail

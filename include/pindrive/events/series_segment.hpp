@@ -39,7 +39,6 @@ class SeriesSegment {
                                const Point& plate, const Point& finger, const Line<T>& force,
                                const State<T>& state, T acceleration, int at_limit, bool no_push,
                                T span) {
-    using std::abs;
     const SeriesMode<T> mode(
         drive, segment.mode,
         {segment.plate_velocity, plate.load, plate.across, force, finger.load});
@@ -107,8 +106,6 @@ class SeriesSegment {
   /// Advances the state by τ, unless the mode has a closed form.
   template <class Point>
   void move(State<T>& state, const Drive<T>& drive, const Point& finger, T tau) const {
-    using std::abs;
-    using std::sqrt;
     if (!step_) return;
     const SeriesStep<T>& step = *step_;
     const SeriesState<T> now = step.at(tau);

@@ -44,7 +44,6 @@ bool is_zero(const T& x) {
 /// Difference between an input and its continuation; zero within rounding.
 template <class T>
 T change_to(const T& given, const Held<T>& held, T now) {
-  using std::abs;
   const Line<T> line = held.from(now);
   const T change = given - line.value;
   const T size = abs(held.line.value) + abs(line.rate * (now - held.since)) + abs(given);
@@ -67,7 +66,6 @@ T moved(const T& from, const T& change, const T& given) {
 /// to the plate, whose velocity is `given` afterwards. Only a rigid stop moves the pin along.
 template <class T>
 void shift(Evolution<T>& evolution, const T& jump, const T& given) {
-  using std::abs;
   ContactPoint<T>&plate = evolution.pin.plate, &finger = evolution.pin.finger;
   auto& stop = evolution.pin.stop;
   T& v = evolution.pin.state.v;

@@ -35,8 +35,6 @@ struct Rooted<Dual<T>> {
 template <class T>
 T root_between(const Oscillator<T>& oscillator, const Path<T>& path, T low, T high, int side,
                T guess) {
-  using std::abs;
-  using std::sqrt;
   T tau = guess > low && guess < high ? guess : low + (high - low) / 2;
   T step = high - low, step_before = step;
   for (;;) {
@@ -74,7 +72,6 @@ T root_between(const Oscillator<T>& oscillator, const Path<T>& path, T low, T hi
 /// rounding, or the start is and the path turns back within its rounding.
 template <class T>
 Path<T> exact_at_start(const Oscillator<T>& oscillator, Path<T> path, int side) {
-  using std::sqrt;
   if (!(side * path.start > 0)) path.start = T(0);
   const T slope = path.slope + path.drift;
   if (path.start != 0 || side * slope > 0) return path;
@@ -92,7 +89,6 @@ Path<T> exact_at_start(const Oscillator<T>& oscillator, Path<T> path, int side) 
 /// not end on one side by chance.
 template <class T>
 Path<T> exact_at_centre(Path<T> path) {
-  using std::abs;
   if (path.straight() && abs(path.centre()) <= rounding<T> * (abs(path.start) + abs(path.value)))
     path.value = path.start;
   return path;
@@ -101,7 +97,6 @@ Path<T> exact_at_centre(Path<T> path) {
 /// Earliest τ > 0 at which start + drift·τ + curvature·τ²/2 leaves its side.
 template <class T>
 T parabola_root(Path<T> path, int side) {
-  using std::sqrt;
   constexpr T never = std::numeric_limits<T>::infinity();
   const T a = side * path.curvature, c = std::max(side * path.start, T(0));
   const T b = c > 0 || side * path.drift > 0 ? side * path.drift : T(0);

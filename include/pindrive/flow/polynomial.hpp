@@ -33,7 +33,6 @@ struct Polynomial {
   }
   /// Bound of the absolute value over the step.
   T size() const {
-    using std::abs;
     T sum{0};
     for (int n = 0; n <= degree; ++n) sum += abs(c[n]);
     return sum;

@@ -37,8 +37,6 @@ class PositivityBound {
   /// one.
   Flatness flatness(const Oscillator<T>& oscillator, const Propagator<T>& moved, T from,
                     T length) const {
-    using std::abs;
-    using std::sqrt;
     if (!path_.oscillates()) return {};
     if (!oscillator.oscillates() && 2 * oscillator.omega() > abs(oscillator.alpha())) {
       const T one = oscillator.slowest_rate(), other = oscillator.omega0_squared() / one;

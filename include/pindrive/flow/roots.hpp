@@ -46,11 +46,9 @@ class Roots {
         continue;
       }
       const T value = path_.at(oscillator_, right);
-      using std::isfinite;
       if (!isfinite(value)) break;  // grown beyond all numbers on its side
       if (side_ * value < 0) {
         // From its start to an extremum it is near a parabola with its vertex there.
-        using std::sqrt;
         const T guess =
             turned && low == 0 ? right * (1 - sqrt(value / (value - path_.start))) : low;
         const T root = root_between(oscillator_, path_, low, right, side_, guess);
@@ -87,8 +85,6 @@ class Roots {
 
   /// Last extremum of a growing oscillation that turns back before zero.
   T skip_short_swings(T value) {
-    using std::abs;
-    using std::floor;
     const T growth = 2 * oscillator_.alpha() * extrema_.spacing();  // in a period
     const T short_of = abs(path_.centre() / (value - path_.centre()));
     if (!(short_of > 1) || !(growth > 0)) return left_;
@@ -238,7 +234,6 @@ T first_root(const Oscillator<T>& oscillator, const Path<T>& path, int side, T h
 /// rounding of its terms is zero; the third derivative then decides.
 template <class T>
 int side_after_start(const Oscillator<T>& oscillator, const Path<T>& path) {
-  using std::abs;
   const auto sign = [](T value) { return value > 0 ? 1 : value < 0 ? -1 : 0; };
   if (path.start != 0) return sign(path.start);
   if (path.slope + path.drift != 0) return sign(path.slope + path.drift);

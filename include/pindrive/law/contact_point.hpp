@@ -60,7 +60,6 @@ struct ContactPoint {
   bool has_slider_state() const { return contact.may_lag() && sliding() && branch().slope != 0; }
   /// Pin speed minus slider speed and stretch rate, m/s; zero within its error.
   T relative_speed(T v) const {
-    using std::abs;
     if (start.keeps_speed) return T(0);
     const T relative_speed = mode.slip_sign * v - stretch_rate(start.friction) - start.slider_speed;
     return abs(relative_speed) < rounding<T> * abs(v) ? T(0) : relative_speed;
@@ -78,7 +77,6 @@ struct ContactPoint {
   }
   /// Pin velocity minus the stationary velocity, m/s; zero within its error.
   T excess_velocity(T v) const {
-    using std::abs;
     const T off = v - stationary_velocity();
     return abs(off) < rounding<T> * abs(v) ? T(0) : off;
   }
@@ -175,7 +173,6 @@ struct ContactPoint {
   }
   /// Derivatives of the force for a pin with constant acceleration (m/s²).
   ForceRate<T> force_rate(T v, T acceleration) const {
-    using std::abs;
     const T stretching = contact.stiffness * v;
     if (elastic()) return {-stretching, abs(stretching), -contact.stiffness * acceleration};
     if (!sliding()) return {};
@@ -197,13 +194,11 @@ struct ContactPoint {
   /// Error of the force from rounding of the pin velocity, N; large if the plate hardly slides
   /// across.
   T force_error(T v) const {
-    using std::abs;
     if (!oblique() || v == 0) return T(0);
     return rounding<T> * abs(v * oblique_slip(v, surface.rate).steepness(branch(), load));
   }
   /// Magnitude of the terms that the contact adds to a sum of forces, N.
   T force_scale(T v) const {
-    using std::abs;
     if (contact.branches == 0 || !sliding()) return stick_limit();
     const T rounded = abs(branch().slope) * speed_scale(v);
     return (contact.static_limit + rounded) * load.value + start.friction * load.value;
@@ -281,7 +276,6 @@ struct ContactPoint {
   /// Derivatives of the force in slip with a slider velocity: the skin stretches at the relative
   /// speed.
   ForceRate<T> slip_force_rate(T v, T acceleration) const {
-    using std::abs;
     const T stiffness = contact.stiffness, sign = mode.slip_sign;
     const T slope = branch().slope;
     const T faster = load.value == 0
@@ -292,7 +286,6 @@ struct ContactPoint {
   }
   /// Bound of the speed that the slope of the friction curve multiplies, m/s.
   T speed_scale(T v) const {
-    using std::abs;
     return has_slider_state() ? branch().from + start.slider_speed : abs(v) + abs(surface.value);
   }
 };

@@ -162,7 +162,6 @@ class Guards {
   /// True if a guard in closed form stays at zero from its zero until τ, within its error.
   bool stays(const Guard<T>& guard, const Oscillator<T>& oscillator, T tau,
              T force_roundoff) const {
-    using std::abs;
     const Path<T>& path = guard.path;
     const T force_error = guard.bound == ActiveGuard::none || guard.bound == ActiveGuard::push
                               ? force_roundoff
@@ -190,7 +189,6 @@ class Guards {
   /// Adds the distance of a speed from the end of its branch; `falls` if it decreases with the
   /// velocity v. Of two parallel distances only the smaller is kept, as its zero comes first.
   void add_nearer(const Path<T>& path, ActiveGuard bound, bool plate, bool falls, T v) {
-    using std::abs;
     int& nearest = falls ? below_ : above_;
     if (nearest >= 0 && list_[nearest].path.drift == path.drift) {
       Guard<T>& other = list_[nearest];

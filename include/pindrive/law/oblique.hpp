@@ -18,8 +18,6 @@ namespace pindrive::detail {
 /// Solves m p + λF p/√(p² + w'²) = pull (N); the left side is monotone, so the root is unique.
 template <class T>
 T departure_acceleration(T mass, T friction, T across_rate, T pull) {
-  using std::abs;
-  using std::sqrt;
   const T w = abs(across_rate);
   // Newton in t = p/w', from larger |t|, where the left side is convex.
   T t = pull / (mass * w);
@@ -53,10 +51,7 @@ struct ObliqueSlip {
   /// its error.
   T parting(T jerk) const { return u.rate * u.rate + w.rate * w.rate + u.value * jerk; }
   /// Error of the derivative of ρ²/2, for a surface with this velocity.
-  T rounding_of(T surface) const {
-    using std::abs;
-    return rounding<T> * speed() * (speed() + abs(surface));
-  }
+  T rounding_of(T surface) const { return rounding<T> * speed() * (speed() + abs(surface)); }
   /// Decrease of the force with the axial velocity, N s/m.
   T steepness(const Branch<T>& branch, const Line<T>& load) const {
     const T r = speed(), across = r > 0 ? w.value / r : T(0);
@@ -75,14 +70,8 @@ struct ObliqueSlip {
 
  private:
   static T at_rest(const Branch<T>& branch) { return branch.force - branch.slope * branch.from; }
-  T speed() const {
-    using detail::hypot;
-    return hypot(u.value, w.value);
-  }
-  T along() const {
-    using detail::hypot;
-    return speed() > 0 ? u.value / speed() : u.rate / hypot(u.rate, w.rate);
-  }
+  T speed() const { return hypot(u.value, w.value); }
+  T along() const { return speed() > 0 ? u.value / speed() : u.rate / hypot(u.rate, w.rate); }
   T turn() const { return u.rate * w.value - u.value * w.rate; }
   /// First derivative of d; zero at zero speed.
   T turning() const {
@@ -102,7 +91,6 @@ struct ObliqueSlip {
 /// none.
 template <class Point, class T>
 bool enumerate_oblique_candidates(Point& side, T u, ActiveGuard& guard) {
-  using detail::hypot;
   const auto& contact = side.contact;
   if (!slides_obliquely(side.load, side.across)) {
     if (!side.oblique()) return false;
@@ -134,7 +122,6 @@ bool enumerate_oblique_candidates(Point& side, T u, ActiveGuard& guard) {
 /// sliding direction. `pull` is the sum of all further forces, N.
 template <class T, class Point>
 T oblique_departure(T mass, Point& plate, T pull) {
-  using detail::hypot;
   const T rest = pull - mass * plate.surface.rate;
   const T p = departure_acceleration(mass, plate.load.value * plate.start.friction,
                                      plate.across.rate, rest);
@@ -146,7 +133,6 @@ T oblique_departure(T mass, Point& plate, T pull) {
 /// within the errors of both gets it exactly.
 template <class T, class Point>
 void end_oblique_slip(State<T>& state, Point& plate, bool on_finger, T across, T mass, T time) {
-  using std::abs;
   if (!plate.oblique() || plate.across.value != 0) return;
   const T changes = plate.load.value * plate.start.friction / mass + abs(plate.surface.rate);
   const T crept = abs(across) + rounding<T> * (abs(state.v) + abs(plate.surface.value)) +

@@ -20,7 +20,6 @@ struct Pin {
         plate(of.plate),
         finger(of.finger),
         stop(of.stops) {
-    using std::abs;
     state.position_scale = abs(x);
   }
 

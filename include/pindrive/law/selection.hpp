@@ -35,7 +35,6 @@ class Selection {
   /// Stick is preferred. If only one of two contacts can stick, the contact that stuck until now is
   /// preferred, then the plate. Returns false if no candidate is consistent.
   bool select() {
-    using std::abs;
     pin_.plate.enumerate_candidates(pin_.state);
     pin_.finger.enumerate_candidates(pin_.state);
     selected_.applied_force = pin_.drive.mass * pin_.plate.surface.rate;
@@ -104,7 +103,6 @@ class Selection {
   /// True if `side` was stuck and its static friction still suffices while `other` slips. `side` is
   /// released only if no other candidate is consistent.
   bool could_stick(const ContactPoint& side, const ContactPoint& other) const {
-    using std::abs;
     if (side.before != ContactState::stick || !side.may_stick() || other.may_stick()) return false;
     const T force = holding_force(side, other.force(pin_.state));
     return pin_.stick_limit_side == 0 && side.stick_limit() - abs(force) > pin_.state.force_error;
@@ -113,7 +111,6 @@ class Selection {
   /// Tests the mode in which a rigid stop holds the pin. The pin is at rest, which determines the
   /// modes of its contacts; a rigid finger transmits no force.
   bool try_stop() {
-    using std::abs;
     selected_.tangential = false;
     selected_.acceleration = T(0);
     const T end = stop_sign(pin_.stop.state);
@@ -153,7 +150,6 @@ class Selection {
   /// Stick force as a function of time; `size` is the magnitude of the terms of its slope.
   Path<T> holding_force_from(T force, const ContactPoint& on, const ContactPoint& other,
                              T& size) const {
-    using std::abs;
     const T a = on.surface.rate, spring = stiffness() * pin_.state.v, damper = damping() * a;
     const auto rate = other.force_rate(pin_.state.v, a);
     size = abs(spring) + abs(damper) + rate.scale;
@@ -165,7 +161,6 @@ class Selection {
 
   /// Tests the mode in which a contact, and `other` if it sticks too, keeps the pin on its surface.
   bool try_stick(const ContactPoint& on, const ContactPoint& other) {
-    using std::abs;
     const T apart = on.surface.rate - other.surface.rate;
     if (other.stuck() ? apart != 0 : !other.is_admissible(pin_.state, apart)) return false;
     if (!pin_.stop.is_consistent(pin_.state.v, on.surface.rate, {})) return false;
@@ -197,7 +192,6 @@ class Selection {
   /// Tests the mode in which no contact sticks. A relative acceleration that is zero within its
   /// error is exactly zero: the pin starts tangentially to that surface.
   bool try_slip() {
-    using std::abs;
     selected_.tangential = false;
     selected_.guards.clear();
     const T finger = pin_.finger.force(pin_.state);
@@ -252,7 +246,6 @@ class Selection {
   /// True if the force that moves a sliding speed off a breakpoint changes its sign within the time
   /// resolution.
   bool turns_at_once(const ContactPoint& side, T force) const {
-    using std::abs;
     if (side.may_stick() || side.has_slider_state() || !side.sliding()) return false;
     const T rate = force_rate().value;
     return force * rate < 0 && 2 * abs(force) <= rounding<T> * pin_.time * abs(rate);
@@ -260,7 +253,6 @@ class Selection {
 
   /// True if a slipping pin is consistent with the state of the stops.
   bool leaves_stop() {
-    using std::abs;
     const bool none = pin_.drive.mass * abs(selected_.acceleration) <= pin_.state.force_error ||
                       (pin_.stop.rigid() && pin_.no_push());
     if (!selected_.tangential && pin_.stop.at_edge() && none) {
@@ -272,14 +264,12 @@ class Selection {
 
   /// Jerk of a slipping pin, m/s³, zero within its error; and the derivative of the jerk.
   Line<T> jerk() const {
-    using std::abs;
     const auto [rate, size, bend] = force_rate();
     return {abs(rate) <= rounding<T> * size ? T(0) : rate / pin_.drive.mass,
             bend / pin_.drive.mass};
   }
   /// Derivatives of the force on a slipping pin.
   ForceRate<T> force_rate() const {
-    using std::abs;
     const auto plate = pin_.plate.force_rate(pin_.state.v, selected_.acceleration);
     const auto finger = pin_.finger.force_rate(pin_.state.v, selected_.acceleration);
     const T spring = stiffness() * pin_.state.v, damper = damping() * selected_.acceleration;

@@ -222,7 +222,6 @@ class SliderCandidates {
   }
 
   bool is_nonzero(T distance) const {
-    using std::abs;
     const T size = abs(u_) + abs(point_.stretch_rate(contact_.branch(present_.branch).force));
     return abs(distance) > jump_error<T> * size;
   }

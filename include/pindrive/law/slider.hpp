@@ -40,14 +40,12 @@ class Slider {
 
   /// Slider speed at which a friction stays constant, m/s; zero within its error.
   T stationary_speed(T friction) const {
-    using std::abs;
     const T pin = stretch_rate_ == 0 ? speed_ : speed_ - stretch_rate_ * friction;
     return abs(pin) < rounding<T> * abs(speed_) ? T(0) : pin;
   }
 
   /// Stationary speed at a friction, minus a speed, m/s; zero within its error.
   T excess(T speed, T friction) const {
-    using std::abs;
     const T left = stationary_speed(friction) - speed;
     return abs(left) < rounding<T> * abs(speed_) ? T(0) : left;
   }
@@ -133,7 +131,6 @@ class Slider {
   static constexpr T never = std::numeric_limits<T>::infinity();
   /// True if two frictions are equal within their error.
   static bool same(T one, T other) {
-    using std::abs;
     return one == other || abs(one - other) < rounding<T> * other;
   }
 

@@ -25,7 +25,6 @@ struct State {
 
   /// Advances the state to the end of a segment in closed form.
   void move(const Segment<T>& along, bool elastic) {
-    using std::abs;
     const Path<T>& position = along.flow.position;
     const Propagator<T> moved = along.moved;
     x = position.at(moved);
@@ -47,7 +46,6 @@ bool grazes(T rate, T curvature, T force_error) {
 /// value at the end.
 template <class T>
 bool stays_at_bound(T fall, T value, T force_error) {
-  using std::abs;
   return fall >= -2 * force_error && abs(value) <= force_error;
 }
 

@@ -71,7 +71,6 @@ class EndStops {
   T force(const State<T>& s) const { return spring_force(s) - damping() * s.v; }
   /// Magnitude of the terms of the force, N.
   T force_scale(const State<T>& s) const {
-    using std::abs;
     if ((state == StopState::apart && guard_ == ActiveGuard::none) || stops_.rigid()) return T(0);
     return stops_.stiffness * (s.position_scale + stops_.travel) + stops_.damping * abs(s.v);
   }
@@ -97,7 +96,6 @@ class EndStops {
   /// Adds the guard of the push of a rigid stop that holds the pin. Returns false if the push is
   /// negative or becomes negative at once.
   bool try_hold(Path<T> push, T rate_size, bool exactly, T force_error, Guards<T>& guards) const {
-    using std::abs;
     if (push.start < -force_error && !exactly) return false;
     if (!(push.start > force_error) || exactly) {
       push.start = T(0);
@@ -171,8 +169,6 @@ class EndStops {
   /// True if the pin decays about the edge of an elastic stop, so little beside its position that it is at rest
   /// (MODEL, section 10): what it still does with the stop is no event.
   bool decays_at_edge(const State<T>& s, const Flow<T>& flow) const {
-    using std::abs;
-    using std::sqrt;
     const Path<T>& x = flow.position;
     if (stops_.rigid() || !x.straight() || !(flow.oscillator.alpha() < 0)) return false;
     const T still = T(rest_tolerance) * stops_.travel;

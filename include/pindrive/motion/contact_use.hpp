@@ -90,7 +90,6 @@ class ContactMeasurement {
     across(result, along, segment, from, to, times);
     if (segment.mode.both_stuck())
       for (const T tau : {from, to}) {
-        using std::abs;
         const auto friction = motion_.friction(segment, tau);
         result.plate.peak_force = std::max(result.plate.peak_force, abs(friction.plate));
         result.finger.peak_force = std::max(result.finger.peak_force, abs(friction.finger));
@@ -127,10 +126,7 @@ class ContactMeasurement {
 
   template <class Trajectory, class Quantity>
   static void peak(T& largest, const Trajectory& along, const Quantity& path, T from, T to) {
-    const auto compare = [&](T, T value) {
-      using std::abs;
-      largest = std::max(largest, abs(value));
-    };
+    const auto compare = [&](T, T value) { largest = std::max(largest, abs(value)); };
     if (along.constant(path))
       compare(from, along.start(path));
     else
@@ -141,7 +137,6 @@ class ContactMeasurement {
   void use(ContactUse<T>& contact, const Trajectory& along, const Segment<T>& segment,
            ContactState does, const Quantity& sliding, const Quantity& force, bool came_to_zero,
            T from, T to, T distance, T times) const {
-    using std::abs;
     if (does == ContactState::absent) return;
     if (!segment.mode.both_stuck()) peak(contact.peak_force, along, force, from, to);
     if (!is_slip(does)) {

@@ -25,7 +25,6 @@ class SignChanges {
   template <class Trajectory, class Path, class Visitor>
   bool follow(const Trajectory& along, const Path& path, const Path& value, T begin, T span,
               Visitor&& visit) {
-    using std::abs;
     const int start = along.side_after_start(path);
     if (start == 0) {
       if (!zero_) come(begin, along.start(value));

@@ -40,7 +40,6 @@ T kinetic_friction(const Contact<T>& contact, T speed) {
 /// Error of the skin tension, N: its change, as that of the load, within the time resolution.
 template <class T>
 T skin_unsure(const Drive<T>& drive, const Line<T>& load, T time, const PinState<T>& s) {
-  using std::abs;
   return !drive.finger.rigid() && load.rate != 0 ? rounding<T> * time * abs(s.finger_rate) : T(0);
 }
 
@@ -107,8 +106,6 @@ class EvaluatedSegment {
   /// the given velocity or, where the force turns steeply, by the distance of the velocity from the
   /// direction of the force, scaled to the largest velocity.
   T oblique_error(const PinState<T>& s) const {
-    using std::abs;
-    using std::sqrt;
     const T u = s.v - plate_velocity.at(s.tau), w = across.at(s.tau), speed = hypot(u, w);
     const T strength = load.at(s.tau) * kinetic_friction(drive.plate, speed);
     if (!(strength > 0)) return s.plate_force;
@@ -141,7 +138,6 @@ class EvaluatedSegment {
   /// Part of the error from oblique slip: the force turns with the velocity, which has the error of
   /// its rounding and of the time.
   T turning_unsure(const PinState<T>& s, T time) const {
-    using std::abs;
     if (!oblique()) return T(0);
     const T u = s.v - plate_velocity.at(s.tau), w = across.at(s.tau);
     const T speed = hypot(u, w);
@@ -154,7 +150,6 @@ class EvaluatedSegment {
   }
 
   T unsure_slider() const {
-    using std::abs;
     if (!drive.finger.compliant() || finger_load.rate == 0) return T(0);
     const auto bend = along.derivative(finger_rate);
     T most{0}, terms{0};  // of its rate, and of the force, whose parts may cancel
@@ -170,7 +165,6 @@ class EvaluatedSegment {
   }
   /// Friction of the finger branch extrapolated to zero speed, N.
   T finger_at_rest() const {
-    using std::abs;
     if (!is_slip(mode().finger)) return T(0);
     const int last = std::max(drive.finger.branches - 1, 0);
     const Branch<T> branch = drive.finger.branch(std::clamp(mode().finger_branch, 0, last));

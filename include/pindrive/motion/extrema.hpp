@@ -14,7 +14,6 @@ namespace pindrive::detail {
 /// digits.
 template <class T, class Visitor>
 void turns(const Oscillator<T>& oscillator, const Path<T>& path, T from, T to, Visitor& visit) {
-  using std::floor;
   const Path<T> slope = path.derivative(oscillator);
   const int side = side_after_start(oscillator, slope);
   const Zeros<T> zeros = oscillator.zeros(slope.value, slope.slope);

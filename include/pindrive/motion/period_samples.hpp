@@ -51,7 +51,6 @@ class PeriodSamples {
 
   T time(long long i) const { return until_ - static_cast<T>(i + 1) * step_; }
   T difference(long long i) const {
-    using std::abs;
     const T apart = abs(position(time(i)) - last_[static_cast<std::size_t>(i % samples)]);
     return std::max(apart - rounding_, T(0)) / amplitude_;
   }

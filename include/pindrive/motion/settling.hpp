@@ -29,7 +29,6 @@ class Settling {
   /// a motion that rests or decays; if |x(0) − x_end| is zero, the time of rest. NaN if later than
   /// the duration, or never.
   T within(T x_end, T band) const {
-    using std::abs;
     const T way = motion_.begin()->flow.position.start - x_end;
     T size = abs(x_end);
     for (const Segment<T>& segment : motion_)
@@ -78,8 +77,6 @@ class Settling {
     return since;
   }
   T entry(const ClosedForm<T>& along, const Segment<T>& segment, T x_end, T width) const {
-    using std::abs;
-    using std::isfinite;
     T since{0};
     const Oscillator<T>& oscillator = segment.flow.oscillator;
     const Path<T>& x = segment.flow.position;
@@ -93,7 +90,6 @@ class Settling {
         Path<T> distance = x;
         distance.start -= x_end + side * width;
         // Before a turning point it is near a cosine whose swing the damping widens.
-        using std::sqrt;
         const T part = (side * width - after) / (2 * (x.centre() - position));
         const T angle = 2 * sqrt(part) * (1 + part / 6 + part * part * T(0.075));
         const T damping_ratio = -oscillator.alpha() / oscillator.omega();
@@ -124,7 +120,6 @@ class Settling {
     if (turns.first < never) follow_to(turns.first, x.at(oscillator, turns.first));
     if (turns.spacing < never && abs(before) > width) {
       // The extrema of a free decay shrink by one factor, so the last one outside is known.
-      using std::floor;
       const T count = floor(log(abs(before) / width) / (-oscillator.alpha() * turns.spacing));
       low = turns.first + count * turns.spacing;
       before = x.at(oscillator, low) - x_end;
@@ -151,7 +146,6 @@ class Settling {
     const auto strays = [&](T from, T to) {
       bool outside = false;
       highest_and_lowest(along, x, from, to, [&](T, T position) {
-        using std::abs;
         outside = outside || abs(position - x_end) > width;
       });
       return outside;

@@ -62,7 +62,6 @@ class SteadyMeasurement {
     found.peak_velocity = T(0);
     each_segment([&](const auto& along, T span) {
       highest_and_lowest(along, along.velocity(), T(0), span, [&](T, T velocity) {
-        using std::abs;
         found.peak_velocity = std::max(found.peak_velocity, abs(velocity));
       });
     });

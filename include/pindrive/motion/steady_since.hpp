@@ -67,8 +67,6 @@ class FirstRepeat {
   /// True if motion and continuation have equal positions at a time; for an oscillation without
   /// events, which begins in finite time, also equal modes.
   bool agrees(T time, T tolerance) const {
-    using std::abs;
-    using std::floor;
     const Mode mode = motion_.locate(time, Side::right).segment->mode;
     if (!motion_.outcome().cycles() && !same_mode(mode, std::prev(motion_.end())->mode))
       return false;

@@ -63,7 +63,6 @@ class ClosedForm {
   bool constant(const Path<T>& path) const { return path.constant(); }
   /// Bound of the terms of a path until τ.
   T terms(const Path<T>& path, T tau) const {
-    using std::abs;
     return abs(path.start) + abs(path.value) + abs(path.drift) * tau;
   }
   /// Square of a rate that bounds all rates of the oscillation, 1/s².
@@ -168,10 +167,10 @@ class BySeries {
     const T span = segment.end - segment.begin;
     const SeriesEquation<T> e = mode.equation();
     if (segment.eliminated == EliminatedPart::of_slider)
-      if (const SlowSliderFlow<T> slow(e, start, span, true); slow.is_valid()) return slow;
+      if (const auto slow = slow_slider(e, start, span, true)) return *slow;
     if (segment.eliminated == EliminatedPart::of_friction)
       for (const bool within_step : {true, false})
-        if (const CreepFlow<T> creep(e, start, span, within_step); creep.is_valid()) return creep;
+        if (const auto slow = creep(e, start, span, within_step)) return *slow;
     return SeriesFlow<T>(e, start, span, true);
   }
   /// Friction of a rigid finger, or of slipping skin.

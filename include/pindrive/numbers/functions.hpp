@@ -17,6 +17,9 @@ inline long double plain(long double x) { return x; }
 
 namespace detail {
 
+// Further functions of a double; those of other scalar types are found beside their type.
+using std::abs, std::floor, std::isfinite, std::isnan, std::sqrt;
+
 /// Type of the value of a number.
 template <class T>
 using Real = decltype(plain(T{}));
@@ -78,7 +81,6 @@ struct Exponential {
 };
 template <class T>
 Exponential<T> exponential_and_change(T x) {
-  using std::abs;
   if (abs(x) < T(0.5)) {
     const T change = expm1(x);
     return {1 + change, change};

@@ -185,11 +185,7 @@ struct VectorLanes {
     for (int i = 0; i < N; ++i) result[i] = a;
     return result;
   }
-  static Integer all(std::uint64_t a) {
-    Integer result{};
-    for (int i = 0; i < N; ++i) result[i] = a;
-    return result;
-  }
+  static Integer all(std::uint64_t a) { return Integer{} + a; }
   static Number gather(const double* from, const int* places) {
     Number result{};
     for (int i = 0; i < N; ++i) result[i] = from[places[i]];
@@ -300,6 +296,5 @@ struct LanesOf<8> {
 };
 #endif
 #endif
-
 }  // namespace PINDRIVE_TARGET
 }  // namespace pindrive::detail

@@ -35,7 +35,6 @@ class CreepFlow : public SeriesStep<T> {
   /// Expands the series at a state, up to a limit (s; may be infinite) and to the zero of w;
   /// `within_step`: the limit is known to lie within one step.
   CreepFlow(SeriesEquation<T> e, const SeriesState<T>& start, T limit, bool within_step = false) {
-    using std::abs;
     this->eliminated = EliminatedPart::of_friction;
     if (e.across.value < 0 || (e.across.value == 0 && e.across.rate < 0))
       e.across = {-e.across.value, -e.across.rate};  // by symmetry w >= 0
@@ -51,7 +50,7 @@ class CreepFlow : public SeriesStep<T> {
     // Best iterate, for a known step whose iterations do not converge within rounding.
     SeriesStep<T> nearest;
     Real least = std::numeric_limits<Real>::infinity();
-    for (int round = 0; round < detail::slow_iterations && balance(e, start); ++round) {
+    for (int round = 0; round < slow_iterations && balance(e, start); ++round) {
       // The iteration contracts.
       const Real v = plain(e.plate_velocity.value + e.across.value * t_), off = plain(start.v) - v;
       if (!within_step && round > 0 &&
@@ -74,15 +73,15 @@ class CreepFlow : public SeriesStep<T> {
         nearest = *this;
       }
       // Dual derivatives converge one iteration later.
-      const bool ends = within_step && round + 1 == detail::slow_iterations;
+      const bool ends = within_step && round + 1 == slow_iterations;
       if (!converged && !ends) continue;
       if (!converged) static_cast<SeriesStep<T>&>(*this) = nearest;
       if (!within_step && !starts_from(e, start)) return;
       this->rescale(part);
       holds_ = within_step || bound(e, plain(e.mass) * change(part));
-      for (int tries = 0; !holds_ && tries < detail::slow_reductions; ++tries) {
-        part *= Real(detail::step_reduction);
-        this->rescale(Real(detail::step_reduction));
+      for (int tries = 0; !holds_ && tries < slow_reductions; ++tries) {
+        part *= Real(step_reduction);
+        this->rescale(Real(step_reduction));
         holds_ = bound(e, plain(e.mass) * change(part));
       }
       break;
@@ -101,8 +100,6 @@ class CreepFlow : public SeriesStep<T> {
 
   /// Computes t at the start; true if friction can balance all further forces.
   bool balance(const SeriesEquation<T>& e, const SeriesState<T>& s) {
-    using std::abs;
-    using std::sqrt;
     const T needed =
         (e.force.value - e.mass * acceleration_[0] - e.damping * e.plate_velocity.value -
          e.stiffness * s.x - e.skin_factor.value * s.skin) /
@@ -117,7 +114,7 @@ class CreepFlow : public SeriesStep<T> {
           abs(missing) <= rounding<Real> * (abs(needed) + abs(direct) + abs(linear * t));
       const T most = 1 + abs(t);  // a longer move overshoots near the friction limit
       t += move > most ? most : move < -most ? -most : move;
-      if (!(slope > 0 && abs(t) < Real(detail::steepest_creep)))
+      if (!(slope > 0 && abs(t) < Real(steepest_creep)))
         return false;  // falling friction balances nothing
       if (!balanced) continue;
       t_ = t;
@@ -128,8 +125,6 @@ class CreepFlow : public SeriesStep<T> {
 
   /// Estimate of the time scale of creep, s.
   Real trial_step(const SeriesEquation<T>& e, const SeriesState<T>& s) const {
-    using std::abs;
-    using std::sqrt;
     const Real t = plain(t_), load = plain(e.load.value), F = plain(e.plate_force);
     const Real w = plain(e.across.value), v = plain(e.plate_velocity.value) + w * t;
     const Real root = sqrt(1 + t * t), k = plain(e.stiffness);
@@ -147,7 +142,6 @@ class CreepFlow : public SeriesStep<T> {
   /// One iteration in the time σ = τ/step: the series of t from that of a, and from t a new a below
   /// an order.
   void expand(const SeriesEquation<T>& e, const SeriesState<T>& start, Real step, int order) {
-    using std::sqrt;
     auto &x = position.c, &v = velocity.c, &y = skin.c;
     auto &t = inner(0).c, &s = inner(1).c, &d = inner(2).c;
     const auto line = [&](const Line<T>& given, int n) {
@@ -210,10 +204,7 @@ class CreepFlow : public SeriesStep<T> {
   /// where γ (the slope of friction) times the error exceeds the residual plus the forces from the
   /// errors of position and skin, h and g h times the velocity error.
   bool bound(const SeriesEquation<T>& e, Real missed) {
-    using detail::exp;
-    using std::abs;
     using std::max;
-    using std::sqrt;
     const Real h = span(), k = plain(e.stiffness), b = plain(e.damping);
     const Real b_change = plain(e.damping_rate) * h, decay = plain(e.skin_decay);
     const Real f = plain(e.skin_factor.value), f_change = plain(e.skin_factor.rate) * h;
@@ -252,20 +243,18 @@ class CreepFlow : public SeriesStep<T> {
 
   /// True if the pin has the velocity of creep: a deviation within rounding decays at once.
   bool starts_from(const SeriesEquation<T>& e, const SeriesState<T>& start) const {
-    using std::abs;
     return abs(plain(start.v - velocity.c[0])) <=
            difference_error<Real> * sums_of(velocity.c)[0] + unsure(e, start);
   }
   /// Error of the creep velocity from the rounding of forces and time: large near the friction
   /// limit, but limited to a small part of the velocity.
   Real unsure(const SeriesEquation<T>& e, const SeriesState<T>& start) const {
-    using std::abs;
     const Real sizes = abs(plain(e.force.value)) + abs(plain(e.mass) * plain(acceleration_[0])) +
                        abs(plain(e.damping) * plain(start.v)) +
                        plain(e.stiffness) * abs(plain(start.x)) +
                        abs(plain(e.skin_factor.value) * plain(start.skin));
     const Real changes = abs(plain(e.plate_velocity.rate)) + abs(plain(e.across.rate * t_));
-    const Real root = detail::hypot(Real(1), plain(t_));
+    const Real root = hypot(Real(1), plain(t_));
     const Real by_forces = difference_error<Real> * sizes * plain(e.across.value) /
                            (plain(e.load.value) * plain(e.plate_force));
     const Real here =
@@ -279,19 +268,27 @@ class CreepFlow : public SeriesStep<T> {
   bool converged_{false}, holds_{false};
 };
 
+/// Returns a step of creep; none if the pin has a fast transient.
+template <class T>
+std::optional<CreepFlow<T>> creep(const SeriesEquation<T>& e, const SeriesState<T>& start, T limit,
+                                  bool within_step = false) {
+  std::optional<CreepFlow<T>> flow;
+  if (!flow.emplace(e, start, limit, within_step).is_valid()) flow.reset();
+  return flow;
+}
+
 /// Step from a state: the Taylor series, or the slow motion where the fast transient is over, in
 /// creep or on a slider of stiff skin.
 template <class T>
 SeriesStep<T> series_step(const SeriesEquation<T>& e, const SeriesState<T>& start, T limit) {
-  if (SlowSliderFlow<T>::stiff(e, start))
-    if (const SlowSliderFlow<T> slow(e, start, limit); slow.is_valid()) return slow;
+  if (const auto slow = slow_slider(e, start, limit)) return *slow;
   if (e.held || e.side != 0) return SeriesFlow<T>(e, start, limit);
   SeriesStep<T> step;
   const bool slides = plain(start.v) != plain(e.plate_velocity.value) || plain(e.across.value) != 0;
   if (slides) step = SeriesFlow<T>(e, start, limit);
   if (slides && !(step.span() < plain(limit))) return step;
-  const CreepFlow<T> creep(e, start, limit);
-  if (creep.is_valid() && !(slides && creep.span() < step.span())) return creep;
+  if (const auto flow = creep(e, start, limit); flow && !(slides && flow->span() < step.span()))
+    return *flow;
   return slides ? step : SeriesFlow<T>(e, start, limit);
 }
 

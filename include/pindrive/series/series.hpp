@@ -40,9 +40,9 @@ class SeriesFlow : public SeriesStep<T> {
       return;
     }
     step = std::min({this->suggested_part(),
-                     1 / ((rate / Real(detail::longest_step) + rising_rate(equation)) * step),
-                     farthest / step, Real(detail::farthest_step)});
-    for (int tries = 0; tries < detail::most_reductions; ++tries, step = Real(0.75)) {
+                     1 / ((rate / Real(longest_step) + rising_rate(equation)) * step),
+                     farthest / step, Real(farthest_step)});
+    for (int tries = 0; tries < most_reductions; ++tries, step = Real(0.75)) {
       this->rescale(step);
       if (bound(equation)) break;
     }
@@ -66,8 +66,6 @@ class SeriesFlow : public SeriesStep<T> {
 
   /// Estimate of the fastest rate of the equation without transverse velocity, 1/s.
   static Real linear_rate(const SeriesEquation<T>& e) {
-    using std::abs;
-    using std::sqrt;
     const Real m = plain(e.mass), f = plain(e.skin_factor.value);
     return (abs(plain(e.damping)) + abs(plain(e.load.value) * plain(e.plate_slope))) / m +
            (f != 0 ? abs(plain(e.skin_decay) / f) : Real(0)) +
@@ -90,8 +88,6 @@ class SeriesFlow : public SeriesStep<T> {
 
   /// Rate at which the sliding direction turns, 1/s.
   static Real turning_rate(const SeriesEquation<T>& e, const SeriesState<T>& s) {
-    using detail::hypot;
-    using std::abs;
     if (e.side != 0) return Real(0);
     const Real m = plain(e.mass), friction = abs(plain(e.load.value) * plain(e.plate_force));
     const Real w = plain(e.across.value), u = plain(s.v) - plain(e.plate_velocity.value);
@@ -115,7 +111,6 @@ class SeriesFlow : public SeriesStep<T> {
     Real root{0}, direction{0}, missed{0};
   };
   Turning bound_turning(const SeriesEquation<T>& e) const {
-    using std::abs;
     using std::max;
     const Real h = span(), F = abs(plain(e.plate_force)), load = abs(plain(e.load.value));
     const Real load_end = abs(plain(e.load.value) + plain(e.load.rate) * h);
@@ -141,8 +136,6 @@ class SeriesFlow : public SeriesStep<T> {
   /// Evaluates the recurrences in the time σ = τ/step.
   void expand(const SeriesEquation<T>& e, const SeriesState<T>& start, Real step) {
     if (starts_to_slide(e, start)) return expand_from_rest(e, start, step);
-    using std::isnan;
-    using std::sqrt;
     this->begin(step);
     auto &x = position.c, &v = velocity.c, &y = skin.c, &r = speed.c;
     auto &d = inner(0).c, &u_ = inner(1).c;
@@ -188,7 +181,6 @@ class SeriesFlow : public SeriesStep<T> {
   /// Evaluates the recurrences where u and w begin at 0. The direction is that of u/σ and w/σ, so
   /// that order n needs the velocity of order n + 1, in which the equation is linear.
   void expand_from_rest(const SeriesEquation<T>& e, const SeriesState<T>& start, Real step) {
-    using std::sqrt;
     this->begin(step);
     begins_ = 1;
     auto &x = position.c, &v = velocity.c, &y = skin.c, &r = speed.c;
@@ -252,10 +244,7 @@ class SeriesFlow : public SeriesStep<T> {
   /// the energy that the residual supplies, as the slope of friction dissipates energy unless it is
   /// negative.
   bool bound(const SeriesEquation<T>& e) {
-    using detail::exp;
-    using std::abs;
     using std::max;
-    using std::sqrt;
     const Real h = span(), m = plain(e.mass), k = plain(e.stiffness), b = plain(e.damping);
     const Real b_change = plain(e.damping_rate) * h, decay = plain(e.skin_decay);
     const Real f = plain(e.skin_factor.value), f_change = plain(e.skin_factor.rate) * h;

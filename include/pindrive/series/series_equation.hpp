@@ -77,7 +77,6 @@ struct SeriesEquation {
   /// and the residual of the equation of y (`missed`); f may grow from 0 only.
   template <class Real>
   Real skin_error(Real h, Real pull, Real faster, Real missed) const {
-    using std::abs;
     constexpr Real never = std::numeric_limits<Real>::infinity();
     if (skin_stiffness == 0) return Real(0);
     const Real f = plain(skin_factor.value), f_end = f + plain(skin_factor.rate) * h;

@@ -96,7 +96,7 @@ class SeriesMode {
   /// Guards that are exactly zero at the begin: of the speeds, and the side of a stick force at its
   /// limit.
   struct Reached {
-    detail::ActiveGuard plate{detail::ActiveGuard::none}, finger{detail::ActiveGuard::none};
+    ActiveGuard plate{ActiveGuard::none}, finger{ActiveGuard::none};
     int limit{0};
     bool push{false};  ///< the push of a stop
   };
@@ -105,7 +105,7 @@ class SeriesMode {
   /// end of its branch or (none) margin of a stick force on one side.
   struct Guard {
     Polynomial<T> path;
-    detail::ActiveGuard bound;
+    ActiveGuard bound;
     bool plate;
     int side;
     T zero;  ///< time at which the guard becomes negative, s; infinite if never
@@ -125,10 +125,10 @@ class SeriesMode {
 
    private:
     friend class SeriesMode;
-    void add(Polynomial<T> path, bool at_zero, detail::ActiveGuard bound, bool plate, int side) {
+    void add(Polynomial<T> path, bool at_zero, ActiveGuard bound, bool plate, int side) {
       if (at_zero) leave_zero(path.c);
       // A step that begins beyond the guard by rounding and moves away ends at once.
-      const bool speed = bound == detail::ActiveGuard::lower || bound == detail::ActiveGuard::upper;
+      const bool speed = bound == ActiveGuard::lower || bound == ActiveGuard::upper;
       const bool beyond = speed && !at_zero && path.c[0] < 0 && path.c[1] < 0;
       const T zero = beyond ? T(0) : first_zero(path);
       list_[count_++] = {path, bound, plate, side, zero};
@@ -149,7 +149,7 @@ class SeriesMode {
     Guards found;
     if (held_by_stop(drive_, mode_)) {
       const int end = stop_sign(mode_.stop);
-      found.add(T(-end) * step.stick_force, at.push, detail::ActiveGuard::push, false, end);
+      found.add(T(-end) * step.stick_force, at.push, ActiveGuard::push, false, end);
     } else if (mode_.stuck()) {
       Line<T> most{T(0), T(0)};
       if (mode_.plate == ContactState::stick)
@@ -171,7 +171,7 @@ class SeriesMode {
       between(found, speed, finger(), at.finger, false, false);
     }
     if (mode_.finger == ContactState::elastic_stick) {
-      const int limit = at.finger == detail::ActiveGuard::none ? 0 : begins_with(step.skin);
+      const int limit = at.finger == ActiveGuard::none ? 0 : begins_with(step.skin);
       within(found, step.skin,
              {drive_.finger.static_limit * inputs_.finger_load.value,
               drive_.finger.static_limit * inputs_.finger_load.rate},
@@ -204,9 +204,8 @@ class SeriesMode {
     return 1;
   }
 
-  void between(Guards& found, const Polynomial<T>& speed, const Branch<T>& range,
-               detail::ActiveGuard at, bool is_plate, bool oblique) const {
-    using detail::ActiveGuard;
+  void between(Guards& found, const Polynomial<T>& speed, const Branch<T>& range, ActiveGuard at,
+               bool is_plate, bool oblique) const {
     Polynomial<T> above = speed, below = T(-1) * speed;
     above += Line<T>{-range.from, T(0)};
     below += Line<T>{range.to, T(0)};
@@ -216,7 +215,6 @@ class SeriesMode {
       found.add(below, at == ActiveGuard::upper, ActiveGuard::upper, is_plate, 0);
   }
   void stops(Guards& found, const SeriesStep<T>& step, const Reached& at) const {
-    using detail::ActiveGuard;
     const Stops<T>& stops = drive_.stops;
     const auto beyond = [&](int end, int sense) {
       Polynomial<T> path = T(sense * end) * step.position;
@@ -244,7 +242,7 @@ class SeriesMode {
     for (const int side : {1, -1}) {
       Polynomial<T> left = T(-side) * force;
       left += most;
-      found.add(left, side == at_limit, detail::ActiveGuard::none, is_plate, side);
+      found.add(left, side == at_limit, ActiveGuard::none, is_plate, side);
     }
   }
 

@@ -46,9 +46,6 @@ class SeriesStep {
 
   /// Part of the step at which the last terms are within the rounding of the first terms.
   Real suggested_part() const {
-    using detail::exp;
-    using detail::log;
-    using std::abs;
     Real least = std::numeric_limits<Real>::infinity();
     for (const Polynomial<T>* p : {&velocity, &skin, &speed}) {
       const auto size = [&](int n) { return abs(plain(p->c[n])); };
@@ -94,7 +91,6 @@ class SeriesStep {
   /// Removes the last terms that are within rounding of the sums that they enter: for velocity and
   /// skin, within rounding of their rates.
   void trim() {
-    using std::abs;
     int needed = 1;
     Real dropped{0};
     for (const Polynomial<T>* p : {&velocity, &skin, &speed, &plate_force, &stick_force}) {

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "pindrive/model/model.hpp"
 #include "pindrive/numbers/limits.hpp"
@@ -43,7 +44,6 @@ class SlowSliderFlow : public SeriesFlow<T> {
   SlowSliderFlow(SeriesEquation<T> e, const SeriesState<T>& start, T limit,
                  bool within_step = false) {
     this->eliminated = EliminatedPart::of_slider;
-    if (!stiff(e, start)) return;
     const Real step = 1 / slow_rate(e, start), left = plain(limit) / step;
     e.stretching = stretching_.data();
     Real part{1}, last{0};
@@ -51,22 +51,20 @@ class SlowSliderFlow : public SeriesFlow<T> {
     for (int round = 0;; ++round) {
       this->expand(e, start, step);
       follow(e, step);
-      part =
-          within_step ? left : std::min({this->suggested_part(), left, Real(detail::longest_step)});
+      part = within_step ? left : std::min({this->suggested_part(), left, Real(longest_step)});
       // Dual derivatives converge one iteration later.
       if (converged) break;
       const Real changed = change(part);
       converged = changed <= last_digit<Real> * plain(e.skin_decay) * this->size_of(skin, part);
-      if (round == detail::slow_iterations || (round > 2 && !converged && changed > last / 2))
-        return;
+      if (round == slow_iterations || (round > 2 && !converged && changed > last / 2)) return;
       last = changed;
     }
     this->rescale(part);
     if (!within_step && !starts_from(start)) return;
     holds_ = within_step || bound(e, start.time, change(part));
-    for (int tries = 0; !holds_ && tries < detail::slow_reductions; ++tries) {
-      part *= Real(detail::step_reduction);
-      this->rescale(Real(detail::step_reduction));
+    for (int tries = 0; !holds_ && tries < slow_reductions; ++tries) {
+      part *= Real(step_reduction);
+      this->rescale(Real(step_reduction));
       holds_ = bound(e, start.time, change(part));
     }
     if (holds_) this->trim();
@@ -81,8 +79,6 @@ class SlowSliderFlow : public SeriesFlow<T> {
 
   /// Estimate of the fastest rate of the slow motion, 1/s; the skin acts as a damper φ.
   static Real slow_rate(const SeriesEquation<T>& e, const SeriesState<T>& start) {
-    using std::abs;
-    using std::sqrt;
     const Real m = plain(e.mass), f = plain(e.skin_factor.value);
     return (abs(plain(e.damping)) + abs(plain(e.load.value) * plain(e.plate_slope)) + f) / m +
            sqrt((plain(e.stiffness) + abs(plain(e.skin_factor.rate)) + abs(plain(e.damping_rate)) +
@@ -111,7 +107,6 @@ class SlowSliderFlow : public SeriesFlow<T> {
   /// Bounds the truncation errors; true if within rounding. The error of y is at most the restoring
   /// effect of the velocity error and of the residual of its equation, and conversely.
   bool bound(const SeriesEquation<T>& e, T time, Real missed_skin) {
-    using std::abs;
     using std::max;
     using std::min;
     const Real h = span(), m = plain(e.mass), k = plain(e.stiffness), b = plain(e.damping);
@@ -148,7 +143,6 @@ class SlowSliderFlow : public SeriesFlow<T> {
 
   /// True if the slider starts with the slow velocity: a deviation decays at once.
   bool starts_from(const SeriesState<T>& start) const {
-    using std::abs;
     const Real changes = abs(plain(velocity.c[1])) / span() + abs(plain(skin.c[1])) / span();
     return abs(plain(start.skin - skin.c[0])) <= difference_error<Real> * sums_of(skin.c)[0] +
                                                      rounding<Real> * plain(start.time) * changes;
@@ -158,5 +152,16 @@ class SlowSliderFlow : public SeriesFlow<T> {
   std::array<Real, N + 1> changes_{};  // its changes in the last iteration
   bool holds_{false};
 };
+
+/// Returns a step of a pin on a slow slider; none if the slider has a fast transient.
+template <class T>
+std::optional<SlowSliderFlow<T>> slow_slider(const SeriesEquation<T>& e,
+                                             const SeriesState<T>& start, T limit,
+                                             bool within_step = false) {
+  std::optional<SlowSliderFlow<T>> flow;
+  if (!SlowSliderFlow<T>::stiff(e, start)) return flow;
+  if (!flow.emplace(e, start, limit, within_step).is_valid()) flow.reset();
+  return flow;
+}
 
 }  // namespace pindrive::detail

@@ -1,0 +1,91 @@
+/// Detection of irregular motions: chaotic or quasi-periodic, without growth or decay.
+#pragma once
+
+#include <algorithm>
+#include <limits>
+
+#include "pindrive/law/state.hpp"
+#include "pindrive/model/model.hpp"
+#include "pindrive/numbers/limits.hpp"
+
+namespace pindrive::detail {
+
+/// Natural scales of a motion, measured along its events: range of the position and largest speed.
+template <class T>
+class Extent {
+ public:
+  /// Includes an event, between a segment and the state after the event.
+  void add(const Flow<T>& ended, T x, T v) {
+    lowest_ = std::min(lowest_, x);
+    highest_ = std::max(highest_, x);
+    amplitude_ = std::max(amplitude_, abs(ended.position.value));
+    speed_ = std::max({speed_, abs(v), abs(ended.velocity.value)});
+  }
+  T length() const { return std::max(highest_ - lowest_, amplitude_); }  ///< m
+  T speed() const { return speed_; }                                     ///< m/s
+
+ private:
+  T lowest_{std::numeric_limits<T>::infinity()}, highest_{-std::numeric_limits<T>::infinity()};
+  T amplitude_{0}, speed_{0};
+};
+
+/// Detects that a motion without a period neither grows nor decays.
+///
+/// The durations of windows of equally many events increase or decrease without exception in a motion that
+/// grows or decays, or the ranges of the position in blocks of windows do. A motion with many windows, of which
+/// many turn from longer to shorter or back, and with a block that contradicts growth and decay, is irregular.
+template <class T>
+class IrregularityDetector {
+ public:
+  /// Counts an event at a time, between a segment and the state after the event. Sets the ending in the
+  /// outcome if the motion is irregular.
+  void visit(const Segment<T>& ended, T time, const State<T>& state, Outcome<T>& outcome) {
+    block_.add(ended.flow, state.x, state.v);
+    if (++in_window_ == irregular_window) end_window(time, outcome);
+  }
+
+ private:
+  static constexpr int windows_in_block = irregular_windows / 8;
+
+  /// Compares the durations of a window of events and of the window before.
+  void end_window(T time, Outcome<T>& outcome) {
+    const T lasts = time - window_begin_, longer = lasts - lasted_;
+    if (abs(longer) > T(repeat_tolerance) * lasts) {
+      if (windows_ > 1 && (longer > 0) != grew_) ++turns_;
+      grew_ = longer > 0;
+    }
+    lasted_ = lasts;
+    window_begin_ = time;
+    in_window_ = 0;
+    if (++windows_ == irregular_windows / 2) half_time_ = time;
+    if (windows_ % windows_in_block == 0) end_block();
+    if (windows_ < irregular_windows) return;
+    if (4 * turns_ >= irregular_windows && !grows_ && !decays_) {
+      outcome.end = End::irregular;
+      outcome.cycle_begin = half_time_;
+    }
+    windows_ = turns_ = 0;
+    grows_ = decays_ = true;
+  }
+  /// Compares the ranges of the position in a block of windows and in the block before.
+  void end_block() {
+    const T length = block_.length();
+    if (windows_ > windows_in_block) {
+      grows_ = grows_ && length > length_;
+      decays_ = decays_ && length < length_;
+    }
+    length_ = length;
+    block_ = {};
+  }
+
+  int in_window_{0}, windows_{0};  ///< events in the window, windows so far
+  int turns_{0};                   ///< changes between longer and shorter windows
+  bool grew_{false};
+  bool grows_{true}, decays_{true};  ///< in each block of windows
+  Extent<T> block_;
+  T length_{0};                    ///< range in the block before, m
+  T window_begin_{0}, lasted_{0};  ///< begin of the window; duration of the window before, s
+  T half_time_{0};                 ///< time after half of the windows, s
+};
+
+}  // namespace pindrive::detail
