@@ -46,7 +46,7 @@ int rounds_until_cycle(double offset, double q) {
     pd::Segment<double> carried{};
     carried.begin = 0.5 * i;
     carried.end = 0.5 * i + 0.2;
-    carried.flow.position.value = 1e-3;  // it moves
+    carried.flow.position.value = 1e-3, carried.flow.velocity.value = 0.1;  // it moves
     carried.mode = {ContactState::stick, ContactState::absent};
     const pd::Mode after{ContactState::slip_backward, ContactState::absent};
     cycles.visit(carried, after, carried.end, 0, {1e-3 * (1 + offset), 0.1, 0, 1e-3, 0}, outcome);

@@ -15,11 +15,15 @@ template <class T>
 class Extent {
  public:
   /// Includes an event, between a segment and the state after the event.
-  void add(const Flow<T>& ended, T x, T v) {
+  void add(const Segment<T>& ended, T x, T v) {
     lowest_ = std::min(lowest_, x);
     highest_ = std::max(highest_, x);
-    amplitude_ = std::max(amplitude_, abs(ended.position.value));
-    speed_ = std::max({speed_, abs(v), abs(ended.velocity.value)});
+    // The pin may turn between events, but in a short segment far from its centre it does not get there.
+    const Path<T>& velocity = ended.flow.velocity;
+    const T lasts = ended.end - ended.begin;
+    const T reach = lasts * (abs(velocity.value) + lasts * abs(velocity.slope));
+    amplitude_ = std::max(amplitude_, std::min(abs(ended.flow.position.value), reach));
+    speed_ = std::max({speed_, abs(v), abs(velocity.value)});
   }
   T length() const { return std::max(highest_ - lowest_, amplitude_); }  ///< m
   T speed() const { return speed_; }                                     ///< m/s
@@ -40,7 +44,7 @@ class IrregularityDetector {
   /// Counts an event at a time, between a segment and the state after the event. Sets the ending in the
   /// outcome if the motion is irregular.
   void visit(const Segment<T>& ended, T time, const State<T>& state, Outcome<T>& outcome) {
-    block_.add(ended.flow, state.x, state.v);
+    block_.add(ended, state.x, state.v);
     if (++in_window_ == irregular_window) end_window(time, outcome);
   }
 

@@ -99,7 +99,7 @@ class CycleDetector {
   }
   /// Includes the segment that an event ends in the scales since a kept event.
   static void extend(Visit& visit, const Segment<T>& ended, const Event& now) {
-    visit.extent.add(ended.flow, now.state.x, now.state.v);
+    visit.extent.add(ended, now.state.x, now.state.v);
     if (ended.mode.plate == ContactState::stick) visit.stuck += ended.end - ended.begin;
   }
 
