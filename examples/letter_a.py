@@ -16,11 +16,11 @@ SPEEDS = (30, 60, 120)  # mm/s
 DEVICE = Path(__file__).with_name("tactile-reader.toml")
 COLUMN = ["array.columns=1", "array.rows=8", "array.spot_scale=0.25"]
 
-judgements = []
+evaluations = []
 for speed in SPEEDS:
     device = pd.load_device(DEVICE, [*COLUMN, f"hand_speed={speed} mm/s"])
-    judgements.append(pd.scan(device, "A").evaluate())
+    evaluations.append(pd.scan(device, "A").evaluate())
 
 picture = sys.argv[1] if len(sys.argv) > 1 else "letter-a.png"
-save(plot_reliefs(judgements), picture)
+save(plot_reliefs(evaluations), picture)
 print(f"Wrote {picture}")

@@ -252,13 +252,13 @@ def keys(page: str) -> list[str]:
     return [name.strip("`[]") for name in re.findall(r"^\| (\S+) \|", table, re.M)]
 
 
-def test_the_keys_of_study_and_wish_files_are_in_the_reference() -> None:
-    from pindrive.optimisation.wish import _KEYS
+def test_the_keys_of_study_and_problem_files_are_in_the_reference() -> None:
+    from pindrive.optimisation.problem import _KEYS
     from pindrive.study.axes import _WAYS
     from pindrive.study.spec import _OWN
 
     assert sorted(keys("study-file.md")) == sorted(_OWN)
-    assert sorted(keys("wish-file.md")) == sorted(_KEYS)
+    assert sorted(keys("problem-file.md")) == sorted(_KEYS)
     text = (DOCS / "reference" / "study-file.md").read_text("utf-8")
     assert [way for way in _WAYS if f"{{ {way} = " not in text] == []
 

@@ -17,7 +17,7 @@ from pindrive import lazy
 ROOT = Path(__file__).resolve().parents[1]
 READER = EXAMPLES / "tactile-reader.toml"
 STUDY = EXAMPLES / "tactile-mouse-study.toml"
-WISH = EXAMPLES / "tactile-mouse-wish.toml"
+PROBLEM = EXAMPLES / "tactile-mouse-problem.toml"
 RECORDING = EXAMPLES / "release-recording.csv"
 ADVICE = 'is not installed; python -m pip install "pindrive[complete]" installs it'
 
@@ -78,7 +78,7 @@ def test_what_works_without(tmp_path: Path, command: tuple[str | Path, ...], sai
         (("sweep", STUDY, "-o", "a.nc"), "a.nc: h5netcdf"),
         (("sensitivity", STUDY), "scipy"),
         (("fit", EXAMPLE, RECORDING, "--free", "mass"), "scipy"),
-        (("design", WISH, "-o", "a.toml"), "scipy"),
+        (("design", PROBLEM, "-o", "a.toml"), "scipy"),
         (("paper", "-o", "a"), "xarray"),
     ],
     ids=lambda value: value[0] if isinstance(value, tuple) else "",

@@ -13,7 +13,7 @@ import pytest
 
 import pindrive as pd
 from command import EXAMPLES
-from pindrive.evaluation import judge, largest_speeds
+from pindrive.evaluation import evaluate, largest_speeds
 from pindrive.quantities.value import LONGEST, concise, equal_by_value
 
 
@@ -78,8 +78,8 @@ VALUES: dict[str, Callable[[], Any]] = {
     "hand": lambda: scanned().path,
     "scan": scanned,
     "pin": lambda: scanned().pins[0],
-    "judgement": lambda: judge(scanned()),
-    "line": lambda: judge(scanned()).lines[0],
+    "evaluation": lambda: evaluate(scanned()),
+    "line": lambda: evaluate(scanned()).lines[0],
     "speeds": lambda: largest_speeds(reader().device, [0.004], fastest=0.04),
     "study": study,
     "indices": lambda: pd.sobol(study(), rows=128),

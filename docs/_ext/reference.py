@@ -20,7 +20,7 @@ from pindrive.cli.app import app
 from pindrive.files.keys import NUMBERS
 from pindrive.files.keys import template as device_template
 from pindrive.quantities.quantity import Quantity
-from pindrive.quantities.results import DESIGNED, JUDGED, LINE, OUTPUTS, SCANNED, SERIES
+from pindrive.quantities.results import DESIGNED, LINE, LINE_COUNTS, OUTPUTS, SCANNED, SERIES
 from pindrive.quantities.status import End, Status
 from pindrive.study.template import study_template
 
@@ -96,7 +96,7 @@ def dataset() -> str:
         "Numbers of a motion": OUTPUTS,
         "Of the pins of a scan": SCANNED,
         "Of the lines that were read": LINE,
-        "What a scan is judged by": JUDGED,
+        "Counts of the evaluation": LINE_COUNTS,
         "Of a design": DESIGNED,
     }
     return "\n\n".join(f"## {name}\n\n{table(headings, rows(of))}" for name, of in groups.items())
@@ -123,9 +123,9 @@ def python() -> str:
     return "\n\n".join(table((f"`{of}`", ""), names) for of, names in groups.items())
 
 
-def wish_file() -> str:
-    """An example of a wish."""
-    return code((EXAMPLES / "tactile-mouse-wish.toml").read_text("utf-8"), "toml")
+def problem_file() -> str:
+    """An example of a design problem."""
+    return code((EXAMPLES / "tactile-mouse-problem.toml").read_text("utf-8"), "toml")
 
 
 PAGES: Final = Path(__file__).parents[1] / "reference"
@@ -134,7 +134,7 @@ PARTS: Final[dict[str, Callable[[], str]]] = {
     "commands": commands,
     "device-file": device_file,
     "study-file": study_file,
-    "wish-file": wish_file,
+    "problem-file": problem_file,
     "dataset": dataset,
     "python": python,
     "status": status,

@@ -10,15 +10,15 @@ import xarray as xr
 from rich.console import Console
 
 from command import GOOD, refused, run
+from design_problems import SMALL
 from pindrive import load_device
 from pindrive.cli.design import NONE_MEETS
 from pindrive.cli.design_tables import design_report
 from pindrive.optimisation import effort, optimise
-from wishes import SMALL
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
 
-WISH = """
+PROBLEM = """
 name = "short"
 base = "device.toml"
 [axes]
@@ -38,14 +38,14 @@ minimise = "settling_time"
 @pytest.fixture(autouse=True)
 def inputs(in_empty_folder: None, monkeypatch: pytest.MonkeyPatch) -> None:
     Path("device.toml").write_text(GOOD)
-    Path("wish.toml").write_text(WISH)
+    Path("problem.toml").write_text(PROBLEM)
     monkeypatch.setattr(effort, "BATCHED", SMALL)
 
 
 def test_a_design_is_printed_and_written_or_the_closest_to_it() -> None:
     files = ("design.toml", "design.nc", "design.json", "design.png")
     outputs = [word for file in files[:3] for word in ("-o", file)]
-    done = run("design", "wish.toml", *outputs, "--plot", files[3])
+    done = run("design", "problem.toml", *outputs, "--plot", files[3])
     assert done.exit_code == 0, done.output
     for words in (
         "Design: short",
@@ -57,7 +57,9 @@ def test_a_design_is_printed_and_written_or_the_closest_to_it() -> None:
     assert "Yield within the tolerances: " in done.stdout
     assert done.stdout.endswith("".join(f"Wrote {file}\n" for file in files))
     text = Path("design.toml").read_text("utf-8")
-    assert text.startswith("# Designed by pindrive.\n# Wish: wish.toml, short; seed 1.\n")
+    assert text.startswith(
+        "# Designed by pindrive.\n# Problem: problem.toml, short; seed 1.\n"
+    )
     device = load_device("design.toml")
     with xr.open_dataset("design.nc", engine="h5netcdf") as data:
         assert float(data.damping) == device.drive.damping
@@ -70,18 +72,18 @@ def test_a_design_is_printed_and_written_or_the_closest_to_it() -> None:
     assert f"{1e3 * settling:.4g}"[:5] in simulated.stdout
 
     # No design is an answer too, with the closest and its own status.
-    Path("wish.toml").write_text(WISH.replace(">= 2.2 mm", ">= 5 mm"))
-    done = run("design", "wish.toml", "-o", "design.toml", "--force")
+    Path("problem.toml").write_text(PROBLEM.replace(">= 2.2 mm", ">= 5 mm"))
+    done = run("design", "problem.toml", "-o", "design.toml", "--force")
     assert done.exit_code == NONE_MEETS == 1
-    assert "No design meets this: the closest misses peak_displacement ≥ 5 mm by " in done.stdout
+    assert "No design meets this: the closest violates peak_displacement ≥ 5 mm by " in done.stdout
     text = Path("design.toml").read_text("utf-8")
-    assert "# No design meets the demands; the closest misses peak_displacement" in text
+    assert "# No design meets the constraints; the closest violates peak_displacement" in text
     load_device("design.toml")
 
 
 def test_tables_show_values_in_their_units() -> None:
     """Every number of the report is one of the result, in its display unit."""
-    found = optimise(None, "wish.toml", effort=SMALL)
+    found = optimise(None, "problem.toml", effort=SMALL)
     text = Path("report.txt")
     with text.open("w", encoding="utf-8") as file:
         Console(file=file, width=120).print(design_report(found))
@@ -92,31 +94,31 @@ def test_tables_show_values_in_their_units() -> None:
     assert float(rows["finger.kinetic"][1]) == pytest.approx(
         1e3 * found.values["finger.kinetic"], rel=1e-3
     )
-    (demanded,) = found.demands
-    _, sign, limit, unit, worst, _, room, *_ = rows["peak_displacement"]
+    (required,) = found.constraints
+    _, sign, limit, unit, worst, _, margin, *_ = rows["peak_displacement"]
     assert (sign, limit, unit) == ("≥", "2.2", "mm")
-    assert float(worst) == pytest.approx(1e3 * demanded.value, rel=1e-3)
-    assert float(room) == pytest.approx(-1e3 * demanded.excess, rel=1e-2) and float(room) >= 0.0
+    assert float(worst) == pytest.approx(1e3 * required.value, rel=1e-3)
+    assert float(margin) == pytest.approx(-1e3 * required.excess, rel=1e-2) and float(margin) >= 0.0
     assert float(rows["minimise"][2]) == pytest.approx(1e3 * found.goals[0].value, rel=1e-3)
 
 
 def test_files_that_a_design_may_not_replace_are_refused() -> None:
     for file, said in (
         ("design.csv", "-o design.csv: must end in .toml, .nc, .json"),
-        ("wish.toml", "is read by this command"),
+        ("problem.toml", "is read by this command"),
         ("device.toml", "is read by this command"),
     ):
-        assert said in refused("design", "wish.toml", "-o", file, "--force")
+        assert said in refused("design", "problem.toml", "-o", file, "--force")
     Path("mine.toml").write_text(GOOD)
     assert "exists already; --force replaces it" in refused(
-        "design", "wish.toml", "-o", "mine.toml"
+        "design", "problem.toml", "-o", "mine.toml"
     )
 
 
-def test_what_is_wrong_with_a_wish_is_said_in_a_line() -> None:
-    Path("wish.toml").write_text(WISH.replace("minimise", "minimize"))
-    line = refused("design", "wish.toml")
-    assert line == "wish.toml: unknown key goals.minimize; there are minimise and maximise"
-    assert "is a device file; a wish names" in refused("design", "device.toml")
-    Path("wish.toml").write_text(WISH)
-    assert "unknown key dampling" in refused("design", "wish.toml", "--set", "dampling=1")
+def test_what_is_wrong_with_a_design_problem_is_said_in_a_line() -> None:
+    Path("problem.toml").write_text(PROBLEM.replace("minimise", "minimize"))
+    line = refused("design", "problem.toml")
+    assert line == "problem.toml: unknown key goals.minimize; there are minimise and maximise"
+    assert "is a device file; a design problem names" in refused("design", "device.toml")
+    Path("problem.toml").write_text(PROBLEM)
+    assert "unknown key dampling" in refused("design", "problem.toml", "--set", "dampling=1")

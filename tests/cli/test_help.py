@@ -16,11 +16,11 @@ import typer.main
 
 import pindrive.cli
 from command import run
+from design_problems import SMALL
 from pindrive.cli.app import app
 from pindrive.cli.help import COMMAND_GROUPS
 from pindrive.cli.studio import PAGE as STUDIO_PAGE
 from pindrive.optimisation import effort
-from wishes import SMALL
 
 PROGRAM: Any = typer.main.get_command(app)
 NAMES: list[str] = PROGRAM.list_commands(None)
@@ -126,7 +126,7 @@ def test_the_examples_run_one_after_the_other(monkeypatch: pytest.MonkeyPatch) -
     Path("pin.csv").write_text(f"time [ms],position [mm]\n{rows}")
     assert run("init", "study.toml", "--study").exit_code == 0
     vary = 'base = "device.toml"\n[axes]\ndrive.stiffness = ["200 N/m", "300 N/m"]\n'
-    Path("wish.toml").write_text(f'{vary}[goals]\nminimise = "settling_time"\n')
+    Path("problem.toml").write_text(f'{vary}[goals]\nminimise = "settling_time"\n')
     monkeypatch.setattr(effort, "BATCHED", SMALL)
     for name in sorted(NAMES, key=lambda name: name not in BEFORE_OTHERS):
         if name == "paper" or (name == "studio" and not STUDIO_PAGE.exists()):
@@ -165,7 +165,7 @@ def test_the_script_for_a_shell(
     [
         ("pindrive si", ["simulate"]),
         ("pindrive s", ["simulate", "studio", "scan", "speed", "sensitivity", "sweep"]),
-        ("pindrive init --", ["--force", "--device", "--study", "--wish", "--help"]),
+        ("pindrive init --", ["--force", "--device", "--study", "--problem", "--help"]),
     ],
 )
 def test_a_shell_is_told_what_may_follow(typed: str, offered: list[str]) -> None:

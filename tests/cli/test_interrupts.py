@@ -52,9 +52,9 @@ def test_ctrl_c_ends_a_command(name: str) -> None:
     assert list(Path().iterdir()) == []
 
 
-WISHES = {
-    "motions": "tactile-mouse-wish.toml",
-    "scans": "tactile-reader-wish.toml --set control.sample_rate=250Hz",
+PROBLEMS = {
+    "motions": "tactile-mouse-problem.toml",
+    "scans": "tactile-reader-problem.toml --set control.sample_rate=250Hz",
 }
 INTERRUPTED = """
 import os, signal
@@ -69,11 +69,11 @@ main()
 """
 
 
-@pytest.mark.parametrize("name", WISHES)
+@pytest.mark.parametrize("name", PROBLEMS)
 def test_ctrl_c_ends_a_design(name: str) -> None:
     """Sent between the screening and the search; files are written at the end alone."""
-    wish, *options = WISHES[name].split()
-    words = ["design", str(EXAMPLES / wish), *options, "-o", "design.toml"]
+    problem, *options = PROBLEMS[name].split()
+    words = ["design", str(EXAMPLES / problem), *options, "-o", "design.toml"]
     ended = subprocess.run(
         [sys.executable, "-c", INTERRUPTED, *words],
         stderr=subprocess.PIPE,

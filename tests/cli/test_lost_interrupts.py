@@ -123,9 +123,9 @@ def test_one_outside_of_a_command_ends_in_a_line_too(tmp_path: Path) -> None:
 MOUSE, READER = (
     shlex.quote(f"{EXAMPLES}/tactile-{name}-study.toml") for name in ("mouse", "reader")
 )
-DEVICE, RECORDING, WISH = (
+DEVICE, RECORDING, PROBLEM = (
     shlex.quote(f"{EXAMPLES}/{name}")
-    for name in ("tactile-mouse.toml", "release-recording.csv", "tactile-mouse-wish.toml")
+    for name in ("tactile-mouse.toml", "release-recording.csv", "tactile-mouse-problem.toml")
 )
 MOMENTS = {
     "typer": f"sweep {MOUSE} -o study.nc",
@@ -133,7 +133,7 @@ MOMENTS = {
     "numpy": f"sensitivity {MOUSE}",
     "pindrive.study.robustness": f"robustness {READER}",
     "pindrive.fitting.recording": f"fit {DEVICE} {RECORDING} --free mass,stiffness",
-    "pindrive.optimisation.wish": f"design {WISH} -o design.toml",
+    "pindrive.optimisation.problem": f"design {PROBLEM} -o design.toml",
 }
 """A command that takes long, by a module that it is just importing."""
 

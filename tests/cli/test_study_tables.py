@@ -11,15 +11,15 @@ import pytest
 from pindrive.cli.study_tables import (
     QUANTILES,
     count,
-    influence_report,
     percent,
     robustness_report,
+    sobol_report,
 )
 from pindrive.quantities.names import label
 from pindrive.study.design import Plan
 from pindrive.study.outputs import NUMBERS
 from pindrive.study.robustness import Robustness, robustness
-from pindrive.study.sensitivity import Influence, sobol
+from pindrive.study.sensitivity import SobolIndices, sobol
 from pindrive.study.slices import elasticity
 from pindrive.study.study import load_study
 from table_reading import numbers, printed, table
@@ -29,7 +29,7 @@ OVER = "Over the whole ranges: part of the variance due to, "
 
 
 @pytest.fixture(scope="module")
-def found() -> Influence:
+def found() -> SobolIndices:
     return sobol(load_study(STUDY), tolerances=True, rows=128, near=True)
 
 
@@ -49,8 +49,8 @@ def scattered(plan: Plan) -> Robustness:
     return robustness(plan, count=1000)
 
 
-def test_elasticities_have_their_signs(found: Influence) -> None:
-    heads, *rows = table(influence_report(found), "Near the device's values")
+def test_elasticities_have_their_signs(found: SobolIndices) -> None:
+    heads, *rows = table(sobol_report(found), "Near the device's values")
     assert heads == ["number", "F_p", "F_f", "m", "k", "ζ", "v_p"]
     assert found.near is not None
     named = {label(name): name for name in found.over}
@@ -72,8 +72,8 @@ def test_elasticities_have_their_signs(found: Influence) -> None:
 @pytest.mark.parametrize(
     ("order", "title"), [("first", "by itself"), ("total", "with all interactions")]
 )
-def test_indices_stand_under_their_order(found: Influence, order: str, title: str) -> None:
-    heads, *rows = table(influence_report(found), OVER + title)
+def test_indices_stand_under_their_order(found: SobolIndices, order: str, title: str) -> None:
+    heads, *rows = table(sobol_report(found), OVER + title)
     assert heads == ["number", "F_p", "F_f", "m", "k", "ζ", "v_p"]
     named = {label(name): name for name in found.over}
     compared = 0
@@ -109,10 +109,10 @@ def test_the_yield(scattered: Robustness, plan: Plan) -> None:
     _, *rows, total = table(robustness_report(plan, scattered), "Yield: of 1 000 designs")
     limits = {"swing ≥ 0.9 mm": True, "swing ≤ 0.95 mm": False, "settling_time ≤ 100 ms": False}
     values = scattered.values
-    for row, (demand, share) in zip(rows, scattered.shares, strict=True):
+    for row, (constraint, share) in zip(rows, scattered.shares, strict=True):
         assert row[0] in limits
         limit, at_least = numbers(row[0])[0] / 1e3, limits[row[0]]
-        met = values[demand.name] >= limit if at_least else values[demand.name] <= limit
+        met = values[constraint.name] >= limit if at_least else values[constraint.name] <= limit
         assert float(row[1].removesuffix(" %")) == pytest.approx(100.0 * met.mean())
         low, high = numbers(row[2])
         assert low == pytest.approx(100.0 * share.low, abs=5e-4)
@@ -140,7 +140,7 @@ def test_worst_cases(scattered: Robustness, plan: Plan) -> None:
     commands = re.findall(
         r"Worst (\w+): pindrive simulate .* --set drive.mass=\"([\d.]+) g\"", said
     )
-    masses = [(label(c.demand.name), 1e3 * c.keys["drive.mass"]) for c in scattered.worst]
+    masses = [(label(c.constraint.name), 1e3 * c.keys["drive.mass"]) for c in scattered.worst]
     assert [name for name, _ in commands] == [name for name, _ in masses]
     assert [float(mass) for _, mass in commands] == pytest.approx([mass for _, mass in masses])
 

@@ -11,7 +11,7 @@ import pytest
 
 from pindrive import Motion, Release, simulate
 from pindrive.cli.scan_tables import (
-    judgement_report,
+    evaluation_report,
     scan_report,
     speed_report,
     verdict_words,
@@ -19,7 +19,7 @@ from pindrive.cli.scan_tables import (
 from pindrive.cli.tables import device_words, ending, motion_report, regime
 from pindrive.device import Criteria, Device, PinArray, Scene, lines, scan
 from pindrive.device.dataset import numbers as pin_numbers
-from pindrive.evaluation import Judgement, judge
+from pindrive.evaluation import Evaluation, evaluate
 from pindrive.evaluation.line_crossings import Cue
 from pindrive.evaluation.resolution import SpeedLimit, Trial
 from pindrive.files.device import load_device
@@ -36,12 +36,12 @@ def motion() -> Motion:
 
 
 @pytest.fixture(scope="module")
-def judged() -> Judgement:
+def evaluated() -> Evaluation:
     drive = load_device(EXAMPLES / "tactile-reader.toml", whole=True).drive
     device = Device(drive=drive, array=PinArray.grid(3, 2, 0.004))
     scene = Scene.from_grating([0.004, 0.0015], count=2, margin=0.008, height=0.008)
     path = lines([scene.lines[0]], 0.005, 0.027, speed=0.15, return_speed=0.15, pause=0.05)
-    return judge(scan(device, scene, path))
+    return evaluate(scan(device, scene, path))
 
 
 def close(cell: str, value: float, scale: float = 1e3) -> bool:
@@ -108,8 +108,8 @@ def test_regimes() -> None:
     assert names == ["undamped", "underdamped", "critically damped", "overdamped"]
 
 
-def test_pins_of_a_scan(judged: Judgement) -> None:
-    done = judged.scan
+def test_pins_of_a_scan(evaluated: Evaluation) -> None:
+    done = evaluated.scan
     heads, *_ = rows = table(scan_report(done), "Pins, over lines every 4, 1.5 mm")
     del heads
     body = [row for row in rows if row[0].isdigit()]
@@ -132,49 +132,49 @@ def test_pins_of_a_scan(judged: Judgement) -> None:
         assert close(row[-1], min(gaps))
 
 
-def test_a_device_in_words(judged: Judgement) -> None:
-    device = judged.scan.device
+def test_a_device_in_words(evaluated: Evaluation) -> None:
+    device = evaluated.scan.device
     reach = device_words(device)[0]
     assert reach.startswith("A magnet carries its pin up to ") and reach.endswith(" mm.")
     assert numbers(reach) == pytest.approx([1e3 * device.reach], rel=1e-3)
 
 
-def test_what_became_of_the_lines(judged: Judgement) -> None:
-    heads, *rows = table(judgement_report(judged), "What became of the lines")
+def test_what_became_of_the_lines(evaluated: Evaluation) -> None:
+    heads, *rows = table(evaluation_report(evaluated), "What became of the lines")
     assert heads == ["symbol", "count", "meaning"]
     found = {row[2]: int(row[1]) for row in rows}
     assert len(found) == len(rows) == 9
-    for name, count in judged.counts.items():
+    for name, count in evaluated.counts.items():
         assert found[QUANTITIES[name].meaning] == count, name
-    counts = judged.counts
-    missed = counts["judged.unseen"] + counts["judged.merged"] + counts["judged.faint"]
-    first = verdict_words(judged)[0]
-    unsure = counts["judged.shown"] - counts["judged.sure"]
-    doubts = [count for count in (counts["judged.unsettled"], unsure) if count]
-    told = [counts["judged.lines"], counts["judged.shown"], *doubts, missed]
+    counts = evaluated.counts
+    missed = counts["lines.unseen"] + counts["lines.merged"] + counts["lines.faint"]
+    first = verdict_words(evaluated)[0]
+    unsure = counts["lines.shown"] - counts["lines.sure"]
+    doubts = [count for count in (counts["lines.unsettled"], unsure) if count]
+    told = [counts["lines.crossed"], counts["lines.shown"], *doubts, missed]
     assert numbers(first)[: len(told)] == told
-    assert numbers(first)[-1] == counts["judged.echoes"]
+    assert numbers(first)[-1] == counts["lines.false"]
 
 
-def test_cues_are_counted(judged: Judgement) -> None:
+def test_cues_are_counted(evaluated: Evaluation) -> None:
     cues: tuple[Cue, ...] = ("none", "felt", "direction", "sure", "sure")
     shown = [
         replace(line, begin=replace(line.begin, cue=cue))
-        for line, cue in zip(judged.shown, cues, strict=False)
+        for line, cue in zip(evaluated.shown, cues, strict=False)
     ]
     assert len(shown) == len(cues)
-    counts = replace(judged, lines=tuple(shown)).counts
-    assert (counts["judged.direction"], counts["judged.sure"]) == (3, 2)
+    counts = replace(evaluated, lines=tuple(shown)).counts
+    assert (counts["lines.direction"], counts["lines.sure"]) == (3, 2)
 
 
-def test_lines_shown(judged: Judgement) -> None:
-    heads, *rows = table(judgement_report(judged), "Lines shown to the finger")
+def test_lines_shown(evaluated: Evaluation) -> None:
+    heads, *rows = table(evaluation_report(evaluated), "Lines shown to the finger")
     assert heads[1:4] == ["least", "median", "most"]
     found = {row[-1]: row for row in rows}
-    for name in judged.lines[0].numbers:
+    for name in evaluated.lines[0].numbers:
         quantity = QUANTITIES[name]
         row = found[quantity.meaning]
-        for cell, value in zip(row[1:4], judged.spread(name), strict=True):
+        for cell, value in zip(row[1:4], evaluated.spread(name), strict=True):
             if isnan(value):
                 assert cell == "-"
             elif cell.endswith("%"):
@@ -183,9 +183,9 @@ def test_lines_shown(judged: Judgement) -> None:
                 assert close(cell, value, quantity.display_scale), name
         if quantity.display_unit:
             assert row[4] == quantity.display_unit
-    least, median, most = judged.spread("line.lag_off")
+    least, median, most = evaluated.spread("line.lag_off")
     assert least < median < most, "a test that can tell them apart"
-    lags = np.array([line.numbers["line.lag_off"] for line in judged.shown])
+    lags = np.array([line.numbers["line.lag_off"] for line in evaluated.shown])
     known = lags[~np.isnan(lags)]
     assert (least, median, most) == (known.min(), np.median(known), known.max())
     assert median != known.mean()

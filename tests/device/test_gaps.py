@@ -23,7 +23,7 @@ from pindrive.cli.tables import console, meeting_words
 from pindrive.device import Device, Electromagnet, HandPath, PinArray, Scan, Scene, scan
 from pindrive.device.geometry import COPPER, IRON, doubts, smallest_gaps
 from pindrive.device.pin_array import Neighbours
-from pindrive.evaluation import judge
+from pindrive.evaluation import evaluate
 from pindrive.files.device import load_device
 from pindrive.plot.scan import plot_reliefs, plot_scan
 from random_scans import RandomScan
@@ -285,9 +285,9 @@ def test_pins_that_pass_through_each_other_are_said_everywhere() -> None:
     assert float(data.pin_gap_time[0]) == gap.time
     assert (int(data.pin_gap_behind[0]), int(data.pin_gap_ahead[0])) == (0, 1)
     assert data.pin_gap.attrs["units"] == "m"
-    judged = judge(done)
-    assert "Pins overlap by up to " in plot_scan(judged).get_suptitle()
-    reliefs = plot_reliefs([judged])
+    evaluated = evaluate(done)
+    assert "Pins overlap by up to " in plot_scan(evaluated).get_suptitle()
+    reliefs = plot_reliefs([evaluated])
     assert "pins overlap by " in reliefs.axes[1].get_title(loc="left")
 
 
@@ -297,7 +297,7 @@ def test_pins_with_room_are_said_to_have_it() -> None:
     assert gap and gap.size > 0.0
     assert done.warnings == ()
     words = f"Smallest gap between neighbouring pins: {1e3 * gap.size:.3f} mm, pins {gap.behind}"
-    assert words in said(done) and words in plot_scan(judge(done)).get_suptitle()
+    assert words in said(done) and words in plot_scan(evaluate(done)).get_suptitle()
     alone = scanned(PinArray())
     assert alone.gaps == () and alone.smallest_gap is None
     assert "gap" not in said(alone) and "pin_gap" not in alone.to_dataset([0.0])
@@ -388,14 +388,14 @@ def test_the_device_that_is_handed_out_can_be_built_and_works(what: str) -> None
         reading.text("Hello", device.array),
         reading.grating([0.001, 0.002, 0.004, 0.008], device.array),
     ):
-        judged = judge(scan(device, scene, reading.strokes(scene, device.array)))
-        counts = judged.counts
-        assert judged.scan.warnings == ()
-        assert counts["judged.lines"] > 50
-        assert counts["judged.shown"] == counts["judged.lines"] == counts["judged.direction"]
-        assert counts["judged.echoes"] == 0
-        room = judged.scan.smallest_gap
+        evaluated = evaluate(scan(device, scene, reading.strokes(scene, device.array)))
+        counts = evaluated.counts
+        assert evaluated.scan.warnings == ()
+        assert counts["lines.crossed"] > 50
+        assert counts["lines.shown"] == counts["lines.crossed"] == counts["lines.direction"]
+        assert counts["lines.false"] == 0
+        room = evaluated.scan.smallest_gap
         assert room and room.size > 0.0015
-        magnets, end = judged.scan.smallest_magnet_gap, judged.scan.slot_room
+        magnets, end = evaluated.scan.smallest_magnet_gap, evaluated.scan.slot_room
         assert magnets and magnets.size == pytest.approx(room.size - (magnet - 0.0015), rel=1e-12)
         assert magnets.size > 0.0 and end and end.size > 0.0

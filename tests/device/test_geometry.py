@@ -19,7 +19,7 @@ from pindrive.device.coil import COIL_NEEDS
 from pindrive.device.electromagnet import DIRECT
 from pindrive.device.geometry import COPPER, doubts, nearest_pins
 from pindrive.device.reading import Reading
-from pindrive.evaluation import judge
+from pindrive.evaluation import evaluate
 from pindrive.files.keys import NUMBERS, line, template
 from pindrive.plot.scan import plot_reliefs, plot_scan
 from pindrive.quantities.device import READER
@@ -202,13 +202,13 @@ def test_the_picture_says_it() -> None:
     made = device(pitch=0.0082, slot=0.005)
     reading = Reading(hand_speed=0.1)
     scene = reading.grating([0.004], made.array)
-    judged = judge(scan(made, scene, reading.strokes(scene, made.array)))
-    gap, room = judged.scan.smallest_magnet_gap, judged.scan.slot_room
+    evaluated = evaluate(scan(made, scene, reading.strokes(scene, made.array)))
+    gap, room = evaluated.scan.smallest_magnet_gap, evaluated.scan.slot_room
     assert gap and gap.size < 0.0 and room and room.size < 0.0
-    title = plot_scan(judged).get_suptitle().splitlines()
+    title = plot_scan(evaluated).get_suptitle().splitlines()
     assert f"Magnets overlap by up to {-1e3 * gap.size:.4g}" in title[-2]
     assert title[-1].startswith(f"Pin {room.pin} would go {-1e3 * room.size:.4g}")
-    relief = plot_reliefs([judged]).axes[1].get_title(loc="left")
+    relief = plot_reliefs([evaluated]).axes[1].get_title(loc="left")
     assert f"magnets overlap by {-1e3 * gap.size:.2g} mm" in relief
 
 

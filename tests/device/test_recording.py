@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 import pindrive as pd
 from command import refused, run
-from pindrive.device import Device, HandPath, Recording, Scene, read_csv, strokes
+from pindrive.device import Device, HandPath, HandRecording, Scene, read_csv, strokes
 from pindrive.device.recording import PEAK_LOSS
 
 Values = NDArray[np.float64]
@@ -51,7 +51,7 @@ def test_a_raw_recording_of_a_mouse_is_the_hand_that_made_it(tmp_path: Path) -> 
     """Speeds within 2 % of the peak, which is within 0.3 %; from row to row they are 70 % off."""
     t, ways = mouse(truth())
     file = write(tmp_path / "raw.csv", "time [s], dx [count], dy [count]", t, ways, 0.0 * ways)
-    recording = Recording.read(file)
+    recording = HandRecording.read(file)
     assert recording.raw()
     assert recording.resolved == pytest.approx(STEP)
     assert recording.rate == pytest.approx(1000.0, rel=0.05)
@@ -111,7 +111,7 @@ def test_at_the_cut_off_three_decibels_are_lost_and_no_time(cutoff: float) -> No
     t = np.linspace(0.0, 4.0, 4001)
     for part, gain in ((0.5, 1.0 / (1.0 + (np.sqrt(2.0) - 1.0) / 16.0)), (1.0, np.sqrt(0.5))):
         wave = np.sin(2.0 * np.pi * part * cutoff * t)
-        smooth = Recording(t, 1e-3 * wave, 0.0 * t).smoothed(cutoff)
+        smooth = HandRecording(t, 1e-3 * wave, 0.0 * t).smoothed(cutoff)
         inner = (t > 1.0) & (t < 3.0)
         assert_allclose(smooth.x[inner], 1e-3 * gain * wave[inner], atol=2e-3 * 1e-3)
 
@@ -123,7 +123,7 @@ def test_the_peak_that_is_lost_is_the_one_stated(lasts: float) -> None:
     true = strokes([(0.0, 0.0), (SPEED * lasts / 1.875, 0.0)], SPEED, pause=0.5, deviation=1e-6)
     t = np.linspace(-0.5, true.end, 20_001)
     x = np.where(t > 0.0, true.position(np.maximum(t, 0.0))[0], 0.0)
-    smooth = Recording(t, x, 0.0 * t).smoothed(20.0)
+    smooth = HandRecording(t, x, 0.0 * t).smoothed(20.0)
     lost = 1.0 - smooth.peak_speed() / SPEED
     assert lost == pytest.approx(PEAK_LOSS / (20.0 * lasts) ** 4, rel=0.1, abs=2e-5)
 
@@ -137,7 +137,7 @@ def test_only_recordings_in_coarse_steps_are_raw() -> None:
     still = 0.0 * t
 
     def raw(place: Values, every: int = 1) -> bool:
-        return Recording(t[::every], place[::every], still[::every]).raw()
+        return HandRecording(t[::every], place[::every], still[::every]).raw()
 
     counts = np.round(x / STEP)
     assert raw(STEP * counts)
@@ -150,7 +150,7 @@ def test_only_recordings_in_coarse_steps_are_raw() -> None:
 
 def test_a_smooth_recording_is_followed_as_it_is() -> None:
     t = np.linspace(0.0, truth().end, 2000)
-    recording = Recording(t, *truth().position(t))
+    recording = HandRecording(t, *truth().position(t))
     path = recording.path()
     middles = 0.5 * (t[1:] + t[:-1])
     x = recording.x
@@ -198,7 +198,7 @@ def test_a_scan_along_a_raw_recording_shows_what_the_hand_itself_does(tmp_path: 
     one, other = pd.scan(device, scene, file).evaluate(), pd.scan(device, scene, truth()).evaluate()
     assert any("beyond the page" in words for words in one.scan.warnings)
     assert one.counts == other.counts
-    assert one.counts["judged.shown"] == 4
+    assert one.counts["lines.shown"] == 4
     for line, like in zip(one.lines, other.lines, strict=True):
         assert line.begin.response == pytest.approx(
             like.begin.response, abs=2e-3
@@ -213,7 +213,7 @@ def test_check_says_what_a_recording_is(tmp_path: Path) -> None:
     result = run("check", str(file))
     assert result.exit_code == 0
     recording, path = result.output.splitlines()
-    before, after = Recording.read(file).peak_speed(), read_csv(file).peak_speed
+    before, after = HandRecording.read(file).peak_speed(), read_csv(file).peak_speed
     assert f"The recording: {len(t)} rows over " in recording
     assert " Hz, in steps of 0.0254 mm (1000 dpi); peak speed " in recording
     assert f"{1e3 * before:.2f} mm/s from row to row, {1e3 * after:.2f} mm/s smoothed." in recording

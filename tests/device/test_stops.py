@@ -1,6 +1,6 @@
 """Devices with end stops: scans with their events, gaps and continuations; what is said, refused.
 
-The motions themselves are judged in tests/core/test_stops.py.
+The motions themselves are evaluated in tests/core/test_stops.py.
 """
 
 from __future__ import annotations

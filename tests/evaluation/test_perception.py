@@ -1,4 +1,4 @@
-"""What a scan is judged to have shown: against dense samples, against `simulate`, and by laws."""
+"""Evaluation of a scan: against dense samples, against `simulate`, and by laws."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from pindrive.device import (
     scan,
     strokes,
 )
-from pindrive.evaluation import Judgement, Line, judge
+from pindrive.evaluation import Evaluation, Line, evaluate
 from pindrive.evaluation.line_crossings import FATES, printed, turnings
 from random_scans import RandomScan
 
@@ -93,7 +93,7 @@ def test_a_line_on_which_the_hand_turns_or_begins_is_not_whole() -> None:
         done = scan(Device(drive=drive()), scene, strokes(stops, 0.06, pause=0.05))
         (passed,) = printed(done.device, done.path, done.scene)
         assert [line.whole for line in passed] == whole
-        assert len(judge(done).lines) == sum(whole)
+        assert len(evaluate(done).lines) == sum(whole)
 
 
 def test_turnings_are_where_the_hand_stops_or_turns() -> None:
@@ -176,7 +176,7 @@ def sampled(done: Scan, pin: PinScan, passed: Any, felt: float) -> list[dict[str
 def test_numbers_are_those_of_dense_samples(finger: Contact, speed: float) -> None:
     scene = grating(0.004, 0.012)
     done = scan(Device(drive=drive(finger)), scene, across(scene, speed))
-    told = judge(done)
+    told = evaluate(done)
     assert {line.fate for line in told.lines} == {"shown"}
     expected = sampled(
         done, done.pins[0], printed(done.device, done.path, done.scene)[0], told.criteria.felt
@@ -196,7 +196,7 @@ def test_smear_is_settling_time_times_hand_speed() -> None:
     """Of a line with nothing after it: the transient that `simulate` finds from the release on."""
     scene, speed = grating(0.004, count=1, margin=0.05), 0.06
     done = scan(Device(drive=drive()), scene, evenly(scene, speed))
-    (pin,), (line,) = done.pins, judge(done).lines
+    (pin,), (line,) = done.pins, evaluate(done).lines
     assert isinstance(pin.load, Profile)
     since = [(t - line.release, load) for t, load in pin.load.rows]
     rows = [(t, load) for t, load in since if t > 0.0]
@@ -221,7 +221,7 @@ def test_smear_is_settling_time_times_hand_speed() -> None:
 
 def test_lag_is_latency_times_an_even_speed() -> None:
     scene, speed = grating(0.004), 0.037
-    for line in judge(scan(Device(drive=drive()), scene, evenly(scene, speed))).lines:
+    for line in evaluate(scan(Device(drive=drive()), scene, evenly(scene, speed))).lines:
         for edge in (line.begin, line.end):
             assert edge.lag == pytest.approx(speed * edge.latency, rel=1e-12)
             assert edge.command < edge.response
@@ -233,7 +233,7 @@ def test_a_later_clock_changes_nothing() -> None:
     path = across(scene)
     late = HandPath(path.times + 16.0, path.vx, path.vy, (float(path.x[0]), float(path.y[0])))
     for finger in (RIGID, SKIN):
-        one, other = (judge(scan(Device(drive=drive(finger)), scene, p)) for p in (path, late))
+        one, other = (evaluate(scan(Device(drive=drive(finger)), scene, p)) for p in (path, late))
         assert one.counts == other.counts
         for a, b in zip(one.lines, other.lines, strict=True):
             assert a.begin.time + 16.0 == pytest.approx(b.begin.time, abs=1e-9)
@@ -247,7 +247,7 @@ def test_mirrored_scene_and_path_are_judged_alike() -> None:
     back = HandPath(path.times, -path.vx, path.vy, (-float(path.x[0]), float(path.y[0])))
     for finger in (RIGID, SKIN):
         device = Device(drive=drive(finger))
-        one, other = judge(scan(device, scene, path)), judge(scan(device, mirrored, back))
+        one, other = evaluate(scan(device, scene, path)), evaluate(scan(device, mirrored, back))
         assert one.counts == other.counts
         assert [e.stroke for e in one.echoes] == pytest.approx([e.stroke for e in other.echoes])
         for a, b in zip(one.lines, other.lines, strict=True):
@@ -257,14 +257,14 @@ def test_mirrored_scene_and_path_are_judged_alike() -> None:
 # ---- fates ---------------------------------------------------------------------------------------
 
 
-def fates(told: Judgement) -> list[str]:
+def fates(told: Evaluation) -> list[str]:
     return [line.fate for line in told.lines]
 
 
 def test_lines_between_two_looks_are_missed() -> None:
     scene = grating(0.0008, 0.008)
     control = ControlBlock(sample_rate=40.0)
-    told = judge(scan(Device(drive=drive(), control=control), scene, evenly(scene, 0.06)))
+    told = evaluate(scan(Device(drive=drive(), control=control), scene, evenly(scene, 0.06)))
     assert fates(told)[2:] == ["shown", "shown"]
     assert "unseen" in fates(told)[:2]
     unseen = next(line for line in told.lines if line.fate == "unseen")
@@ -276,7 +276,7 @@ def test_a_gap_between_two_looks_merges_lines() -> None:
     row[200:290] = row[293:400] = 0.0
     scene = Scene(np.tile(row, (20, 1)), 1e-4, lines=(0.001,))
     control = ControlBlock(sample_rate=40.0)
-    told = judge(scan(Device(drive=drive(), control=control), scene, evenly(scene, 0.06)))
+    told = evaluate(scan(Device(drive=drive(), control=control), scene, evenly(scene, 0.06)))
     assert fates(told) == ["shown", "merged"]
     first, second = told.lines
     assert isnan(first.end.command) and not isnan(first.begin.response)
@@ -286,29 +286,29 @@ def test_a_gap_between_two_looks_merges_lines() -> None:
 def test_a_pin_that_is_not_let_go_merges_lines() -> None:
     scene = grating(0.002, 0.016)
     slow = Electromagnet.from_times(fall_time=0.05)
-    told = judge(scan(Device(drive=drive(), magnet=slow), scene, evenly(scene, 0.09)))
+    told = evaluate(scan(Device(drive=drive(), magnet=slow), scene, evenly(scene, 0.09)))
     assert fates(told) == ["shown", "merged", "shown", "shown"]
     assert isnan(told.lines[0].end.response)
-    assert told.counts["judged.merged"] == 1
+    assert told.counts["lines.merged"] == 1
 
 
 def test_pins_that_no_magnet_moves_show_faint_lines_not_merged_ones() -> None:
     weak = Electromagnet.from_times(hold_force=0.001)
     scene = grating(0.004, count=4)
-    told = judge(scan(Device(drive=drive(SKIN), magnet=weak), scene, across(scene)))
+    told = evaluate(scan(Device(drive=drive(SKIN), magnet=weak), scene, across(scene)))
     assert fates(told) == ["faint"] * 4
 
 
 def test_skin_that_hardly_gives_makes_lines_faint() -> None:
     stiff = Contact(0.005, 0.0075, stiffness=2000.0)
     scene = grating(0.006)
-    told = judge(scan(Device(drive=drive(stiff)), scene, across(scene)))
+    told = evaluate(scan(Device(drive=drive(stiff)), scene, across(scene)))
     assert fates(told) == ["faint", "faint"]
     assert told.lines[0].end.skin == pytest.approx((0.0075 + 0.005) / 2000.0, rel=1e-9)
     assert isnan(told.spread("line.stroke")[1])
-    felt = judge(told.scan, Criteria(felt=5e-6, direction=6e-6))
+    felt = evaluate(told.scan, Criteria(felt=5e-6, direction=6e-6))
     assert fates(felt) == ["shown", "shown"]
-    assert felt.counts["judged.direction"] == sum(line.begin.skin >= 6e-6 for line in felt.lines)
+    assert felt.counts["lines.direction"] == sum(line.begin.skin >= 6e-6 for line in felt.lines)
 
 
 def test_cues_rise_with_what_the_skin_does() -> None:
@@ -316,24 +316,24 @@ def test_cues_rise_with_what_the_skin_does() -> None:
     scene = grating(0.012)
     for friction, cue in ((0.0044, "none"), (0.0048, "felt"), (0.012, "direction"), (0.03, "sure")):
         finger = Contact(friction, 1.5 * friction, stiffness=250.0)
-        told = judge(scan(Device(drive=drive(finger)), scene, across(scene)))
+        told = evaluate(scan(Device(drive=drive(finger)), scene, across(scene)))
         assert [line.end.cue for line in told.lines] == [cue] * 2
         assert told.lines[0].end.skin == pytest.approx(2.5 * friction / 250.0, rel=1e-9)
     slow = Criteria(direction_speed=1.0)
-    assert [line.end.cue for line in judge(told.scan, slow).lines] == ["direction"] * 2
+    assert [line.end.cue for line in evaluate(told.scan, slow).lines] == ["direction"] * 2
 
 
 def test_rebounds_are_false_lines_unless_damped() -> None:
     scene = grating(0.006, count=1, margin=0.03)
     for damping, some in ((0.05, True), (1.8, False)):
-        told = judge(scan(Device(drive=drive(damping=damping)), scene, evenly(scene, 0.06)))
+        told = evaluate(scan(Device(drive=drive(damping=damping)), scene, evenly(scene, 0.06)))
         assert fates(told) == ["shown"]
         assert bool(told.echoes) == some
         for echo in told.echoes:
             assert echo.stroke >= 0.5 * told.lines[0].stroke
             assert echo.time > told.lines[0].release
             assert float(told.scan.pins[0].velocity(echo.time)) == pytest.approx(0.0, abs=1e-9)
-    ringing = judge(told.scan, Criteria(echo=1e-3))
+    ringing = evaluate(told.scan, Criteria(echo=1e-3))
     assert len(ringing.echoes) >= len(told.echoes)
 
 
@@ -349,20 +349,20 @@ def test_a_ripple_on_a_line_is_not_its_height() -> None:
     )
     device = Device(drive=body, magnet=Electromagnet.from_times(hold_force=1.0))
     scene = grating(0.006, 0.012)
-    told = judge(scan(device, scene, across(scene)))
+    told = evaluate(scan(device, scene, across(scene)))
     assert fates(told) == ["shown"] * 4
     assert told.echoes == ()
-    swings = judge(told.scan, Criteria(echo=0.03)).echoes
+    swings = evaluate(told.scan, Criteria(echo=0.03)).echoes
     assert len(swings) == 4, "one rebound each, a twentieth as high as its line"
     for echo in swings:
         assert 0.03 < echo.stroke / told.lines[0].stroke < 0.05
 
 
 def test_a_swing_that_the_skin_hardly_follows_is_no_false_line() -> None:
-    """Lines are judged by the skin, and so are swings that look like them."""
+    """Lines are evaluated by the skin, and so are swings that look like them."""
     scene = grating(0.006, count=1, margin=0.03)
     ringing = [
-        judge(scan(Device(drive=drive(finger, damping=0.05)), scene, evenly(scene, 0.06)))
+        evaluate(scan(Device(drive=drive(finger, damping=0.05)), scene, evenly(scene, 0.06)))
         for finger in (RIGID, Contact(0.005, 0.0075, stiffness=2000.0))
     ]
     assert ringing[0].echoes
@@ -372,7 +372,7 @@ def test_a_swing_that_the_skin_hardly_follows_is_no_false_line() -> None:
 
 def test_overdamped_pins_do_not_swing_over() -> None:
     scene = grating(0.006, count=1, margin=0.05)
-    told = judge(scan(Device(drive=drive(damping=4.0)), scene, evenly(scene, 0.05)))
+    told = evaluate(scan(Device(drive=drive(damping=4.0)), scene, evenly(scene, 0.05)))
     (line,) = told.lines
     assert line.overshoot == 0.0
     assert 0.05 < line.settled - line.release < 0.5
@@ -381,12 +381,12 @@ def test_overdamped_pins_do_not_swing_over() -> None:
 def test_counts_add_up_over_an_array() -> None:
     scene = grating(0.001, 0.002, 0.004, count=3)
     array = PinArray.grid(2, 2, 0.002)
-    told = judge(scan(Device(drive=drive(SKIN), array=array), scene, across(scene, 0.15, 0.004)))
+    told = evaluate(scan(Device(drive=drive(SKIN), array=array), scene, across(scene, 0.15, 0.004)))
     counts = told.counts
-    assert counts["judged.lines"] == 36 == len(told.lines)
+    assert counts["lines.crossed"] == 36 == len(told.lines)
     parts = ("shown", "unseen", "merged", "faint")
-    assert sum(counts[f"judged.{fate}"] for fate in parts) == 36
-    assert counts["judged.sure"] <= counts["judged.direction"] <= counts["judged.shown"]
+    assert sum(counts[f"lines.{fate}"] for fate in parts) == 36
+    assert counts["lines.sure"] <= counts["lines.direction"] <= counts["lines.shown"]
     least, median, largest = told.spread("line.lag_on")
     assert 0.0 < least <= median <= largest
 
@@ -398,7 +398,7 @@ def test_a_blank_page_has_false_lines_only_where_the_pin_moves() -> None:
         (held, across(page), 0),  # the finger holds it
         (drive(), evenly(page), 1),  # the plate drags it 0.27 mm as the hand starts at once
     ):
-        told = judge(scan(Device(drive=pin), page, path))
+        told = evaluate(scan(Device(drive=pin), page, path))
         assert told.lines == ()
         assert len(told.echoes) == false
         assert all(echo.stroke >= 2e-4 for echo in told.echoes)
@@ -409,7 +409,7 @@ def test_random_devices_are_judged_by_what_can_be(first: int) -> None:
     """Over decades of every number: nothing comes before its cause, every part is a part."""
     for seed in range(first, first + 12):
         drawn = RandomScan.of(seed)
-        told = judge(scan(drawn.device, drawn.scene, drawn.path))
+        told = evaluate(scan(drawn.device, drawn.scene, drawn.path))
         latency = drawn.device.control.latency
         for line in told.lines:
             found = {name: value for name, value in line.numbers.items() if not isnan(value)}
@@ -420,7 +420,7 @@ def test_random_devices_are_judged_by_what_can_be(first: int) -> None:
             if line.fate == "shown":
                 assert line.begin.command <= line.begin.response
                 assert max(line.begin.skin, found.get("line.skin_off", 0.0)) >= told.criteria.felt
-        assert sum(told.counts[f"judged.{fate}"] for fate in FATES) == len(told.lines)
+        assert sum(told.counts[f"lines.{fate}"] for fate in FATES) == len(told.lines)
         for echo in told.echoes:
             pin = told.scan.pins[echo.pin]
             assert echo.stroke >= told.criteria.direction

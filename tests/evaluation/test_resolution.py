@@ -16,7 +16,7 @@ from pindrive.cli.app import app
 from pindrive.cli.scan_tables import beyond, speed_report
 from pindrive.cli.tables import console
 from pindrive.device import Criteria, Device, Electromagnet, HandPath, PinArray, Scene, scan
-from pindrive.evaluation import judge
+from pindrive.evaluation import evaluate
 from pindrive.evaluation.resolution import (
     SpeedLimit,
     SpeedLimits,
@@ -53,7 +53,7 @@ def limits() -> SpeedLimits:
 def test_a_trial_is_the_worst_of_four_scans_of_drawn_lines(
     finger: Contact, speed: float, axis: float
 ) -> None:
-    """A quarter of a look apart; every number as `judge` finds it on a page."""
+    """A quarter of a look apart; every number as `evaluate` finds it on a page."""
     device = Device(drive=drive(finger), array=PinArray(axis=axis))
     scene = Scene.from_grating([0.004], count=2, margin=0.15, height=0.001, pixel=5e-5)
     y, look = 0.5 * scene.extent[3], 1.0 / device.control.sample_rate
@@ -62,7 +62,7 @@ def test_a_trial_is_the_worst_of_four_scans_of_drawn_lines(
         begin = 0.15 - speed * (0.002 + look * (1.0 - 0.25 * phase))
         lasts = min(0.4, (scene.extent[1] - begin) / speed - 1e-9)
         path = HandPath([0.0, lasts], [speed] * 2, [0.0] * 2, (begin, y))
-        first, second = judge(scan(device, scene, path, start=[steady(device)])).lines
+        first, second = evaluate(scan(device, scene, path, start=[steady(device)])).lines
         merged = "merged" in (first.fate, second.fate)
         backs.append(0.0 if merged else first.returned / (first.height - device.drag(axis)))
         skins += [
@@ -122,7 +122,7 @@ def test_the_settled_limit_is_where_the_transient_of_a_line_alone_just_fits(
         begin = 0.1 - speed * (0.002 + 1e-3 * (1.0 - 0.25 * phase))
         way = [begin, 0.5 * two.extent[3]]
         alone, both = (
-            judge(
+            evaluate(
                 scan(
                     DEVICE,
                     page,

@@ -68,10 +68,10 @@ def test_scans_their_events_and_their_lines(written_by: str) -> None:
         changes = [f"--set={change}" for change in DEVICE]
         files = ("-o", "s.csv", "--lines", "lines.csv")
         assert run("scan", READER, "--grating", "4 mm", *changes, *files).exit_code == 0
-        judgement, table = scan.evaluate(), read("lines.csv")
-        columns = judgement.columns()
+        evaluation, table = scan.evaluate(), read("lines.csv")
+        columns = evaluation.columns()
         assert table.names == tuple(columns)
-        assert columns.keys() <= {str(name) for name in judgement.to_dataset().variables}
+        assert columns.keys() <= {str(name) for name in evaluation.to_dataset().variables}
         stated = {quantity.variable: quantity for quantity in (*EDGES, *LINE)}
         for name, values in columns.items():
             if name in stated:

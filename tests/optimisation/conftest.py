@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 import pindrive as pd
+from design_problems import EXAMPLES, MOUSE, PAPER, SMALL
 from pindrive.optimisation import Design
-from wishes import EXAMPLES, MOUSE, PAPER, SMALL
 
 
 @pytest.fixture(scope="session")
@@ -16,4 +16,4 @@ def paper() -> Design:
 
 @pytest.fixture(scope="session")
 def bought() -> Design:
-    return pd.optimise(None, EXAMPLES / "catalogue-wish.toml", effort=SMALL)
+    return pd.optimise(None, EXAMPLES / "catalogue-problem.toml", effort=SMALL)

@@ -7,12 +7,12 @@ from collections.abc import Iterator
 import pytest
 
 import pindrive as pd
-from pindrive.optimisation import Design, read_wish
+from design_problems import EXAMPLES, MOUSE, PAPER, SMALL
+from pindrive.optimisation import Design, read_problem
 from pindrive.optimisation.goals import Asked
 from pindrive.optimisation.line_speed import speeds
 from pindrive.study.workers import crew
 from recordings import recorded
-from wishes import EXAMPLES, MOUSE, PAPER, SMALL
 
 distributed = pytest.importorskip("distributed", reason="the extra `cluster` is not installed")
 
@@ -34,7 +34,7 @@ def address() -> Iterator[str]:
 def test_a_design_found_on_a_cluster_is_that_found_here(address: str, paper: Design) -> None:
     found = pd.optimise(pd.load_device(MOUSE), PAPER, effort=SMALL, cluster=address)
     assert found.values == paper.values
-    assert found.goals == paper.goals and found.demands == paper.demands
+    assert found.goals == paper.goals and found.constraints == paper.constraints
     assert found.built == paper.built
 
 
@@ -50,7 +50,9 @@ def test_a_fit_with_profiles_from_a_cluster_is_that_found_here(address: str) -> 
 
 
 def test_whole_devices_go_to_workers_and_come_back_in_order(address: str) -> None:
-    plan = read_wish(EXAMPLES / "tactile-reader-wish.toml", ["control.sample_rate=250 Hz"]).plan
+    plan = read_problem(
+        EXAMPLES / "tactile-reader-problem.toml", ["control.sample_rate=250 Hz"]
+    ).plan
     asked = [Asked({"drive.stiffness": k}, 0.2, 1.0) for k in (150.0, 600.0)]
     with crew(address) as workers:
         found = [*workers.spread(speeds, plan, [asked[:1], asked[1:]])]

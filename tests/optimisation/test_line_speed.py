@@ -9,19 +9,19 @@ import numpy as np
 import pytest
 
 import pindrive as pd
+from design_problems import EXAMPLES
 from pindrive.evaluation.resolution import TRIED, SpeedLimit, Trial, largest_speeds
-from pindrive.optimisation import Effort, line_speed, read_wish
+from pindrive.optimisation import Effort, line_speed, read_problem
 from pindrive.optimisation.goals import Asked
 from pindrive.optimisation.line_speed import speeds
 from pindrive.study.design import Plan
-from wishes import EXAMPLES
 
-WISH = EXAMPLES / "tactile-reader-wish.toml"
+PROBLEM = EXAMPLES / "tactile-reader-problem.toml"
 
 
 @pytest.fixture(scope="module")
 def plan() -> Plan:
-    return read_wish(WISH, ["control.sample_rate=250 Hz"]).plan
+    return read_problem(PROBLEM, ["control.sample_rate=250 Hz"]).plan
 
 
 @pytest.fixture(scope="module")
@@ -74,9 +74,9 @@ def test_a_search_takes_a_twentieth_of_the_trials_of_a_grid(
         return Trial(speed, 1.0 if speed <= stiffer_is_faster(device) else 0.0, inf, ())
 
     monkeypatch.setattr(line_speed, "two_lines", trial)
-    wish = read_wish(WISH)
+    problem = read_problem(PROBLEM)
     found = pd.optimise(
-        None, replace(wish, demands=()), effort=Effort(16, 12, 24, 8, 0, 1, 3), threads=1
+        None, replace(problem, constraints=()), effort=Effort(16, 12, 24, 8, 0, 1, 3), threads=1
     )
     (reached,) = found.goals
     assert reached.value >= 0.98 * 0.3
@@ -118,12 +118,12 @@ def test_a_design_whose_speed_is_not_confirmed_counts_by_its_first_interval(
         return Trial(speed, 1.0 if ok else 0.0, inf, ())
 
     monkeypatch.setattr(line_speed, "two_lines", trial)
-    wish = {
+    problem = {
         "page": {"grating": ["3 mm"]},
         "axes": {"drive.stiffness": {"uniform": [100.0, 1000.0]}},
         "goals": {"maximise": "distinct_speed"},
     }
     device = pd.load_device(EXAMPLES / "tactile-reader.toml")
-    found = pd.optimise(device, wish, effort=Effort(16, 12, 24, 8, 0, 1, 3), threads=1)
+    found = pd.optimise(device, problem, effort=Effort(16, 12, 24, 8, 0, 1, 3), threads=1)
     assert 0.95 * 0.24 <= found.goals[0].value <= 0.24
     assert found.values["drive.stiffness"] < 600.0

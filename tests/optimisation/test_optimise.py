@@ -12,11 +12,11 @@ import pytest
 from numpy.typing import NDArray
 
 import pindrive as pd
+from design_problems import EXAMPLES, MOUSE, PAPER, SMALL
 from notebook_reading import check_faces
 from pindrive.optimisation import Design, optimise
 from pindrive.optimisation.search import non_dominated
 from pindrive.quantities.status import Status
-from wishes import EXAMPLES, MOUSE, PAPER, SMALL
 
 Array = NDArray[np.float64]
 SPEEDS = np.linspace(0.05, 0.15, 201)
@@ -44,7 +44,7 @@ def released(speeds: Array, **varied: Any) -> Any:
 
 
 def worst(speeds: Array, **varied: Any) -> tuple[Array, NDArray[np.bool_]]:
-    """The longest settling time of each design, and whether it meets the demands of the paper."""
+    """The longest settling time of each design, and whether it meets the paper's constraints."""
     found = released(speeds, **varied)
     time = found.transient_settling_time.values
     met = (found.transient_peak_displacement.values >= 2.1e-3).all(axis=-1)
@@ -63,10 +63,10 @@ def drive_values(found: Design) -> dict[str, Any]:
     }
 
 
-# ---- the paper's wish ----------------------------------------------------------------------------
+# ---- the paper's problem ---------------------------------------------------------------------
 
 
-def test_the_papers_wish_beats_a_grid_and_holds_between_its_conditions(paper: Design) -> None:
+def test_the_papers_problem_beats_a_grid_and_holds_between_its_conditions(paper: Design) -> None:
     assert paper.feasible and paper.status is Status.ok
     longest, met = worst(SPEEDS, **{name: [x] for name, x in drive_values(paper).items()})
     assert met.all()
@@ -84,16 +84,16 @@ def test_the_papers_wish_beats_a_grid_and_holds_between_its_conditions(paper: De
 def test_the_worst_conditions_are_said(paper: Design) -> None:
     found = released(SPEEDS, **drive_values(paper))
     peak = found.transient_peak_displacement.values.ravel()
-    (case,) = paper.demands[0].case.values()
-    assert paper.demands[0].value == pytest.approx(peak.min(), rel=1e-3)
+    (case,) = paper.constraints[0].case.values()
+    assert paper.constraints[0].value == pytest.approx(peak.min(), rel=1e-3)
     assert case == pytest.approx(SPEEDS[peak.argmin()], abs=1e-3)
 
 
 def test_a_condition_inside_its_range_is_found() -> None:
     """At some hand speed between the ends the swing grazes the band, and the pin settles last."""
     axes = {"drive.damping_ratio": {"uniform": [0.1, 0.3]}}
-    wish = {"axes": axes, "conditions": PAPER["conditions"], "goals": PAPER["goals"]}
-    found = pd.optimise(pd.load_device(MOUSE), wish, effort=SMALL)
+    problem = {"axes": axes, "conditions": PAPER["conditions"], "goals": PAPER["goals"]}
+    found = pd.optimise(pd.load_device(MOUSE), problem, effort=SMALL)
     values = {"stiffness": [100.0], "finger_kinetic": [5e-3]}
     dense = np.linspace(0.05, 0.15, 4001)
     longest, _ = worst(dense, damping_ratio=[found.values["drive.damping_ratio"]], **values)
@@ -115,15 +115,15 @@ def test_the_yield_is_that_of_another_monte_carlo(paper: Design) -> None:
 
 
 def test_a_relaxed_limit_gives_the_gain_and_a_stricter_one_does_not(paper: Design) -> None:
-    """The limit that is named, written into the wish, makes the goal better by the gain."""
-    first = paper.demands[0]
-    assert first.binds and first.relaxed < first.demand.limit
-    assert not paper.demands[1].binds
+    """The reported limit, written into the design problem, improves the goal by the gain."""
+    first = paper.constraints[0]
+    assert first.binds and first.relaxed < first.constraint.limit
+    assert not paper.constraints[1].binds
     for times, gained in ((1.0, True), (0.2, False)):
-        limit = first.demand.limit - times * (first.demand.limit - first.relaxed)
-        wish = {**PAPER, "specification": {"peak_displacement": f">= {1e3 * limit:.9g} mm"}}
-        wish["specification"]["trough_displacement"] = ">= -1.5 mm"
-        found = pd.optimise(pd.load_device(MOUSE), wish, effort=SMALL)
+        limit = first.constraint.limit - times * (first.constraint.limit - first.relaxed)
+        problem = {**PAPER, "specification": {"peak_displacement": f">= {1e3 * limit:.9g} mm"}}
+        problem["specification"]["trough_displacement"] = ">= -1.5 mm"
+        found = pd.optimise(pd.load_device(MOUSE), problem, effort=SMALL)
         wanted = (1.0 - 0.98 * paper.gain) * paper.goals[0].value
         assert (found.goals[0].value <= wanted) == gained
 
@@ -171,17 +171,17 @@ def test_maps_hold_what_each_place_is_worth(paper: Design) -> None:
 
 
 def test_what_no_design_meets_is_said_with_the_closest() -> None:
-    wish = {**PAPER, "specification": {"peak_displacement": ">= 3 mm"}, "tolerances": {}}
-    found = pd.optimise(pd.load_device(MOUSE), wish, effort=SMALL)
+    problem = {**PAPER, "specification": {"peak_displacement": ">= 3 mm"}, "tolerances": {}}
+    found = pd.optimise(pd.load_device(MOUSE), problem, effort=SMALL)
     assert not found.feasible and found.status is Status.incomplete
-    excess = found.demands[0].excess
-    assert f"misses peak_displacement ≥ 3 mm by {1e3 * excess:.4f}"[:50] in found.closest
+    excess = found.constraints[0].excess
+    assert f"violates peak_displacement ≥ 3 mm by {1e3 * excess:.4f}"[:50] in found.closest
     names = ("stiffness", "damping_ratio", "finger_kinetic")
     corners = zip(*product([30.0, 600.0], [0.02, 0.6], [2e-3, 30e-3]), strict=True)
     grid = dict(zip(names, map(np.array, corners), strict=True))
     peak = released(np.linspace(0.05, 0.15, 5), **grid).transient_peak_displacement.values
     assert 3e-3 - excess >= peak.min(axis=-1).max() - 1e-6
-    assert repr(found).startswith("<No design: the closest misses peak_displacement")
+    assert repr(found).startswith("<No design: the closest violates peak_displacement")
 
 
 # ---- catalogues, two goals, yield ----------------------------------------------------------------
@@ -192,9 +192,9 @@ DAMPERS = {0.05: 0.6, 0.1: 0.6, 0.2: 0.8, 0.3: 1.0, 0.45: 1.3, 0.7: 1.9}
 
 
 def test_a_front_of_catalogue_parts_is_no_worse_than_a_grid() -> None:
-    """Without the yield, which a grid cannot demand."""
-    wish = _catalogue_wish()
-    found = pd.optimise(pd.load_device(MOUSE, {"drive.damping": 0.3}), wish, effort=SMALL)
+    """Without the yield, which a grid cannot constraint."""
+    problem = _catalogue_problem()
+    found = pd.optimise(pd.load_device(MOUSE, {"drive.damping": 0.3}), problem, effort=SMALL)
     assert found.feasible and found.front is not None
     assert non_dominated(found.front.goals).all()
     spring, damper, mass, finger = (
@@ -217,7 +217,7 @@ def test_a_front_of_catalogue_parts_is_no_worse_than_a_grid() -> None:
         assert found.front.goals[affordable, 0].min() <= 1.01 * time
 
 
-def _catalogue_wish() -> Mapping[str, Any]:
+def _catalogue_problem() -> Mapping[str, Any]:
     return {
         "axes": {
             "drive.mass": {"uniform": ["5 g", "20 g"]},
@@ -236,7 +236,7 @@ def _catalogue_wish() -> Mapping[str, Any]:
 def test_the_yield_that_is_demanded_is_reached(bought: Design) -> None:
     assert bought.feasible and bought.built is not None
     assert bought.built.met >= 0.95 * bought.built.of
-    assert bought.demands[0].excess < -1e-6  # room for the tolerances
+    assert bought.constraints[0].excess < -1e-6  # margin for the tolerances
     stiffness, damping = bought.values["drive.stiffness"], bought.values["drive.damping"]
     place = SPRINGS.index(stiffness)
     assert bought.parts == {"spring": f"S-{stiffness:03.0f}", "damper": f"G-{100 * damping:02.0f}"}
@@ -255,8 +255,8 @@ def test_the_nearest_parts_are_the_design_with_one_part_changed(bought: Design) 
     longest = found.transient_settling_time.values.max()
     assert other.goals[0] == pytest.approx(longest, rel=0.02)
     low = found.transient_peak_displacement.values.min()
-    missed = {demand.name: over for demand, over in other.misses}
-    assert missed.get("transient_peak_displacement", 0.0) == pytest.approx(
+    violated = {constraint.name: over for constraint, over in other.violations}
+    assert violated.get("transient_peak_displacement", 0.0) == pytest.approx(
         max(0.0, 2.1e-3 - low), abs=2e-6
     )
 
@@ -267,7 +267,7 @@ def test_a_design_goes_to_a_dataset(bought: Design) -> None:
     assert float(data.mass) == bought.values["drive.mass"]
     assert bool(data.feasible)
     assert data.front_design_price.values.tolist() == bought.front.goals[:, 1].tolist()  # type: ignore[union-attr]
-    assert data.limit_excess.values.tolist() == [d.excess for d in bought.demands]
+    assert data.limit_excess.values.tolist() == [d.excess for d in bought.constraints]
     assert repr(bought).startswith("<Design of tactile mouse: settling_time ")
     assert repr(bought).endswith(", ok>")
     assert check_faces(bought) > 1
@@ -291,13 +291,13 @@ def test_progress_is_told_and_ctrl_c_ends_it() -> None:
 
 def test_a_demand_whose_worst_condition_lies_inside_is_met_there() -> None:
     """The trough is deepest for a hand between the slowest and the fastest."""
-    wish = {
+    problem = {
         "axes": {"drive.damping_ratio": {"uniform": [0.02, 0.6]}},
         "conditions": {"mouse_velocity": {"uniform": ["1 mm/s", "200 mm/s"]}},
         "specification": {"swing": ">= 1 mm", "settling_time": "<= 90 ms"},
         "goals": {"minimise": "trough_displacement"},
     }
-    found = pd.optimise(pd.load_device(MOUSE), wish, effort=SMALL)
+    found = pd.optimise(pd.load_device(MOUSE), problem, effort=SMALL)
     dense = np.linspace(1e-3, 0.2, 3001)
     longest, _ = worst(
         dense,
@@ -306,4 +306,4 @@ def test_a_demand_whose_worst_condition_lies_inside_is_met_there() -> None:
         damping_ratio=[found.values["drive.damping_ratio"]],
     )
     assert found.feasible == bool(longest[0] <= 0.09 * (1.0 + 1e-6))
-    assert found.demands[1].value >= longest[0] * (1.0 - 2e-3)
+    assert found.constraints[1].value >= longest[0] * (1.0 - 2e-3)

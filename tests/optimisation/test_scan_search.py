@@ -10,11 +10,11 @@ import pytest
 from numpy.typing import NDArray
 
 import pindrive as pd
+from design_problems import EXAMPLES
 from pindrive.optimisation import Design, Effort
+from pindrive.optimisation.design_space import DesignSpace
 from pindrive.optimisation.kriging import Kriging
-from pindrive.optimisation.problem import Problem
 from pindrive.quantities.status import Status
-from wishes import EXAMPLES
 
 Array = NDArray[np.float64]
 READER = EXAMPLES / "tactile-reader.toml"
@@ -28,7 +28,7 @@ WAY = np.array([2.0, 2.0, 1.0]) / 3.0
 FAR = 0.35
 """From the best place of all to the plane within which the stroke is large enough."""
 LIMIT = float(WAY @ MIDDLE) + FAR
-WISH: dict[str, Any] = {
+PROBLEM: dict[str, Any] = {
     "page": {"grating": ["3 mm"]},
     "axes": {key: {"uniform": [*ends]} for key, ends in RANGES.items()},
     "specification": {"worst_stroke": f">= {LIMIT} m", "worst_lag_on": "<= 5 m"},
@@ -54,7 +54,7 @@ def found(seen: list[Array]) -> Design:
     """Least distance from a place beyond a plane: its foot on that plane."""
 
     def evaluated(
-        _: Problem, columns: dict[str, Array], size: int, outputs: tuple[str, ...]
+        _: DesignSpace, columns: dict[str, Array], size: int, outputs: tuple[str, ...]
     ) -> dict[str, Any]:
         points = unit(columns)
         seen.extend(points)
@@ -68,9 +68,9 @@ def found(seen: list[Array]) -> Design:
         }
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Problem, "_evaluated", evaluated)
+        patch.setattr(DesignSpace, "_evaluated", evaluated)
         device = pd.load_device(READER)
-        return pd.optimise(device, WISH, effort=Effort(16, 12, 24, 8, 0, 1, 3))
+        return pd.optimise(device, PROBLEM, effort=Effort(16, 12, 24, 8, 0, 1, 3))
 
 
 def test_the_best_device_is_found_in_a_twentieth_of_the_scans_of_a_grid(
@@ -93,7 +93,7 @@ def test_no_device_is_scanned_twice(found: Design, seen: list[Array]) -> None:
 
 
 def test_the_limit_that_binds_is_named_with_what_gives_the_gain(found: Design) -> None:
-    stroke, lag = found.demands
+    stroke, lag = found.constraints
     wanted = sqrt((1.0 - found.gain) * found.goals[0].value - 0.2)
     assert stroke.binds and stroke.relaxed < LIMIT
     assert stroke.relaxed == pytest.approx(float(WAY @ MIDDLE) + wanted, abs=0.01)

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 from pindrive import Contact, Drive
 from pindrive.cli.app import app
 from pindrive.device import Device, PinArray, Scene, lines, scan
-from pindrive.evaluation import Judgement, judge
+from pindrive.evaluation import Evaluation, evaluate
 from pindrive.plot import animation as film
 from pindrive.plot.animation import FRAMES, SIZE, animate, animation_format, frame_times
 
@@ -29,14 +29,14 @@ DRIVE = Drive(
 
 
 @pytest.fixture(scope="module")
-def judged() -> Judgement:
+def evaluated() -> Evaluation:
     scene = Scene.from_grating([0.006], count=2, margin=0.006, height=0.006)
     path = lines([scene.lines[0]], 0.002, 0.019, speed=0.1, return_speed=0.15)
-    return judge(scan(Device(drive=DRIVE, array=PinArray([(0.0, 0.0)])), scene, path))
+    return evaluate(scan(Device(drive=DRIVE, array=PinArray([(0.0, 0.0)])), scene, path))
 
 
-def test_frames_are_even_in_time_and_end_with_the_scan(judged: Judgement) -> None:
-    path = judged.scan.path
+def test_frames_are_even_in_time_and_end_with_the_scan(evaluated: Evaluation) -> None:
+    path = evaluated.scan.path
     times = frame_times(path, 3.0)
     assert times[0] == path.begin and times[-1] == path.end
     assert np.diff(times)[:-1] == pytest.approx(1.0 / (3.0 * FRAMES))
@@ -45,10 +45,10 @@ def test_frames_are_even_in_time_and_end_with_the_scan(judged: Judgement) -> Non
             frame_times(path, bad)
 
 
-def test_a_gif_shows_each_frame(judged: Judgement, tmp_path: Path) -> None:
+def test_a_gif_shows_each_frame(evaluated: Evaluation, tmp_path: Path) -> None:
     target, told = tmp_path / "film.gif", list[tuple[int, int]]()
-    animate(judged, target, "gif", slow=2.0, progress=lambda done, of: told.append((done, of)))
-    times = frame_times(judged.scan.path, 2.0)
+    animate(evaluated, target, "gif", slow=2.0, progress=lambda done, of: told.append((done, of)))
+    times = frame_times(evaluated.scan.path, 2.0)
     assert told == [(i + 1, len(times)) for i in range(len(times))]
     with Image.open(target) as image:
         assert image.size == SIZE
@@ -60,7 +60,7 @@ def test_a_gif_shows_each_frame(judged: Judgement, tmp_path: Path) -> None:
             pixels = np.asarray(image.convert("RGB"), int)
             reddest.append((pixels @ [2, -1, -1] > 200)[: SIZE[1] // 2].sum())
     assert lasts == pytest.approx(1000.0 / FRAMES * len(times))
-    (pin,) = judged.scan.pins
+    (pin,) = evaluated.scan.pins
     some_on = pin.commands.on(times)
     assert some_on.any() and not some_on.all()
     assert count == len(times), "no two frames are alike"
@@ -68,16 +68,16 @@ def test_a_gif_shows_each_frame(judged: Judgement, tmp_path: Path) -> None:
     assert lit[some_on].mean() > lit[~some_on].mean() + 20
 
 
-def test_what_moves_is_where_it_was(judged: Judgement) -> None:
-    times = frame_times(judged.scan.path, 4.0)
-    stage = film._Stage.of(judged, times, 4.0)
+def test_what_moves_is_where_it_was(evaluated: Evaluation) -> None:
+    times = frame_times(evaluated.scan.path, 4.0)
+    stage = film._Stage.of(evaluated, times, 4.0)
     (mouse, _, spots), (pins, arrows) = (
         [artist for axes, artist in stage.moving if axes is stage.moving[k][0]] for k in (0, 3)
     )
-    (pin,) = judged.scan.pins
+    (pin,) = evaluated.scan.pins
     for i in (0, len(times) // 2, len(times) - 1):
         stage.frame(i)
-        x, y = judged.scan.path.position(times[i])
+        x, y = evaluated.scan.path.position(times[i])
         middle = np.array([mouse.get_x() + 0.5 * mouse.get_width(), mouse.get_y()])  # type: ignore[attr-defined]
         assert middle[0] == pytest.approx(1e3 * x)
         assert spots.get_offsets()[0] == pytest.approx([1e3 * x, 1e3 * y])  # type: ignore[attr-defined]
@@ -91,7 +91,7 @@ def test_what_moves_is_where_it_was(judged: Judgement) -> None:
 @pytest.mark.skipif(os.name == "nt", reason="the stand-in for ffmpeg is a script")
 @pytest.mark.parametrize("fails", [False, True])
 def test_mp4_frames_go_to_ffmpeg(
-    judged: Judgement, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fails: bool
+    evaluated: Evaluation, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fails: bool
 ) -> None:
     stand_in = tmp_path / "ffmpeg"
     end = "print('no such codec', file=sys.stderr); sys.exit(1)" if fails else ""
@@ -108,19 +108,19 @@ def test_mp4_frames_go_to_ffmpeg(
     assert animation_format(target) == "mp4"
     if fails:
         with pytest.raises(ValueError, match="ffmpeg could not write MP4: no such codec"):
-            animate(judged, target, "mp4", slow=1.0)
+            animate(evaluated, target, "mp4", slow=1.0)
         return
-    animate(judged, target, "mp4", slow=1.0)
+    animate(evaluated, target, "mp4", slow=1.0)
     size, _, options = target.read_text().partition(" ")
-    assert int(size) == 4 * SIZE[0] * SIZE[1] * len(frame_times(judged.scan.path, 1.0))
+    assert int(size) == 4 * SIZE[0] * SIZE[1] * len(frame_times(evaluated.scan.path, 1.0))
     assert f"'{SIZE[0]}x{SIZE[1]}'" in options and "'rgba'" in options
 
 
-def test_ffmpeg_writes_a_real_mp4(judged: Judgement, tmp_path: Path) -> None:
+def test_ffmpeg_writes_a_real_mp4(evaluated: Evaluation, tmp_path: Path) -> None:
     if film.ffmpeg() is None:
         pytest.skip("no ffmpeg here")
     target = tmp_path / "film.mp4"
-    animate(judged, target, "mp4", slow=1.0)
+    animate(evaluated, target, "mp4", slow=1.0)
     assert target.read_bytes()[4:8] == b"ftyp"
 
 

@@ -8,13 +8,13 @@ import pytest
 from matplotlib.collections import QuadMesh
 
 import pindrive as pd
+from design_problems import EXAMPLES, SMALL
 from pindrive.optimisation import Design
-from wishes import EXAMPLES, SMALL
 
 
 @pytest.fixture(scope="module")
 def found() -> Design:
-    return pd.optimise(None, EXAMPLES / "catalogue-wish.toml", effort=SMALL)
+    return pd.optimise(None, EXAMPLES / "catalogue-problem.toml", effort=SMALL)
 
 
 def test_the_front_and_the_maps_are_drawn_with_the_design_on_them(found: Design) -> None:
@@ -39,7 +39,7 @@ def test_the_front_and_the_maps_are_drawn_with_the_design_on_them(found: Design)
         (star,) = [line for line in axes.lines if line.get_gid() == "design"]
         at = [scales[key] * value for key, value in zip(drawn.keys, drawn.design, strict=True)]
         assert np.ravel(star.get_xydata()) == pytest.approx(at)
-        assert axes.get_title(loc="left") == f"demands met in {100 * drawn.met.mean():.3g} %"
+        assert axes.get_title(loc="left") == f"constraints met in {100 * drawn.met.mean():.3g} %"
     assert maps[0].get_xlabel() == "mass $m$ (g)" and "mN" in maps[0].get_ylabel()
     title = figure.get_suptitle()
     assert f"minimise settling time: {1e3 * found.goals[0].value:.2f} ms" in title

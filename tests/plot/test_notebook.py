@@ -40,7 +40,7 @@ def results(motion: pd.Motion, tmp_path_factory: pytest.TempPathFactory) -> dict
         "motion": motion,
         "sensitivity": motion.sensitivity(["mass", "plate_kinetic", "mouse_velocity"]),
         "scan": scan,
-        "judgement": scan.evaluate(),
+        "evaluation": scan.evaluate(),
         "robustness": pd.robustness(study, count=50),
         "local sensitivity": pd.local_sensitivity(study),
         "sobol": pd.sobol(study, rows=128),
@@ -56,7 +56,7 @@ MADE = re.compile(r"^class (\w+)\(lazy\.NotebookHtml", re.M)
 SPEEDS = np.linspace(0.0, 0.2, 30)
 READER = EXAMPLE.parent / "tactile-reader.toml"
 RESULTS = (
-    *("motion", "sensitivity", "scan", "judgement", "robustness", "local sensitivity", "sobol"),
+    *("motion", "sensitivity", "scan", "evaluation", "robustness", "local sensitivity", "sobol"),
     *("fit", "friction curve", "sweep", "page speeds"),
 )
 
@@ -66,7 +66,13 @@ PUBLIC = [
     *(f"pindrive.{part.name}" for part in iter_modules(pd.__path__) if part.ispkg),
 ]
 NO_RESULTS = {
-    *("DeviceFile", "Study", "Wish", "Recording", "HandPath"),  # they are given to what computes
+    *(
+        "DeviceFile",
+        "Study",
+        "DesignProblem",
+        "Recording",
+        "HandPath",
+    ),  # they are given to what computes
     *("xr.Dataset", "Array", "NDArray[np.bool_]", "tuple[Array, Array]", "float"),
 }
 

@@ -24,7 +24,7 @@ plate.kinetic = "30 %"
 mass = { normal = "4 %" }
 mouse_velocity = { uniform = ["80 mm/s", "130 mm/s"] }
 """
-DEMANDS = """
+CONSTRAINTS = """
 [specification]
 swing = [">= 0.9 mm", "<= 1.2 mm"]
 settling_time = "<= 1 s"
@@ -35,7 +35,7 @@ COUNT = 2000
 @pytest.fixture(scope="module")
 def found(tmp_path_factory: pytest.TempPathFactory) -> Robustness:
     file = tmp_path_factory.mktemp("robustness") / "study.toml"
-    file.write_text(BASE + TOLERANCES + DEMANDS)
+    file.write_text(BASE + TOLERANCES + CONSTRAINTS)
     return robustness(load_study(file), count=COUNT)
 
 
@@ -81,7 +81,7 @@ def test_what_misses_the_specification_is_shaded(figure: Figure) -> None:
     axes = of(figure, "swing")
     low, high = axes.get_xlim()
     below, above = sorted(patch_spans(axes, "beyond"))
-    assert below[:2] == pytest.approx((low, 0.9)), "at least 0.9 mm are demanded"
+    assert below[:2] == pytest.approx((low, 0.9)), "at least 0.9 mm are required"
     assert above[:2] == pytest.approx((1.2, high)), "and at most 1.2 mm"
     assert {span[2:] for span in (below, above)} == {(0.0, 1.0)}
     limits = sorted(points(line)[0][0] for line in lines(axes, "limit"))
@@ -102,8 +102,8 @@ def test_a_limit_far_off_is_told_and_does_not_squeeze_the_designs(
 
 def test_a_limit_that_all_designs_miss_shades_everything(found: Robustness) -> None:
     shares = tuple(
-        (replace(demand, limit=1e-6) if demand.at_most else demand, share)
-        for demand, share in found.shares
+        (replace(constraint, limit=1e-6) if constraint.at_most else constraint, share)
+        for constraint, share in found.shares
     )
     axes = of(plot_robustness(replace(found, shares=shares), "a name"), "settling time")
     ((begin, end, *_),) = patch_spans(axes, "beyond")
@@ -116,7 +116,7 @@ def test_the_design_and_the_worst_cases_are_marked(found: Robustness, figure: Fi
     (design,) = lines(axes, "design")
     assert points(design)[0] == pytest.approx([1e3 * found.own["transient_swing"]])
     worst = [points(line)[0][0] for line in lines(axes, "worst")]
-    cases = [case for case in found.worst if case.demand.name == "transient_swing"]
+    cases = [case for case in found.worst if case.constraint.name == "transient_swing"]
     assert worst == pytest.approx([1e3 * case.value for case in cases])
     signs = legend_of(figure)
     assert signs["the design itself"].get_marker() == design.get_marker() == "^"

@@ -19,7 +19,7 @@ from pindrive import Contact, Drive, Profile
 from pindrive.cli.app import app
 from pindrive.device import Device, HandPath, PinArray, Scene, scan
 from pindrive.device import lines as lines_of
-from pindrive.evaluation import Judgement, judge
+from pindrive.evaluation import Evaluation, evaluate
 from pindrive.evaluation.line_crossings import printed
 from pindrive.evaluation.tactile_image import paint
 from pindrive.plot.pin import moment
@@ -37,16 +37,16 @@ DRIVE = Drive(
 
 
 @pytest.fixture(scope="module")
-def judged() -> Judgement:
+def evaluated() -> Evaluation:
     device = Device(drive=DRIVE, array=PinArray.grid(2, 3, 0.002))
     scene = Scene.from_grating([0.003, 0.006], count=2, margin=0.008, height=0.006)
     path = lines_of([0.009, 0.013], 0.002, 0.036, speed=0.08, return_speed=0.15, pause=0.1)
-    return judge(scan(device, scene, path))
+    return evaluate(scan(device, scene, path))
 
 
 @pytest.fixture(scope="module")
-def figure(judged: Judgement) -> Figure:
-    return plot_scan(judged)
+def figure(evaluated: Evaluation) -> Figure:
+    return plot_scan(evaluated)
 
 
 def test_the_tactile_image_is_the_mean_deflection_of_the_pins_that_passed() -> None:
@@ -92,13 +92,13 @@ def test_a_mirrored_scan_is_painted_mirrored() -> None:
     assert np.nanmean(np.abs(one - other)) < 0.01 * np.nanmax(np.abs(one))
 
 
-def test_the_history_is_that_of_the_pin(judged: Judgement, figure: Figure) -> None:
-    chosen = moment(judged)
-    pin = judged.scan.pins[chosen.pin]
+def test_the_history_is_that_of_the_pin(evaluated: Evaluation, figure: Figure) -> None:
+    chosen = moment(evaluated)
+    pin = evaluated.scan.pins[chosen.pin]
     for name, gid, of, scale in (
         ("x", "curve", pin.position, 1e3),
         ("force", "force", pin.skin_force, 1e3),
-        ("pull", "pull", lambda t: judged.scan.device.magnet.pull(pin.current.flux(t)), 1.0),
+        ("pull", "pull", lambda t: evaluated.scan.device.magnet.pull(pin.current.flux(t)), 1.0),
     ):
         t, y = data(panel(figure, name), gid)
         assert t[0] == 0.0
@@ -126,12 +126,14 @@ def test_the_history_is_that_of_the_pin(judged: Judgement, figure: Figure) -> No
     assert panel(figure, "force").get_xlabel() == "time (ms)"
 
 
-def test_the_history_shows_what_was_under_the_spot(judged: Judgement, figure: Figure) -> None:
-    chosen = moment(judged)
-    pin, axes = judged.scan.pins[chosen.pin], panel(figure, "seen")
+def test_the_history_shows_what_was_under_the_spot(evaluated: Evaluation, figure: Figure) -> None:
+    chosen = moment(evaluated)
+    pin, axes = evaluated.scan.pins[chosen.pin], panel(figure, "seen")
     under = [
         (1e3 * (line.begin - chosen.begin), 1e3 * (line.end - chosen.begin))
-        for line in printed(judged.scan.device, judged.scan.path, judged.scan.scene)[chosen.pin]
+        for line in printed(evaluated.scan.device, evaluated.scan.path, evaluated.scan.scene)[
+            chosen.pin
+        ]
         if line.end > chosen.begin and line.begin < chosen.end
     ]
     for name in ("seen", "pull", "x", "force"):
@@ -139,7 +141,7 @@ def test_the_history_shows_what_was_under_the_spot(judged: Judgement, figure: Fi
     ms, seen = data(axes, "luminance")
     middles = np.array([0.5 * (a + b) for a, b in under])
     inside = [seen[np.argmin(np.abs(ms - middle))] for middle in middles]
-    assert max(inside) < judged.scan.device.control.threshold < seen.max()
+    assert max(inside) < evaluated.scan.device.control.threshold < seen.max()
     on = [
         (1e3 * (a - chosen.begin), 1e3 * (b - chosen.begin))
         for a, b in pin.energised
@@ -150,20 +152,20 @@ def test_the_history_shows_what_was_under_the_spot(judged: Judgement, figure: Fi
     assert [(x.min(), x.max()) for x in drawn] == [pytest.approx(span) for span in on]
     assert all(a < b for (a, _), (b, _) in zip(under, on, strict=False)), "switched on after it"
     threshold = data(axes, "threshold")[1]
-    assert threshold.tolist() == [judged.scan.device.control.threshold] * 2
+    assert threshold.tolist() == [evaluated.scan.device.control.threshold] * 2
     carried = spans(panel(figure, "x"), "carried")
     held = [
         chosen.begin + 1e-3 * (a + part * (b - a)) for a, b in carried for part in (0.02, 0.5, 0.98)
     ]
-    plate = judged.scan.path.plate_velocity(judged.scan.device.array.axis)
+    plate = evaluated.scan.path.plate_velocity(evaluated.scan.device.array.axis)
     assert len(held) > 2
     for t in held:
         assert pin.velocity(t) == pytest.approx(float(plate(t - pin.begin)), rel=1e-6)
 
 
-def test_the_tactile_image_is_drawn_as_it_is(judged: Judgement, figure: Figure) -> None:
+def test_the_tactile_image_is_drawn_as_it_is(evaluated: Evaluation, figure: Figure) -> None:
     """Each deflection in its place and with its sign: forward is blue."""
-    axes, painting = panel(figure, "felt"), paint(judged.scan)
+    axes, painting = panel(figure, "felt"), paint(evaluated.scan)
     (image,) = (i for i in axes.images if i.get_gid() == "relief")
     shown = np.ma.filled(image.get_array(), np.nan)  # type: ignore[arg-type]
     np.testing.assert_array_equal(shown, 1e3 * painting.deflection)
@@ -181,8 +183,8 @@ def test_the_tactile_image_is_drawn_as_it_is(judged: Judgement, figure: Figure) 
     assert scale.get_ylim() == (low, high)
 
 
-def test_what_goes_back_is_dotted_for_print_in_grey(judged: Judgement, figure: Figure) -> None:
-    axes, painting = panel(figure, "felt"), paint(judged.scan)
+def test_what_goes_back_is_dotted_for_print_in_grey(evaluated: Evaluation, figure: Figure) -> None:
+    axes, painting = panel(figure, "felt"), paint(evaluated.scan)
     (image,) = (i for i in axes.images if i.get_gid() == "relief")
     (dots,) = (c for c in axes.collections if c.get_gid() == "back")
     left, right, top, bottom = (1e3 * edge for edge in painting.extent)
@@ -197,8 +199,8 @@ def test_what_goes_back_is_dotted_for_print_in_grey(judged: Judgement, figure: F
     assert legend_of(figure)["deflected backwards"].get_hatch() == "...."
 
 
-def test_the_way_and_the_spots_are_those_of_the_hand(judged: Judgement, figure: Figure) -> None:
-    scan, axes = judged.scan, panel(figure, "print")
+def test_the_way_and_the_spots_are_those_of_the_hand(evaluated: Evaluation, figure: Figure) -> None:
+    scan, axes = evaluated.scan, panel(figure, "print")
     begin = 1e3 * scan.spots([scan.path.begin])[:, 0]
     np.testing.assert_allclose(np.transpose(data(axes, "spots")), begin)
     ways = [points(line) for line in lines(axes, "way")]
@@ -212,7 +214,7 @@ def test_the_way_and_the_spots_are_those_of_the_hand(judged: Judgement, figure: 
     assert signs["and back"].get_linestyle() != "-"
     assert signs["what a pin's sensor sees at first"].get_marker() == "o"
     assert "threshold of the control block" in signs and "outline of the print" in signs
-    chosen = moment(judged)
+    chosen = moment(evaluated)
     green = lines(panel(figure, "felt"), "moment")[0]
     track = 1e3 * scan.spots([chosen.begin, chosen.end])[chosen.pin]
     x, y = points(green)
@@ -222,7 +224,7 @@ def test_the_way_and_the_spots_are_those_of_the_hand(judged: Judgement, figure: 
 def test_lines_of_text_are_apart_by_slashes_and_words_do_not_overlap() -> None:
     scene = Scene.from_text("5 $ Ü\n6 $", pixel=2e-4)
     path = lines_of([scene.lines[0]], 0.002, 0.03, speed=0.08, return_speed=0.15)
-    figure = plot_scan(judge(scan(Device(drive=DRIVE), scene, path)))
+    figure = plot_scan(evaluate(scan(Device(drive=DRIVE), scene, path)))
     title = panel(figure, "print").get_title(loc="left")
     assert title == r'printed: text "5 \$ Ü / 6 \$"'
     assert collisions(figure) == []
@@ -241,41 +243,41 @@ def test_reliefs_share_a_scale_and_name_their_speeds() -> None:
     for speed in (0.04, 0.12):
         scene = Scene.from_grating([0.004], count=2, margin=0.008, height=0.003)
         path = lines_of([scene.lines[0]], 0.002, 0.02, speed=speed, return_speed=0.15)
-        found.append(judge(scan(Device(drive=DRIVE), scene, path)))
+        found.append(evaluate(scan(Device(drive=DRIVE), scene, path)))
     figure = plot_reliefs(found)
     limits = set()
-    for i, judgement in enumerate(found):
+    for i, evaluation in enumerate(found):
         axes = panel(figure, f"felt {i + 1}")
         (image,) = axes.images
         np.testing.assert_array_equal(
             np.ma.filled(image.get_array(), np.nan),  # type: ignore[arg-type]
-            1e3 * paint(judgement.scan).deflection,
+            1e3 * paint(evaluation.scan).deflection,
         )
         limits.add(image.get_clim())
         title = axes.get_title(loc="left").splitlines()
         assert title[0] == f"hand at up to {(40, 120)[i]} mm/s"
-        counts = judgement.counts
-        assert title[1].startswith(f"{counts['judged.shown']} of {counts['judged.lines']} line")
-        assert title[2] == f"lag {1e3 * judgement.spread('line.lag_off')[1]:.2g} mm"
+        counts = evaluation.counts
+        assert title[1].startswith(f"{counts['lines.shown']} of {counts['lines.crossed']} line")
+        assert title[2] == f"lag {1e3 * evaluation.spread('line.lag_off')[1]:.2g} mm"
     assert len(limits) == 1
     assert "way of the hand, reading" in legend_of(figure)
     assert collisions(figure) == []
 
 
-def test_the_moment_holds_lines_of_the_pin(judged: Judgement) -> None:
+def test_the_moment_holds_lines_of_the_pin(evaluated: Evaluation) -> None:
     for number in (None, 0, 5):
-        chosen = moment(judged, number)
+        chosen = moment(evaluated, number)
         assert number is None or chosen.pin == number
         inside = [
             line
-            for line in judged.lines
+            for line in evaluated.lines
             if line.pin == chosen.pin
             and chosen.begin <= line.begin.time
             and line.end.time <= chosen.end
         ]
         assert len(inside) > 1
     with pytest.raises(ValueError, match="pin must be a whole number from 0 to 5, got 6"):
-        moment(judged, 6)
+        moment(evaluated, 6)
 
 
 def test_print_and_tactile_image_have_one_scale(figure: Figure) -> None:
@@ -288,18 +290,18 @@ def test_print_and_tactile_image_have_one_scale(figure: Figure) -> None:
     assert printed.get_window_extent().width == pytest.approx(felt.get_window_extent().width)
 
 
-def test_the_title_says_the_verdict(judged: Judgement, figure: Figure) -> None:
+def test_the_title_says_the_verdict(evaluated: Evaluation, figure: Figure) -> None:
     title = figure.get_suptitle()
-    counts = judged.counts
+    counts = evaluated.counts
     assert "6 pins" in title
-    assert f"{counts['judged.shown']} of {counts['judged.lines']} lines shown" in title
-    assert f"lag on {1e3 * judged.spread('line.lag_on')[1]:.2g} mm" in title
+    assert f"{counts['lines.shown']} of {counts['lines.crossed']} lines shown" in title
+    assert f"lag on {1e3 * evaluated.spread('line.lag_on')[1]:.2g} mm" in title
 
 
 def test_a_blank_page_is_drawn() -> None:
     page = Scene(np.ones((60, 500)), 1e-4)
     path = lines_of([0.003], 0.002, 0.045, speed=0.08, return_speed=0.1)
-    figure = plot_scan(judge(scan(Device(drive=DRIVE), page, path)))
+    figure = plot_scan(evaluate(scan(Device(drive=DRIVE), page, path)))
     assert "no line passed whole under a pin" in figure.get_suptitle()
     save(figure, io.BytesIO(), "png")
 
@@ -315,7 +317,7 @@ def test_a_blank_page_is_drawn() -> None:
 def test_the_history_says_where_it_takes_place(velocity: float, start: float, where: str) -> None:
     page = Scene(np.ones((60, 500)), 1e-4)
     path = HandPath([0.0, 1.0], [velocity] * 2, [0.0, 0.0], (start, 0.003))
-    figure = plot_scan(judge(scan(Device(drive=DRIVE), page, path)))
+    figure = plot_scan(evaluate(scan(Device(drive=DRIVE), page, path)))
     expected = f"pin from 0.000 s on, {where}" + ("" if where.endswith("page") else " above")
     assert panel(figure, "seen").get_title(loc="left") == expected
 
@@ -340,7 +342,7 @@ def test_the_command_writes_figure_and_lines(tmp_path: Path) -> None:
         assert 0.0 < lag <= latency * 0.0601
         smear = row["line_smear [m]"]
         assert not smear or not isnan(float(smear))
-    dull = CliRunner().invoke(app, [*command, "--set", "judge.felt=9 mm"])
+    dull = CliRunner().invoke(app, [*command, "--set", "criteria.felt=9 mm"])
     assert "0 shown, 8 missed" in dull.output
     for bad, words in (
         (["--pin", "1"], "--pin must be from 0 to 1, beside --plot, got 1"),
@@ -353,15 +355,15 @@ def test_the_command_writes_figure_and_lines(tmp_path: Path) -> None:
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.svg", "lines.csv"]
 
 
-def test_the_history_marks_when_the_finger_is_lifted(judged: Judgement) -> None:
+def test_the_history_marks_when_the_finger_is_lifted(evaluated: Evaluation) -> None:
     """In the panel of the skin's force, and in the key where it is."""
     finger = Contact(coefficient=0.5, static_coefficient=0.75, stiffness=300.0)
     device = Device(drive=replace(DRIVE, finger=finger, touch_force=0.040))
-    plain = judge(scan(device, judged.scan.scene, judged.scan.path))
+    plain = evaluate(scan(device, evaluated.scan.scene, evaluated.scan.path))
     begin = moment(plain).begin
     off, on = begin + 0.05, begin + 0.15
     touch = Profile([off, off, on, on], [0.040, 0.0, 0.0, 0.040])
-    lifted = judge(scan(device, judged.scan.scene, judged.scan.path, touch=touch))
+    lifted = evaluate(scan(device, evaluated.scan.scene, evaluated.scan.path, touch=touch))
     assert moment(lifted).begin == begin
     drawn = plot_scan(lifted, 0)
     (span,) = spans(panel(drawn, "force"), "lifted")

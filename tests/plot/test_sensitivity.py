@@ -12,9 +12,9 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
 from figure_reading import collisions, legend_of
-from pindrive.plot.sensitivity import _BAR, _FIRST, _TOTAL, plot_influence
+from pindrive.plot.sensitivity import _BAR, _FIRST, _TOTAL, plot_sobol_indices
 from pindrive.plot.style import PALETTE
-from pindrive.study.sensitivity import Influence, sobol
+from pindrive.study.sensitivity import SobolIndices, sobol
 from pindrive.study.slices import symbol, words
 from pindrive.study.study import load_study
 
@@ -23,24 +23,24 @@ KEYS = ("plate_kinetic", "finger_kinetic", "mass", "stiffness", "damping_ratio",
 
 
 @pytest.fixture(scope="module")
-def found() -> Influence:
+def found() -> SobolIndices:
     return sobol(load_study(STUDY), tolerances=True, rows=128, near=True)
 
 
 @pytest.fixture(scope="module")
-def figure(found: Influence) -> Figure:
-    return plot_influence(found, "a name")
+def figure(found: SobolIndices) -> Figure:
+    return plot_sobol_indices(found, "a name")
 
 
 def rows(figure: Figure) -> list[str]:
     return [label.get_text() for label in figure.axes[0].get_yticklabels()]
 
 
-def named(found: Influence) -> dict[str, str]:
+def named(found: SobolIndices) -> dict[str, str]:
     return {words(name): name for name in found.over}
 
 
-def test_rows_and_columns_are_named(found: Influence, figure: Figure) -> None:
+def test_rows_and_columns_are_named(found: SobolIndices, figure: Figure) -> None:
     for axes in figure.axes:
         assert [label.get_text() for label in axes.get_xticklabels()] == [symbol(k) for k in KEYS]
     assert [key.partition(".")[2] for key in found.keys][2:] == list(KEYS[2:])
@@ -52,7 +52,7 @@ def test_rows_and_columns_are_named(found: Influence, figure: Figure) -> None:
     assert over.get_title() == "over the ranges: part of the variance due to"
 
 
-def test_elasticities_are_written_with_their_signs(found: Influence, figure: Figure) -> None:
+def test_elasticities_are_written_with_their_signs(found: SobolIndices, figure: Figure) -> None:
     axes = figure.axes[0]
     assert found.near is not None
     written = {text.get_position(): text.get_text() for text in axes.texts}
@@ -90,7 +90,7 @@ def bars(axes: Axes, colour: str) -> dict[tuple[int, int], Any]:
     }
 
 
-def test_bars_are_the_indices_in_their_order(found: Influence, figure: Figure) -> None:
+def test_bars_are_the_indices_in_their_order(found: SobolIndices, figure: Figure) -> None:
     axes = figure.axes[1]
     differ = 0
     for row, label in enumerate(rows(figure)):
@@ -112,7 +112,7 @@ def test_bars_are_the_indices_in_their_order(found: Influence, figure: Figure) -
     assert to_hex(signs["with interactions"].get_facecolor()) == to_hex(_TOTAL)
 
 
-def test_intervals_are_those_of_the_total(found: Influence, figure: Figure) -> None:
+def test_intervals_are_those_of_the_total(found: SobolIndices, figure: Figure) -> None:
     assert "95 % interval of the latter" in legend_of(figure)
     row = rows(figure).index("settling time")
     total = found.over["transient_settling_time"].total
@@ -138,8 +138,8 @@ def test_bars_have_a_scale(figure: Figure) -> None:
     assert scale.get_xticks() == pytest.approx(expected)
 
 
-def test_words_do_not_overlap(found: Influence) -> None:
-    figure = plot_influence(found, "1 $ and 2 $: " + "a long name " * 12)
+def test_words_do_not_overlap(found: SobolIndices) -> None:
+    figure = plot_sobol_indices(found, "1 $ and 2 $: " + "a long name " * 12)
     assert collisions(figure) == []
     assert figure.texts[0].get_window_extent().x1 < figure.bbox.x1
     assert r"$F_\mathrm{p}$ 15.4 … 28.6 mN" in figure.get_suptitle()

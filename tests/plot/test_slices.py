@@ -23,7 +23,7 @@ from pindrive.cli.app import app
 from pindrive.plot.contours import draw_contours, find_jumps, jump_key, line_colours
 from pindrive.plot.slices import _flattened, plot_study
 from pindrive.study.runner import sweep
-from pindrive.study.slices import View, quantiles
+from pindrive.study.slices import Slice, quantiles
 from pindrive.study.study import load_study
 
 Values = NDArray[np.float64]
@@ -58,19 +58,19 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def grid(folder: Path) -> Iterator[View]:
-    with View(folder / "grid.nc") as view:
+def grid(folder: Path) -> Iterator[Slice]:
+    with Slice(folder / "grid.nc") as view:
         yield view
 
 
 @pytest.fixture
-def drawn(folder: Path) -> Iterator[View]:
-    with View(folder / "drawn.nc") as view:
+def drawn(folder: Path) -> Iterator[Slice]:
+    with Slice(folder / "drawn.nc") as view:
         yield view
 
 
 def draw(
-    view: View, numbers: list[str], x: str | None = None, y: str | None = None, **held: float
+    view: Slice, numbers: list[str], x: str | None = None, y: str | None = None, **held: float
 ) -> Figure:
     return plot_study(view, [view.number(n) for n in numbers], *view.axes(x, y, held), held)
 
@@ -85,7 +85,7 @@ def meshes(figure: Figure) -> list[Values]:
 # ---- grids ---------------------------------------------------------------------------------------
 
 
-def test_a_map_is_a_slice_of_the_file(grid: View) -> None:
+def test_a_map_is_a_slice_of_the_file(grid: Slice) -> None:
     """Over the first two keys, for three values of the third, the middle of the last."""
     figure = draw(grid, ["settling_time"])
     maps = meshes(figure)
@@ -103,7 +103,7 @@ def test_a_map_is_a_slice_of_the_file(grid: View) -> None:
     assert figure.axes[-1].get_ylabel() == r"settling time $t_\mathrm{s}$ (ms)"
 
 
-def test_what_did_not_settle_is_hatched_and_what_cannot_be_is_grey(grid: View) -> None:
+def test_what_did_not_settle_is_hatched_and_what_cannot_be_is_grey(grid: Slice) -> None:
     (key,) = draw(grid, ["swing"]).legends
     words = [text.get_text() for text in key.get_texts()]
     assert words == [
@@ -128,7 +128,7 @@ def test_a_steady_motion_without_the_number_is_not_called_unsettled(folder: Path
         "damping_ratio = [0]\n"
     )
     sweep(load_study(folder / "steady.toml"), folder / "steady.nc")
-    with View(folder / "steady.nc") as view:
+    with Slice(folder / "steady.nc") as view:
         (panel,) = view.panels("transient_swing", *view.axes(None, None, {}), {})
         assert not panel.unsettled.any()
         assert 0 < panel.absent.sum() < panel.values.size
@@ -140,7 +140,7 @@ def test_a_steady_motion_without_the_number_is_not_called_unsettled(folder: Path
         assert not any(panel.absent.any() or panel.unsettled.any() for panel in panels)
 
 
-def test_refused_points_are_grey_and_unsettled_ones_hatched(grid: View) -> None:
+def test_refused_points_are_grey_and_unsettled_ones_hatched(grid: Slice) -> None:
     figure = draw(grid, ["settling_time"])
     parts = list(grid.panels("transient_settling_time", *grid.axes(None, None, {}), {}))
     for axes, part in zip(figure.axes, parts, strict=False):
@@ -157,7 +157,7 @@ def test_refused_points_are_grey_and_unsettled_ones_hatched(grid: View) -> None:
     assert any(part.refused.any() for part in parts)
 
 
-def test_curves_are_slices_too(grid: View) -> None:
+def test_curves_are_slices_too(grid: Slice) -> None:
     held = {"stiffness": 100.0, "damping_ratio": 0.3}
     figure = draw(grid, ["swing", "peak_time"], "mouse_velocity", None, **held)
     place = int(np.argmin(np.abs(grid.data.stiffness.values - 100.0)))
@@ -174,7 +174,7 @@ def test_curves_are_slices_too(grid: View) -> None:
     assert legend.get_texts()[1].get_text() == r"$F_\mathrm{p}$ = 5 mN"
 
 
-def test_a_single_curve_is_shaded_where_it_has_no_value(grid: View) -> None:
+def test_a_single_curve_is_shaded_where_it_has_no_value(grid: Slice) -> None:
     held = {"stiffness": 100.0, "damping_ratio": 0.1, "plate_kinetic": 0.01}
     figure = draw(grid, ["settling_time"], "mouse_velocity", None, **held)
     (axes,) = figure.axes
@@ -194,7 +194,7 @@ def contours(axes: Axes) -> dict[str, list[Values]]:
     return {str(c.get_label()): [np.asarray(p.vertices) for p in c.get_paths()] for c in found}
 
 
-def test_contours_are_at_their_levels_which_stand_at_the_scale(grid: View) -> None:
+def test_contours_are_at_their_levels_which_stand_at_the_scale(grid: Slice) -> None:
     figure = draw(grid, ["settling_time"])
     _, _, _, *scales = figure.axes
     for axes, values in zip(figure.axes[:3], meshes(figure), strict=True):
@@ -271,7 +271,7 @@ def test_maps_on_scales_of_their_own(folder: Path) -> None:
         'plate.kinetic = { lin = ["5 mN", "20 mN"], count = 7 }\ndamping_ratio = [0.01, 0.2]\n'
     )
     sweep(load_study(folder / "flat.toml"), folder / "flat.nc")
-    with View(folder / "flat.nc") as view:
+    with Slice(folder / "flat.nc") as view:
         figure = draw(view, ["settling_time", "swing"])
         for row, name in enumerate(("settling_time", "swing")):
             parts = [view.data[f"transient_{name}"].isel(damping_ratio=i).values for i in (0, 1)]
@@ -298,7 +298,7 @@ def test_titles_of_any_text_stay_on_the_page(folder: Path) -> None:
     text = f'name = "{name}"\n' + BASE + GRID
     (folder / "long.toml").write_text(text, encoding="utf-8")
     sweep(load_study(folder / "long.toml"), folder / "long.nc")
-    with View(folder / "long.nc") as view:
+    with Slice(folder / "long.nc") as view:
         for y in (None, "stiffness"):
             held = {} if y else {"stiffness": 100.0}
             figure = draw(view, ["swing"], "mouse_velocity", y, **held)
@@ -308,7 +308,7 @@ def test_titles_of_any_text_stay_on_the_page(folder: Path) -> None:
             assert r"5 \$ und 6 \$" in figure.get_suptitle().replace("\n", " ")
 
 
-def test_curves_differ_without_colour(grid: View) -> None:
+def test_curves_differ_without_colour(grid: Slice) -> None:
     figure = draw(grid, ["swing"], "mouse_velocity", None, stiffness=100.0)
     curves = [line for line in figure.axes[0].get_lines() if line.get_gid() == "settled"]
     looks = {(str(c._dash_pattern), c.get_linewidth()) for c in curves}  # type: ignore[attr-defined]
@@ -318,7 +318,7 @@ def test_curves_differ_without_colour(grid: View) -> None:
 # ---- draws ---------------------------------------------------------------------------------------
 
 
-def test_draws_over_one_key_are_a_median_and_a_band(drawn: View) -> None:
+def test_draws_over_one_key_are_a_median_and_a_band(drawn: Slice) -> None:
     (panel, _) = drawn.panels("transient_swing", "mouse_velocity", "", {})
     swing = drawn.data.transient_swing.isel(plate_kinetic=0).values
     speed = drawn.data.mouse_velocity.values
@@ -329,7 +329,7 @@ def test_draws_over_one_key_are_a_median_and_a_band(drawn: View) -> None:
     np.testing.assert_allclose(found, np.quantile(swing[inside], (0.05, 0.5, 0.95)), rtol=1e-12)
 
 
-def test_draws_over_two_keys_are_a_map_of_medians(drawn: View) -> None:
+def test_draws_over_two_keys_are_a_map_of_medians(drawn: Slice) -> None:
     figure = draw(drawn, ["swing"], "mass", "mouse_velocity", plate_kinetic=0.02)
     (_, bar) = figure.axes
     assert bar.get_ylabel() == "median swing (mm)"
@@ -346,7 +346,7 @@ def test_draws_that_are_not_drawn_over_are_summed_up(folder: Path) -> None:
         'mass = { uniform = ["5 g", "20 g"] }\n[sample]\ncount = 501\n'
     )
     sweep(load_study(folder / "both.toml"), folder / "both.nc")
-    with View(folder / "both.nc") as view:
+    with Slice(folder / "both.nc") as view:
         (panel,) = view.panels("transient_swing", "mouse_velocity", "", {})
         swing = view.data.transient_swing.values
         np.testing.assert_allclose(panel.values, np.median(swing, axis=1), rtol=1e-12)
@@ -369,7 +369,7 @@ def test_quantiles_of_groups_are_numpys(pairs: list[tuple[int, float]]) -> None:
         np.testing.assert_allclose(found[:, g], expected, rtol=1e-12, atol=1e-12)
 
 
-def test_the_band_and_the_median_are_the_quantiles(drawn: View) -> None:
+def test_the_band_and_the_median_are_the_quantiles(drawn: Slice) -> None:
     figure = draw(drawn, ["swing"], "mouse_velocity", None, plate_kinetic=0.02)
     (axes,) = figure.axes
     (part,) = drawn.panels("transient_swing", "mouse_velocity", "", {"plate_kinetic": 0.02})
@@ -448,7 +448,7 @@ damping_ratio = [0.1, 0.2, 0.3]
 """
     Path("study.toml").write_text(BASE + grid)
     sweep(load_study("study.toml"), Path("study.nc"))
-    with View("study.nc") as view:
+    with Slice("study.nc") as view:
         number = "transient_plate_peak_force"
         figure = plot_study(view, [number], *view.axes("mouse_velocity", "stiffness", {}), {})
     meshes = [

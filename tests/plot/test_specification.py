@@ -15,7 +15,7 @@ from command import run
 from figure_reading import legend_of
 from pindrive.plot.slices import plot_study
 from pindrive.study.outputs import points_that_meet
-from pindrive.study.slices import View
+from pindrive.study.slices import Slice
 
 BASE = f'base = "{(Path(__file__).parents[1] / "minimal.toml").as_posix()}"\n'
 GRID = """
@@ -69,7 +69,7 @@ def meets(data: xr.Dataset) -> NDArray[np.bool_]:
 
 
 def test_a_sweep_counts_the_points_that_meet_it(folder: Path, swept: str, data: xr.Dataset) -> None:
-    """Demanded numbers are kept though outputs do not name them; what is refused does not count."""
+    """Constrained numbers are kept without being outputs; rejected points do not count."""
     met, exist = int(meets(data).sum()), int((data.status == 0).sum())
     assert 0 < met < exist < data.status.size
     assert points_that_meet(folder / "grid.nc") == (met, exist)
@@ -80,7 +80,7 @@ def test_a_sweep_counts_the_points_that_meet_it(folder: Path, swept: str, data: 
 def test_a_map_shades_and_prints_where_it_is_met(
     folder: Path, data: xr.Dataset, tmp_path: Path
 ) -> None:
-    with View(folder / "grid.nc") as view:
+    with Slice(folder / "grid.nc") as view:
         axes = view.axes(None, None, {})
         (panel,) = view.panels("transient_swing", *axes, {})
         expected = meets(data).squeeze().T.astype(float)
@@ -105,7 +105,7 @@ def test_a_map_shades_and_prints_where_it_is_met(
 
 
 def test_curves_are_wide_where_it_is_met(folder: Path, data: xr.Dataset) -> None:
-    with View(folder / "grid.nc") as view:
+    with Slice(folder / "grid.nc") as view:
         figure = plot_study(view, ["transient_swing"], "mouse_velocity", "", {})
     wide = [line for line in figure.axes[0].lines if line.get_gid() == "met"]
     expected = meets(data).squeeze()
@@ -114,7 +114,7 @@ def test_curves_are_wide_where_it_is_met(folder: Path, data: xr.Dataset) -> None
 
 
 def test_of_draws_the_part_that_meets_it_counts(folder: Path, swept: str) -> None:
-    with View(folder / "drawn.nc") as view:
+    with Slice(folder / "drawn.nc") as view:
         (panel,) = view.panels("transient_settling_time", "plate_kinetic", "", {})
         with xr.open_dataset(folder / "drawn.nc", engine="h5netcdf") as opened:
             met = (opened.transient_settling_time <= 0.15).transpose("plate_kinetic", "sample")

@@ -16,8 +16,8 @@ from PIL import Image
 from command import run
 from pindrive import Contact, Drive, Profile, Release, Status, simulate
 from pindrive.device import Device, Electromagnet, PinArray, Scene, scan, strokes
-from pindrive.device.trajectory import Course
-from pindrive.evaluation.perception import judge
+from pindrive.device.trajectory import Trajectory
+from pindrive.evaluation.perception import evaluate
 from pindrive.evaluation.resolution import largest_speeds
 from pindrive.files.keys import template
 from pindrive.quantities import budgets
@@ -165,7 +165,7 @@ def test_looks_for_turning_points_are_not_kept() -> None:
     ramp = Profile((0.0, 0.5, 1.0), (0.05, 0.06, 0.05))
     motion = simulate(drive, Release(ramp), duration=1.0)
     looks = 30.0 * np.sqrt(1e9 / 0.01) / (2.0 * np.pi)
-    knots, peak = traced(lambda: Course(motion).knots)
+    knots, peak = traced(lambda: Trajectory(motion).knots)
     assert looks > 1.5e6
     assert peak < 8 * looks + 64 * len(knots)  # not even one array of them
 
@@ -176,7 +176,7 @@ def test_looks_at_the_page_are_not_kept() -> None:
     path = strokes([(1e-5, 1.5e-5), (0.00599, 1.5e-5)] * 40, 1.0)
     done = scan(device(), Scene(page, 1e-6), path, threads=1)
     looks = 4.0 * 79 * 5980
-    found, peak = traced(lambda: judge(done))
+    found, peak = traced(lambda: evaluate(done))
     assert len(found.lines) == 79 * 2
     assert looks > 1.8e6
     assert peak < 4 * 8 * looks  # a few hundred thousand at once, and a dozen numbers of each

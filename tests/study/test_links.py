@@ -257,7 +257,7 @@ def test_what_never_settles_fails_and_is_told_from_what_cannot_exist() -> None:
     ((_, share),) = found.shares
     assert (share.without, share.met) == (never.sum(), found.designs - never.sum())
     said = run("robustness", "study.toml", "--draws", "1000")
-    assert "A design without a number, such as one that never settles, meets no demand." in said
+    assert "A design without such a number (for example not settled) violates its limit." in said
     assert "cannot exist and are left out:" in said
 
 

@@ -176,4 +176,4 @@ def test_without_a_specification_there_is_no_yield(tmp_path: Path) -> None:
     said = CliRunner().invoke(app, ["robustness", str(tmp_path / "study.toml"), "--draws", "50"])
     assert said.exit_code == 0
     assert "Yield" not in said.stdout
-    assert "write what is demanded in [specification]" in said.stdout
+    assert "write what is required in [specification]" in said.stdout

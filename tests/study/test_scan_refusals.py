@@ -90,4 +90,4 @@ def test_places_of_pins_leave_no_grid_to_vary() -> None:
     ):
         study('[axes]\narray.pitch = ["2 mm"]\n', device=placed)
     data = swept(study('[axes]\ncontrol.latency = ["1 ms", "4 ms"]\n', device=placed))
-    assert (data.judged_lines == 8).all()
+    assert (data.lines_crossed == 8).all()

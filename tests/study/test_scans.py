@@ -1,4 +1,4 @@
-"""Studies of scans: each point is what `scan` and `judge` say of that device, to the bit."""
+"""Studies of scans: each point is what `scan` and `evaluate` say of that device, to the bit."""
 
 from __future__ import annotations
 
@@ -21,15 +21,16 @@ from typer.testing import CliRunner, Result
 
 from pindrive import Contact, Drive, Status
 from pindrive.cli.app import app
-from pindrive.cli.study_tables import influence_report
+from pindrive.cli.study_tables import sobol_report
 from pindrive.device import Coil, ControlBlock, Criteria, Device, Electromagnet, PinArray, scan
 from pindrive.device.coil import COIL as MADE_OF
 from pindrive.device.page_description import Page
 from pindrive.device.reading import Reading
-from pindrive.evaluation import Judgement, judge
+from pindrive.evaluation import Evaluation
+from pindrive.evaluation import evaluate as evaluate_scan
 from pindrive.files.keys import NUMBERS
 from pindrive.files.output import OutputError
-from pindrive.plot.sensitivity import plot_influence
+from pindrive.plot.sensitivity import plot_sobol_indices
 from pindrive.plot.slices import plot_study
 from pindrive.study.distributions import Sample
 from pindrive.study.evaluate import evaluate
@@ -37,11 +38,11 @@ from pindrive.study.outputs import SCAN_OUTPUTS
 from pindrive.study.robustness import robustness
 from pindrive.study.runner import on_threads, sweep
 from pindrive.study.sensitivity import sobol
-from pindrive.study.slices import View
+from pindrive.study.slices import Slice
 from pindrive.study.study import load_study
 from scan_studies import COILED, DEVICE, GRATING, study, swept
 
-AROUND = ("control", "array", "scan", "judge")
+AROUND = ("control", "array", "scan", "criteria")
 REFUSED = Status.refused
 
 
@@ -66,8 +67,8 @@ COIL = {
 }
 
 
-def direct(at: dict[str, float], coiled: bool = False) -> Judgement:
-    """What `scan` and `judge` say of the study's device with these values, SI."""
+def direct(at: dict[str, float], coiled: bool = False) -> Evaluation:
+    """What `scan` and `evaluate` say of the study's device with these values, SI."""
     tables: dict[str, dict[str, Any]] = {
         "drive": {"mass": 0.010, "stiffness": 100.0, "damping_ratio": 0.32},
         "plate": {"kinetic": 0.022},
@@ -76,7 +77,7 @@ def direct(at: dict[str, float], coiled: bool = False) -> Judgement:
         "control": {},
         "array": {"pitch": 0.003},
         "scan": {"hand_speed": 0.100, "pause": 0.050},
-        "judge": {},
+        "criteria": {},
     }
     for key, value in at.items():
         table, _, name = key.partition(".")
@@ -99,23 +100,23 @@ def direct(at: dict[str, float], coiled: bool = False) -> Judgement:
     )
     reading = Reading(**tables["scan"])
     scene = reading.grating([0.004], device.array)
-    return judge(
-        scan(device, scene, reading.strokes(scene, device.array)), Criteria(**tables["judge"])
+    return evaluate_scan(
+        scan(device, scene, reading.strokes(scene, device.array)), Criteria(**tables["criteria"])
     )
 
 
-def numbers(judgement: Judgement) -> dict[str, float]:
+def numbers(evaluation: Evaluation) -> dict[str, float]:
     """Some of each kind, counted and sorted out anew."""
-    shown = [line for line in judgement.lines if line.fate == "shown"]
+    shown = [line for line in evaluation.lines if line.fate == "shown"]
     found: dict[str, float] = {
-        "judged_lines": len(judgement.lines),
-        "judged_shown": len(shown),
-        "judged_shown_part": len(shown) / len(judgement.lines),
-        "judged_merged": sum(line.fate == "merged" for line in judgement.lines),
-        "judged_echoes": len(judgement.echoes),
-        "judged_unsettled": sum(line.settled != line.settled for line in shown),
-        "judged_direction": sum(line.begin.cue in ("direction", "sure") for line in shown),
-        "hand_duration": judgement.scan.path.end - judgement.scan.path.begin,
+        "lines_crossed": len(evaluation.lines),
+        "lines_shown": len(shown),
+        "lines_shown_part": len(shown) / len(evaluation.lines),
+        "lines_merged": sum(line.fate == "merged" for line in evaluation.lines),
+        "lines_false": len(evaluation.echoes),
+        "lines_unsettled": sum(line.settled != line.settled for line in shown),
+        "lines_direction": sum(line.begin.cue in ("direction", "sure") for line in shown),
+        "hand_duration": evaluation.scan.path.end - evaluation.scan.path.begin,
     }
     for name, values, worst in (
         ("latency_on", [line.begin.response - line.begin.time for line in shown], max),
@@ -133,9 +134,9 @@ def numbers(judgement: Judgement) -> dict[str, float]:
     return found
 
 
-def assert_same(point: Mapping[Any, Any], judgement: Judgement) -> None:
+def assert_same(point: Mapping[Any, Any], evaluation: Evaluation) -> None:
     assert point["status"] == 0
-    for name, value in numbers(judgement).items():
+    for name, value in numbers(evaluation).items():
         np.testing.assert_array_equal(point[name], value, err_msg=name)
 
 
@@ -157,8 +158,8 @@ VARIED = {
     "array.axis": (["0 deg", "0.1 rad"], [0.0, 0.1]),
     "scan.hand_speed": (["40 mm/s", "150 mm/s"], [0.040, 0.150]),
     "scan.pause": (["0 ms", "80 ms"], [0.0, 0.080]),
-    "judge.felt": (["0.01 mm", "0.3 mm"], [1e-5, 3e-4]),
-    "judge.echo": ([0.02, 1], [0.02, 1.0]),
+    "criteria.felt": (["0.01 mm", "0.3 mm"], [1e-5, 3e-4]),
+    "criteria.echo": ([0.02, 1], [0.02, 1.0]),
 }
 
 
@@ -169,10 +170,12 @@ def test_a_point_is_a_scan_to_the_bit(key: str) -> None:
     columns = plan.columns(0, 2)
     assert {k: v.tolist() for k, v in columns.items()} == {key: values}
     found = evaluate(plan, columns, 2, SCAN_OUTPUTS)
-    judged = [direct({key: value}) for value in values]
-    for i, judgement in enumerate(judged):
-        assert_same({name: column[i] for name, column in found.items()}, judgement)
-    one, other = ([numbers(j), [line.height for line in j.lines], j.scan.path.end] for j in judged)
+    evaluated = [direct({key: value}) for value in values]
+    for i, evaluation in enumerate(evaluated):
+        assert_same({name: column[i] for name, column in found.items()}, evaluation)
+    one, other = (
+        [numbers(j), [line.height for line in j.lines], j.scan.path.end] for j in evaluated
+    )
     assert repr(one) != repr(other), "the key does something"
 
 
@@ -201,12 +204,12 @@ def test_products_links_and_draws() -> None:
 def test_a_coil_may_be_varied() -> None:
     data = swept(study("[axes]\nmagnet.turns = [200, 320]\n", device=DEVICE + COILED))
     for i, turns in enumerate((200.0, 320.0)):
-        judged = direct({"magnet.turns": turns}, coiled=True)
-        assert_same(data.isel(turns=i), judged)
+        evaluated = direct({"magnet.turns": turns}, coiled=True)
+        assert_same(data.isel(turns=i), evaluated)
         # 430 K/W, and 3 V on copper of so many turns
         power = 9.0 / (turns * 0.016 / (58e6 * np.pi / 4.0 * 1e-8))
-        on = sum(end - begin for begin, end in judged.scan.pins[0].energised)
-        part = on / (judged.scan.path.end - judged.scan.path.begin)
+        on = sum(end - begin for begin, end in evaluated.scan.pins[0].energised)
+        part = on / (evaluated.scan.path.end - evaluated.scan.path.begin)
         assert data.magnet_on_part[i] == pytest.approx(part, rel=1e-12)
         assert data.coil_warming[i] == pytest.approx(430.0 * power * part, rel=1e-12)
     assert "gap" in data.coords
@@ -250,7 +253,7 @@ def test_every_number_of_the_device_file_may_be_varied(table: str) -> None:
         )
         found = evaluate(plan, plan.columns(0, 2), 2, SCAN_OUTPUTS)
         assert (found["status"] == 0).all(), key
-        assert (found["judged_lines"] > 0).all(), key
+        assert (found["lines_crossed"] > 0).all(), key
 
 
 def test_a_point_without_a_scan_is_marked() -> None:
@@ -268,7 +271,7 @@ def test_a_point_without_a_scan_is_marked() -> None:
         assert "coil_warming" not in data, "no coil is described"
         bad = data.isel(threshold=0, hysteresis=1)
         assert all(np.isnan(bad[name]) for name in data.data_vars if name != "status")
-        assert data.judged_lines.notnull().sum() == 3
+        assert data.lines_crossed.notnull().sum() == 3
     assert plan.size == 4
 
 
@@ -276,7 +279,7 @@ def test_a_point_without_a_scan_is_marked() -> None:
 
 GRID = """
 chunk = 4
-outputs = ["shown_part", "echoes", "smear", "worst_smear", "judged.lines", "duration"]
+outputs = ["shown_part", "false", "smear", "worst_smear", "lines.crossed", "duration"]
 [axes]
 scan.hand_speed = { lin = ["80 mm/s", "200 mm/s"], count = 6 }
 control.latency = ["1 ms", "4 ms", "7 ms", "10 ms"]
@@ -288,8 +291,8 @@ def test_the_file_says_everything() -> None:
     assert data.attrs["page"] == "lines every 4 mm"
     assert 'grating = ["4 mm"]' in data.attrs["study"]
     assert {*data.data_vars} == {
-        *("judged_shown_part", "judged_echoes", "median_smear", "worst_smear"),
-        *("judged_lines", "hand_duration", "status"),
+        *("lines_shown_part", "lines_false", "median_smear", "worst_smear"),
+        *("lines_crossed", "hand_duration", "status"),
     }
     assert data.latency.attrs["units"] == "s"
     assert data.median_smear.attrs["long_name"].startswith("median of the lines shown: what the")
@@ -349,7 +352,7 @@ def test_the_identity_holds_the_page() -> None:
     grating = study(axes).identity()
     assert study(axes).identity() == grating
     assert study(axes, GRATING.replace("4 mm", "3 mm")).identity() != grating
-    assert study(axes, device=DEVICE + "[judge]\necho = 0.6\n").identity() != grating
+    assert study(axes, device=DEVICE + "[criteria]\necho = 0.6\n").identity() != grating
     assert study(axes, '[page]\ntext = "4"\n').identity() != grating
     Path("hand.csv").write_text("time [s], x [mm], y [mm]\n0, 2, 2\n1, 18, 2\n")
     page = '[page]\nimage = "page.png"\npath = "hand.csv"\n'
@@ -406,7 +409,7 @@ def test_robustness_is_that_of_scans() -> None:
     assert farthest.keys["scan.hand_speed"] == pytest.approx(0.200, rel=0.02)
     assert farthest.keys["control.latency"] == pytest.approx(0.010, rel=0.05)
     assert farthest.value >= farthest.sampled > 0.0
-    assert found.own["judged_shown_part"] == 1.0
+    assert found.own["lines_shown_part"] == 1.0
     study(TOLERANCES.partition("[specification]")[0], ONE_LINE)
     said = run("robustness", "study.toml", "--draws", "5", "--threads", "1", "--plot", "a.png")
     assert said.exit_code == 0, said.output
@@ -425,13 +428,13 @@ def test_sobol_indices_are_those_of_scans() -> None:
     assert time.value[1] == 0.0
     latency = found.over["median_latency_on"].total.value
     assert latency[1] > 0.9 > latency[0]
-    assert found.over["judged_lines"].spread == 0.0
+    assert found.over["lines_crossed"].spread == 0.0
     with StringIO() as shown:
-        Console(file=shown, width=200).print(influence_report(found))
+        Console(file=shown, width=200).print(sobol_report(found))
         said = shown.getvalue()
     assert "No elasticities: a scan has no exact derivatives." in said
     assert "Near the device" not in said
-    figure = plot_influence(found, "a study")
+    figure = plot_sobol_indices(found, "a study")
     assert [axes.get_title() for axes in figure.axes] == [
         "over the ranges: part of the variance due to"
     ]
@@ -452,9 +455,9 @@ def test_nothing_varied_has_no_sensitivity() -> None:
 
 def test_maps_show_the_file() -> None:
     data = swept(study(GRID))
-    with View("study.nc") as view:
-        assert view.usual_numbers() == ["judged_shown_part"]
-        assert view.number("shown_part") == "judged_shown_part"
+    with Slice("study.nc") as view:
+        assert view.usual_numbers() == ["lines_shown_part"]
+        assert view.number("shown_part") == "lines_shown_part"
         assert view.number("smear") == "median_smear"
         (panel,) = view.panels("median_smear", "hand_speed", "latency", {})
         np.testing.assert_array_equal(panel.values, data.median_smear.T)
@@ -470,7 +473,7 @@ def test_maps_show_the_file() -> None:
 
 def test_releases_of_a_whole_device_are_swept_too() -> None:
     """Without a page, what stands around the drive has no part."""
-    data = swept(study('[axes]\nmass = ["5 g", "10 g"]\n', "", DEVICE + "[judge]\necho = 0.6\n"))
+    data = swept(study('[axes]\nmass = ["5 g", "10 g"]\n', "", DEVICE + "[criteria]\necho = 0.6\n"))
     assert (data.status == 0).all()
     assert "echo" not in data.coords
 
@@ -496,6 +499,6 @@ def test_the_example_is_a_study_of_scans() -> None:
     device = Device(drive=drive, magnet=magnet)
     reading = Reading(hand_speed=columns["scan.hand_speed"][1])
     scene = reading.grating([0.004, 0.002, 0.001], device.array)
-    judged = judge(scan(device, scene, reading.strokes(scene, device.array)))
-    for name, value in numbers(judged).items():
+    evaluated = evaluate_scan(scan(device, scene, reading.strokes(scene, device.array)))
+    for name, value in numbers(evaluated).items():
         assert found[name][1] == value, name

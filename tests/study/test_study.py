@@ -72,7 +72,7 @@ def test_python_and_a_file_say_the_same_study(mouse: DeviceFile, tmp_path: Path)
     file.write_text(FILE.format(base=MOUSE.as_posix()), encoding="utf-8")
     written, made = pd.load_study(file), python(mouse)
     assert made.identity() == written.identity()
-    assert (made.demands, made.tolerances) == (written.demands, written.tolerances)
+    assert (made.constraints, made.tolerances) == (written.constraints, written.tolerances)
     one, other = written.run(), made.run()
     assert set(one.variables) == set(other.variables)
     for name, variable in one.variables.items():
@@ -116,7 +116,7 @@ def test_a_study_of_scans_is_the_scans(tmp_path: Path) -> None:
     data = pd.Study(reader, {"hand_speed": [0.04]}, ["shown_part", "lag_on"], page=page).run()
     slow = pd.load_device(READER, ["array.columns=1", "array.rows=2", "hand_speed=40 mm/s"])
     told = pd.scan(slow, page).evaluate()
-    assert float(data.judged_shown_part[0]) == len(told.shown) / len(told.lines) == 1.0
+    assert float(data.lines_shown_part[0]) == len(told.shown) / len(told.lines) == 1.0
     assert float(data.median_lag_on[0]) == told.spread("line.lag_on")[1]
 
 
@@ -242,7 +242,7 @@ def test_an_evaluation_is_data() -> None:
         assert float(data.end_time[i]) == line.end.time
         for name, value in line.numbers.items():
             assert_array_equal(data[name.replace(".", "_")][i], value)
-    assert int(data.judged_shown) == len(told.shown)
+    assert int(data.lines_shown) == len(told.shown)
     assert data.line_smear.attrs["units"] == "m"
 
 

@@ -24,7 +24,7 @@ def test_a_study_is_written_that_can_be_swept(options: list[str], points: int) -
     assert f"Every combination of these is computed: {' x '.join(map(str, plan.shape))} " in (
         Path("study.toml").read_text("utf-8")
     )
-    assert plan.tolerances and plan.demands
+    assert plan.tolerances and plan.constraints
     assert bool(plan.page) is bool(options)
 
 
@@ -61,7 +61,10 @@ def test_what_stands_in_comments_is_right_too(whole: bool) -> None:
     Path("study.toml").write_text(text, "utf-8")
     plan = load_study("study.toml")
     kept = plan.outputs[: len(tables["outputs"])]
-    assert {*plan.outputs} - {*kept} <= {*(demand.name for demand in plan.demands), "status"}
+    assert {*plan.outputs} - {*kept} <= {
+        *(constraint.name for constraint in plan.constraints),
+        "status",
+    }
     assert all(full.endswith(name) for full, name in zip(kept, tables["outputs"], strict=True))
     assert plan.size % 1024 == 0
 

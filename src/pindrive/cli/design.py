@@ -1,4 +1,4 @@
-"""The command `pindrive design`: the design that meets a wish best."""
+"""The command `pindrive design`: the best design for a design problem."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ if TYPE_CHECKING:
     from pindrive.optimisation.results import Design
 
 NONE_MEETS = 1
-"""Exit status where no design meets the demands."""
+"""Exit status where no design meets the constraints."""
 
 
-@command("Designs", "pindrive design wish.toml --plot design.png -o design.toml")
+@command("Designs", "pindrive design problem.toml --plot design.png -o design.toml")
 def design(
-    wish: Annotated[Path, typer.Argument(metavar="WISH", help="Wish file (TOML).")],
+    problem: Annotated[Path, typer.Argument(metavar="PROBLEM", help="Problem file (TOML).")],
     output: Annotated[
         list[Path] | None, output_option("Its device file: .toml; the numbers: .nc or .json.")
     ] = None,
@@ -43,20 +43,20 @@ def design(
     cluster: ClusterOption = None,
     overrides: OverridesOption = None,
 ) -> None:
-    """Find the design that meets a wish best.
+    """Find the best design for a design problem.
 
-    A wish names a device, what may vary (ranges and catalogues), what is demanded under which
-    conditions, tolerances and one to three goals. Exit status 1: no design meets the demands, and
-    what is printed and written is the closest.
+    A design problem names a device, its variables (ranges and catalogues), constraints on numbers,
+    operating conditions, tolerances and one to three goals. Exit status 1: no design meets the
+    constraints, and the closest design is printed and written.
     """
     from pindrive.optimisation.designing import optimise
+    from pindrive.optimisation.problem import read_problem
     from pindrive.optimisation.results import Design
-    from pindrive.optimisation.wish import read_wish
 
     with refusing():
         if threads and cluster:
             raise ValueError("give --threads or --cluster, not both: workers have their own")
-        wanted = read_wish(wish, overrides or ())
+        wanted = read_problem(problem, overrides or ())
         targets = by_suffix(output or [], _writers()) + pictures(plot, Design.plot)
         with results(targets, wanted.inputs, force=force) as write:
             with bar("Designs") as progress:

@@ -20,14 +20,14 @@ if TYPE_CHECKING:
 
     from rich.table import Table
 
-    from pindrive.optimisation.results import Demanded, Design, Front
+    from pindrive.optimisation.results import ConstraintResult, Design, Front
 
 MOST_OF_FRONT = 12
 """Designs of a front that are shown."""
 
 
 def design_report(found: Design) -> RenderableType:
-    """The design, its goals and demands, the front, the nearest parts, and what is doubtful."""
+    """The design, its goals and constraints, the front, the nearest parts, and what is doubtful."""
     tables: list[RenderableType] = [_values(found), _limits(found)]
     if found.front:
         tables.append(_front(found, found.front))
@@ -37,11 +37,11 @@ def design_report(found: Design) -> RenderableType:
 
 
 def _values(found: Design) -> Table:
-    name = found.wish.plan.name or found.device.name
-    title = f"Design: {name}" if found.feasible else f"No design meets the demands of {name}"
+    name = found.problem.plan.name or found.device.name
+    title = f"Design: {name}" if found.feasible else f"No design meets the constraints of {name}"
     table = new_table(title, "key", ">value", "unit", ">before", "chosen")
-    before = found.wish.plan.device.values()
-    of = {key: v for v in found.wish.variables for key in v.axes}
+    before = found.problem.plan.device.values()
+    of = {key: v for v in found.problem.variables for key in v.axes}
     ends = dict(found.at_ends)
     for key, value in found.values.items():
         quantity, old = KEYS[key], before.get(key)
@@ -60,33 +60,33 @@ def _values(found: Design) -> Table:
 
 
 def _limits(found: Design) -> Table:
-    """Goals, then demands, each at its worst condition."""
+    """Goals, then constraints, each at its worst condition."""
     gain = f">for {100.0 * found.gain:g} % gain"
-    heads = ["goal or demand", ">worst", ">room", gain]
-    conditions = [key for condition in found.wish.conditions for key in condition.axes]
+    heads = ["goal or constraint", ">worst", ">margin", gain]
+    conditions = [key for condition in found.problem.conditions for key in condition.axes]
     worst = f">worst at {short_keys(tuple(conditions))}"
-    table = new_table("Goals and demands", *heads, *([worst] if conditions else []))
+    table = new_table("Goals and constraints", *heads, *([worst] if conditions else []))
     for reached in found.goals:
         row = [reached.goal.text(), shown(reached.goal.name, reached.value), "", ""]
         table.add_row(*row, *([_case(reached.case)] if conditions else []))
-    for demanded in found.demands:
-        name = demanded.demand.name
-        over = demanded.excess
-        room = shown(name, -over) if isfinite(over) else "no number"
+    for required in found.constraints:
+        name = required.constraint.name
+        over = required.excess
+        margin = shown(name, -over) if isfinite(over) else "no number"
         if over > 0.0:
-            room = f"misses {shown(name, over)}" if isfinite(over) else "no number"
-        row = [demanded.demand.text(), shown(name, demanded.value), room, _relaxed(demanded)]
-        table.add_row(*row, *([_case(demanded.case)] if conditions else []))
+            margin = f"violated by {shown(name, over)}" if isfinite(over) else "no number"
+        row = [required.constraint.text(), shown(name, required.value), margin, _relaxed(required)]
+        table.add_row(*row, *([_case(required.case)] if conditions else []))
     return table
 
 
-def _relaxed(demanded: Demanded) -> str:
+def _relaxed(required: ConstraintResult) -> str:
     """By how much a limit would have to give for the gain."""
-    if not demanded.binds:
+    if not required.binds:
         return "-"
-    demand = demanded.demand
-    side = "≤" if demand.at_most else "≥"
-    return f"{side} {shown(demand.name, demanded.relaxed)}"
+    constraint = required.constraint
+    side = "≤" if constraint.at_most else "≥"
+    return f"{side} {shown(constraint.name, required.relaxed)}"
 
 
 def _case(case: Mapping[str, float]) -> str:
@@ -95,7 +95,7 @@ def _case(case: Mapping[str, float]) -> str:
 
 def _front(found: Design, front: Front) -> Table:
     names = [reached.goal.name for reached in found.goals]
-    keys = [next(iter(v.axes)) for v in found.wish.variables]
+    keys = [next(iter(v.axes)) for v in found.problem.variables]
     heads = [f">{label(name)}" for name in names] + [f">{short_keys((key,))}" for key in keys]
     title = f"Front: {counted(len(front.goals), 'design')}, of which none is better in all goals"
     table = new_table(title, *heads, "")
@@ -111,7 +111,8 @@ def _front(found: Design, front: Front) -> Table:
 
 def _alternatives(found: Design) -> Table:
     names = [reached.goal.name for reached in found.goals]
-    heads = ["catalogue", "part", ">part price", *(f">{label(name)}" for name in names), "misses"]
+    values = (f">{label(name)}" for name in names)
+    heads = ["catalogue", "part", ">part price", *values, "violations"]
     table = new_table("Nearest parts, all else unchanged", *heads)
     for other in found.alternatives:
         table.add_row(
@@ -123,10 +124,10 @@ def _alternatives(found: Design) -> Table:
                 for name, value in zip(names, other.goals, strict=True)
             ),
             ", ".join(
-                f"{label(demand.name)} by {shown(demand.name, over)}"
+                f"{label(constraint.name)} by {shown(constraint.name, over)}"
                 if isfinite(over)
-                else f"{label(demand.name)}: no number"
-                for demand, over in other.misses
+                else f"{label(constraint.name)}: no number"
+                for constraint, over in other.violations
             )
             or "nothing",
         )
@@ -142,11 +143,13 @@ def _words(found: Design) -> list[str]:
         lines.append(
             f"Yield within the tolerances: {share.text} of {counted(share.of, 'device')} "
             f"(95 % interval {100.0 * share.low:.3f} to {100.0 * share.high:.3f} %)"
-            + (f", ≥ {100.0 * least:g} % demanded" if (least := found.wish.least_yield) else "")
+            + (f", ≥ {100.0 * least:g} % required" if (least := found.problem.least_yield) else "")
         )
-        if not found.wish.least_yield and share.met < 0.9 * share.of:
-            lines.append('A demand for it leaves room: yield = ">= 95 %" in [specification]')
-    binding = [d.demand.text() for d in found.demands if d.binds]
+        if not found.problem.least_yield and share.met < 0.9 * share.of:
+            lines.append(
+                'A constraint on the yield leaves a margin: yield = ">= 95 %" in [specification]'
+            )
+    binding = [d.constraint.text() for d in found.constraints if d.binds]
     if binding:
         lines.append(f"Binding: {', '.join(binding)}")
     done = [

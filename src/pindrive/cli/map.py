@@ -38,16 +38,16 @@ def map_study(
 
     The least and the largest values of each slice are printed.
     """
-    from pindrive.study.slices import View
+    from pindrive.study.slices import Slice
 
-    def draw(view: View) -> Figure:
+    def draw(view: Slice) -> Figure:
         from pindrive.plot.slices import plot_study
 
         return plot_study(view, names, *chosen, held)
 
     with refusing():
         targets = pictures(plot, draw)
-        with results(targets, [file], force=force) as write, View(file) as view:
+        with results(targets, [file], force=force) as write, Slice(file) as view:
             over = [given and view.key(given, option) for given, option in ((x, "--x"), (y, "--y"))]
             held = view.held(at or ())
             names = [view.number(name) for name in number or view.usual_numbers()]

@@ -35,7 +35,7 @@ from pindrive.cli.progress import bar
 
 if TYPE_CHECKING:
     from pindrive.device.hand import HandPath
-    from pindrive.evaluation.perception import Judgement
+    from pindrive.evaluation.perception import Evaluation
 
 STROKES = "strokes"
 
@@ -90,7 +90,7 @@ def scan(
 
         from pindrive.device.page_description import Page
         from pindrive.device.scanning import scan as follow
-        from pindrive.evaluation.perception import Judgement, judge
+        from pindrive.evaluation.perception import Evaluation, evaluate
         from pindrive.files.output import LINES_CSV, SCAN_EVENTS_CSV
 
         page = Page(
@@ -103,7 +103,7 @@ def scan(
             path=None if path == STROKES else Path(path),
         )
         page.check("--{}")
-        targets = pictures(plot, partial(Judgement.plot, pin=pin))
+        targets = pictures(plot, partial(Evaluation.plot, pin=pin))
         targets += _films(film, slow) + by_suffix(wanted, _writers(frequency))
         targets = with_events(targets, SCAN_EVENTS_CSV, _write_events)
         line_writers = {".csv": (LINES_CSV, _write_lines)}
@@ -126,52 +126,52 @@ def scan(
                     max_angle=reading.max_angle,
                     progress=progress,
                 )
-            judgement = judge(done, device_file.criteria)
-            write(judgement)
-    from pindrive.cli.scan_tables import judgement_report, scan_report
+            evaluation = evaluate(done, device_file.criteria)
+            write(evaluation)
+    from pindrive.cli.scan_tables import evaluation_report, scan_report
     from pindrive.cli.tables import show
 
     for warning in done.warnings:
         typer.echo(f"warning: {warning}", err=True)
     show(scan_report(done))
-    show(judgement_report(judgement))
+    show(evaluation_report(evaluation))
     say_written(targets)
 
 
-def _writers(frequency: float) -> dict[str, Writer[Judgement]]:
+def _writers(frequency: float) -> dict[str, Writer[Evaluation]]:
     """How a scan is written, by the suffix of a file; with so many samples a second in a CSV."""
     from pindrive.device.dataset import write_netcdf
     from pindrive.files import dataset, export
     from pindrive.files.output import SCAN_CSV, SCAN_NETCDF
 
-    def write_csv(judgement: Judgement, part: Path) -> None:
-        scan = judgement.scan
+    def write_csv(evaluation: Evaluation, part: Path) -> None:
+        scan = evaluation.scan
         times = export.even_times(scan.path.begin, scan.path.end, frequency, len(scan.pins))
         export.write_scan_csv(scan, part, times)
 
-    def write_json(judgement: Judgement, part: Path) -> None:
-        dataset.write_json(judgement.to_dataset(), part, f"Scan of {judgement.scan.scene.title}")
+    def write_json(evaluation: Evaluation, part: Path) -> None:
+        dataset.write_json(evaluation.to_dataset(), part, f"Scan of {evaluation.scan.scene.title}")
 
     return {
         ".csv": (SCAN_CSV, write_csv),
-        ".nc": (SCAN_NETCDF, lambda judgement, part: write_netcdf(judgement.scan, part)),
+        ".nc": (SCAN_NETCDF, lambda evaluation, part: write_netcdf(evaluation.scan, part)),
         ".json": (dataset.DATASET_JSON, write_json),
     }
 
 
-def _write_events(judgement: Judgement, part: Path) -> None:
+def _write_events(evaluation: Evaluation, part: Path) -> None:
     from pindrive.files.export import write_scan_events
 
-    write_scan_events(judgement.scan, part)
+    write_scan_events(evaluation.scan, part)
 
 
-def _write_lines(judgement: Judgement, part: Path) -> None:
+def _write_lines(evaluation: Evaluation, part: Path) -> None:
     from pindrive.files.export import write_lines
 
-    write_lines(judgement.columns(), part)
+    write_lines(evaluation.columns(), part)
 
 
-def _films(film: Path | None, slow: float) -> list[Target[Judgement]]:
+def _films(film: Path | None, slow: float) -> list[Target[Evaluation]]:
     """The film, if one is wanted and can be made here."""
     if not film:
         return []
@@ -180,9 +180,9 @@ def _films(film: Path | None, slow: float) -> list[Target[Judgement]]:
 
     suffix = animation_format(film)
 
-    def write(judgement: Judgement, part: Path) -> None:
+    def write(evaluation: Evaluation, part: Path) -> None:
         with bar("Frames") as progress:
-            animate(judgement, part, suffix, slow=slow, progress=progress)
+            animate(evaluation, part, suffix, slow=slow, progress=progress)
 
     return by_suffix([film], {s: (kind, write) for s, kind in FILMS.items()}, "--animate")
 

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from pindrive.device.device import Criteria
     from pindrive.device.scanning import PinScan, Scan
     from pindrive.evaluation.page_speed import PageSpeeds
-    from pindrive.evaluation.perception import Judgement
+    from pindrive.evaluation.perception import Evaluation
     from pindrive.evaluation.resolution import Band, SpeedLimit
 
 _MM: Final = 1e3
@@ -48,7 +48,7 @@ HEADINGS: Final = {
     "pin_gap": "least\ngap",
 }
 COUNTED: Final = (
-    *("lines", "shown", "direction", "sure", "unsettled", "unseen", "merged", "faint", "echoes"),
+    *("crossed", "shown", "direction", "sure", "unsettled", "unseen", "merged", "faint", "false"),
 )
 """The counts in the order in which they are told: what was shown, what was missed, what was not."""
 
@@ -105,28 +105,28 @@ def _words(scan: Scan) -> list[str]:
     ]
 
 
-def judgement_report(judgement: Judgement) -> RenderableType:
+def evaluation_report(evaluation: Evaluation) -> RenderableType:
     """What became of the lines, in words, and the numbers of those shown."""
-    lines = whole_lines(verdict_words(judgement))
-    tables = [_counts(judgement)] if judgement.lines else []
-    if judgement.shown:
-        tables.append(_spreads(judgement))
+    lines = whole_lines(verdict_words(evaluation))
+    tables = [_counts(evaluation)] if evaluation.lines else []
+    if evaluation.shown:
+        tables.append(_spreads(evaluation))
     return Group(*tables, *lines)
 
 
-def _counts(judgement: Judgement) -> Table:
+def _counts(evaluation: Evaluation) -> Table:
     table = new_table("What became of the lines", "symbol", ">count", "meaning")
     for name in COUNTED:
-        quantity = QUANTITIES[f"judged.{name}"]
-        table.add_row(quantity.symbol, str(judgement.counts[quantity.name]), quantity.meaning)
+        quantity = QUANTITIES[f"lines.{name}"]
+        table.add_row(quantity.symbol, str(evaluation.counts[quantity.name]), quantity.meaning)
     return table
 
 
-def _spreads(judgement: Judgement) -> Table:
+def _spreads(evaluation: Evaluation) -> Table:
     title = "Lines shown to the finger"
     table = new_table(title, "symbol", ">least", ">median", ">most", "unit", "meaning")
     for quantity in LINE:
-        values = judgement.spread(quantity.name)
+        values = evaluation.spread(quantity.name)
         share = quantity.unit == "1"
         cells = [
             f"{value:.1%}" if share and not isnan(value) else quantity.digits(value)
@@ -136,11 +136,11 @@ def _spreads(judgement: Judgement) -> Table:
     return table
 
 
-def verdict_words(judgement: Judgement) -> list[str]:
+def verdict_words(evaluation: Evaluation) -> list[str]:
     """What became of the lines."""
-    counts = {name.removeprefix("judged."): n for name, n in judgement.counts.items()}
-    if not counts["lines"]:
-        return [f"No line passed whole under a pin; {_number(counts['echoes'], 'false line')}."]
+    counts = {name.removeprefix("lines."): n for name, n in evaluation.counts.items()}
+    if not counts["crossed"]:
+        return [f"No line passed whole under a pin; {_number(counts['false'], 'false line')}."]
     missed = counts["unseen"] + counts["merged"] + counts["faint"]
     why = _brackets(
         (counts["unseen"], "not seen by the control block"),
@@ -151,16 +151,16 @@ def verdict_words(judgement: Judgement) -> list[str]:
         (counts["unsettled"], "not settled before the next"),
         (counts["shown"] - counts["sure"], "of uncertain direction"),
     )
-    limits = judgement.criteria
+    limits = evaluation.criteria
     words = [
-        f"{_number(counts['lines'], 'line')} passed under the pins: {counts['shown']} shown"
-        f"{doubts}, {missed} missed{why}; {_number(counts['echoes'], 'false line')}.",
+        f"{_number(counts['crossed'], 'line')} passed under the pins: {counts['shown']} shown"
+        f"{doubts}, {missed} missed{why}; {_number(counts['false'], 'false line')}.",
         f"Motion of the skin is felt from {limits.felt * _MM:g} mm on, its direction from "
         f"{limits.direction * _MM:g} mm, and right in 95 % of cases from "
         f"{limits.direction_sure * _MM:g} mm at {limits.direction_speed * _MM:g} mm/s; a false "
         f"line is {limits.echo:.0%} as high as the line before, or more.",
     ]
-    if judgement.scan.device.drive.finger.rigid:
+    if evaluation.scan.device.drive.finger.rigid:
         words.append(
             "The finger is rigid: the pin's motion stands for the skin's, the most that skin could "
             "move."
@@ -231,7 +231,7 @@ def page_speed_report(found: PageSpeeds) -> RenderableType:
     table = new_table(f"How fast the hand may move over {found.title}", *headings)
     table.add_row(speed.display_unit, style="dim")
     for tried, counts in found.counts.items():
-        numbers = (str(counts[f"judged.{name}"]) for name in page_speed.COUNTED)
+        numbers = (str(counts[f"lines.{name}"]) for name in page_speed.COUNTED)
         table.add_row(speed.digits(tried), *numbers)
     words = [
         f"{said}: {_up_to(limit, found.tried)}."

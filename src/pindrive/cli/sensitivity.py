@@ -56,14 +56,14 @@ def sensitivity(
     What keeps its ratio to a varied value changes with it, as for `robustness`.
     """
     from pindrive.study.outputs import known_output
-    from pindrive.study.sensitivity import Influence, askable, sobol
+    from pindrive.study.sensitivity import SobolIndices, askable, sobol
     from pindrive.study.study import load_study
 
     with refusing():
         plan = load_study(study, overrides or ())
-        targets = pictures(plot, Influence.plot)
+        targets = pictures(plot, SobolIndices.plot)
         title = "Sobol' indices"
-        targets += datasets(output, title, ("number", "key"), Influence.to_dataset)
+        targets += datasets(output, title, ("number", "key"), SobolIndices.to_dataset)
         with results(targets, plan.inputs, force=force) as write:
             among = askable(plan)
             with points_bar() as tell:
@@ -78,9 +78,9 @@ def sensitivity(
                     near=True,
                 )
             write(found)
-    from pindrive.cli.study_tables import influence_report, say_coefficient
+    from pindrive.cli.study_tables import say_coefficient, sobol_report
     from pindrive.cli.tables import show
 
-    show(influence_report(found))
+    show(sobol_report(found))
     say_coefficient(plan, tolerances=tolerances)
     say_written(targets)

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from pindrive.study.outputs import Share
     from pindrive.study.robustness import Robustness, WorstCase
     from pindrive.study.runner import Sweep
-    from pindrive.study.sensitivity import Influence
+    from pindrive.study.sensitivity import SobolIndices
     from pindrive.study.slices import Panel
 
 QUANTILES = (0.01, 0.05, 0.5, 0.95, 0.99)
@@ -140,7 +140,7 @@ def _short(name: str, value: float) -> str:
     return f"{digits(value * quantity.display_scale)} {quantity.display_unit}".rstrip()
 
 
-def influence_report(found: Influence) -> RenderableType:
+def sobol_report(found: SobolIndices) -> RenderableType:
     """Three tables: elasticities, and Sobol' indices of first order and in total."""
     told = [name for name in found.over if found.over[name].spread > 0.0]
     tables: list[RenderableType] = [_near(found, found.near)] if found.near else []
@@ -153,7 +153,7 @@ def influence_report(found: Influence) -> RenderableType:
     return Group(*tables, *_notes(found))
 
 
-def _near(found: Influence, near: Elasticities) -> Table:
+def _near(found: SobolIndices, near: Elasticities) -> Table:
     names = [name for name in found.over if name != "transient_settled"]
     return _by_key(
         "Near the device's values: per cent of change for one per cent more of",
@@ -174,7 +174,7 @@ def _by_key(
     return made
 
 
-def _index(found: Influence, order: str, name: str, i: int) -> str:
+def _index(found: SobolIndices, order: str, name: str, i: int) -> str:
     """An index and half its interval: "0.41 ±.02"; one that may be none is a point."""
     interval = getattr(found.over[name], order)
     value, half = interval.value[i], 0.5 * (interval.high[i] - interval.low[i])
@@ -185,7 +185,7 @@ def _index(found: Influence, order: str, name: str, i: int) -> str:
     return f"{max(value, 0.0):.2f} ±{half:.2f}".replace("±0.", "±.")
 
 
-def _notes(found: Influence) -> list[str]:
+def _notes(found: SobolIndices) -> list[str]:
     """What the tables leave out, and from how much they come."""
     design = f"{counted(found.points, 'point')} (Sobol' design of {counted(found.rows, 'row')})"
     lines = [
@@ -255,9 +255,9 @@ def _spread(found: Robustness) -> Table:
 
 def _yield(found: Robustness, all_met: Share) -> Table:
     title = f"Yield: of {counted(found.designs, 'design')}"
-    made = new_table(title, "demand", ">met by", "95 % interval", ">without a number")
-    for demand, share in found.shares:
-        made.add_row(demand.text(), *_share(share), percent(share.without, share.of))
+    made = new_table(title, "constraint", ">met by", "95 % interval", ">without a number")
+    for constraint, share in found.shares:
+        made.add_row(constraint.text(), *_share(share), percent(share.without, share.of))
     if len(found.shares) > 1:
         made.add_row("all", *_share(all_met), "", style="bold")
     return made
@@ -269,8 +269,8 @@ def _share(share: Share) -> tuple[str, str]:
 
 
 def _worst_cases(plan: Plan, found: Robustness) -> Table:
-    """The values at which each demand is missed by the most, beside the design's own."""
-    heads = (f">{label(case.demand.name)}" for case in found.worst)
+    """The values at which each constraint is missed by the most, beside the design's own."""
+    heads = (f">{label(case.constraint.name)}" for case in found.worst)
     made = new_table("The worst found for", "key", ">design", *heads, "unit")
     for key in found.worst[0].keys:
         quantity, own = KEYS[key], base_value(plan.device, key)
@@ -279,12 +279,12 @@ def _worst_cases(plan: Plan, found: Robustness) -> Table:
         made.add_row(key, shown, *values, quantity.display_unit)
     results = []
     for case in found.worst:
-        quantity = NUMBERS[case.demand.name]
+        quantity = NUMBERS[case.constraint.name]
         results.append("never" if np.isnan(case.value) else quantity.text(case.value))
     made.add_row("gives", "", *results, "", style="bold")
     sampled = []
     for case in found.worst:
-        quantity = NUMBERS[case.demand.name]
+        quantity = NUMBERS[case.constraint.name]
         sampled.append("never" if np.isnan(case.sampled) else quantity.text(case.sampled))
     made.add_row("among the draws", "", *sampled, "")
     return made
@@ -294,7 +294,7 @@ def _draws(plan: Plan, found: Robustness) -> list[str]:
     lines = [f"{counted(found.draws, 'independent random draw')}, seed {found.seed}."]
     lines += _refused(found.refusals, found.draws, "draw")
     if any(share.without for _, share in found.shares):
-        lines.append("A design without a number, such as one that never settles, meets no demand.")
+        lines.append("A design without such a number (for example not settled) violates its limit.")
     if found.stopped:
         stopped = counted(found.stopped, "design was", "designs were")
         lines.append(f"{stopped} followed only up to the largest number of events.")
@@ -310,9 +310,9 @@ def _draws(plan: Plan, found: Robustness) -> list[str]:
             if plan.page
             else f"simulate {plan.device.path}"
         )
-        lines.append(f"Worst {label(case.demand.name)}: pindrive {command} {given}")
+        lines.append(f"Worst {label(case.constraint.name)}: pindrive {command} {given}")
     if not found.all_met:
-        lines.append("No specification is given: write what is demanded in [specification].")
+        lines.append("No specification is given: write what is required in [specification].")
     return lines
 
 

@@ -18,7 +18,7 @@
 - `PinState`: where a pin and its magnet stand at one time
 - `read_csv`: a recorded path from a CSV
 - `Reading`: how a hand reads
-- `Recording`: places of the hand at recorded times
+- `HandRecording`: places of the hand at recorded times
 - `Scan`: what a device did while a hand moved it
 - `scan`: move a device over a page, and follow each of its pins
 - `Scene`: the luminance of a page

@@ -17,7 +17,7 @@ from .page import Scene as Scene
 from .pin_array import PinArray as PinArray
 from .page_description import Page as Page
 from .reading import Reading as Reading
-from .recording import Recording as Recording
+from .recording import HandRecording as HandRecording
 from .recording import read_csv as read_csv
 from .recording import through as through
 from .scanning import PinScan as PinScan

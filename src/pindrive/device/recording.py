@@ -76,11 +76,11 @@ def through(
     """
     most = check("hand_acceleration", acceleration, label="acceleration")
     time, px, py = (np.array(column, np.float64) for column in (t, x, y))
-    return Recording(time, px, py).through(most)
+    return HandRecording(time, px, py).through(most)
 
 
 @dataclass(frozen=True, eq=False)
-class Recording:
+class HandRecording:
     """Places of the hand at recorded times.
 
     Args:
@@ -117,7 +117,7 @@ class Recording:
     @classmethod
     def read(
         cls, path: str | PathLike[str], resolution: float = default("mouse_resolution")
-    ) -> Recording:
+    ) -> HandRecording:
         """A recording from a CSV, UTF-8, whose header is like `time [s], x [m], y [m]`.
 
         Args:
@@ -196,7 +196,7 @@ class Recording:
         way = np.hypot(np.diff(self.x), np.diff(self.y))
         return float((way / np.diff(self.t)).max())
 
-    def smoothed(self, cutoff: float = default("smoothing_cutoff")) -> Recording:
+    def smoothed(self, cutoff: float = default("smoothing_cutoff")) -> HandRecording:
         """The same at even times, without what is faster than a cut-off (Hz), as stated above.
 
         Raises:
@@ -221,7 +221,7 @@ class Recording:
             reported = np.insert(place, rested + 1, place[rested])
             taken = np.interp(even, times, reported)
             places.append(np.asarray(signal.sosfiltfilt(sections, taken, padlen=pad), np.float64))
-        return Recording(even, places[0], places[1], None, self.where)
+        return HandRecording(even, places[0], places[1], None, self.where)
 
     def path(
         self,
@@ -306,14 +306,14 @@ def read_csv(
     """A recorded path from a CSV; a raw recording of a mouse is smoothed.
 
     Args:
-        path: the file, as for `Recording.read`.
+        path: the file, as for `HandRecording.read`.
         acceleration: m/s²; more is taken for a jump of the hand's speed, and refused.
         resolution: of a mouse whose places are in counts, 1/m.
         cutoff: with which a raw recording is smoothed, Hz.
 
     Raises:
-        ValueError: as for `Recording.read` and `Recording.path`.
+        ValueError: as for `HandRecording.read` and `HandRecording.path`.
     """
-    recording = Recording.read(path, check("mouse_resolution", resolution, label="resolution"))
+    recording = HandRecording.read(path, check("mouse_resolution", resolution, label="resolution"))
     most = check("hand_acceleration", acceleration, label="acceleration")
     return recording.path(most, check("smoothing_cutoff", cutoff))

@@ -235,12 +235,12 @@ class Scan(lazy.NotebookHtml):
                 file unless given, and of a device without one the middle of the literature.
 
         Returns:
-            A `pindrive.evaluation.Judgement`: lines shown and missed, their lag and smear.
+            A `pindrive.evaluation.Evaluation`: lines shown and missed, their lag and smear.
         """
         chosen = self.criteria if criteria is None else criteria
-        from pindrive.evaluation.perception import judge
+        from pindrive.evaluation.perception import evaluate
 
-        return judge(self, chosen)
+        return evaluate(self, chosen)
 
     def plot(self, pin: int | None = None) -> mpl_figure.Figure:
         """What the device read and what the pins did, as a figure that a notebook shows.
@@ -399,7 +399,7 @@ def scan(
         >>> scan = pd.scan(device, pd.Page(grating=["4 mm"]))
         >>> scan
         <Scan of lines every 4 mm by 16 pins in 1.18438 s, ok>
-        >>> scan.evaluate().counts["judged.shown"]
+        >>> scan.evaluate().counts["lines.shown"]
         64
     """
     described = None if isinstance(device, Device) else device

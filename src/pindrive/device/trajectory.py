@@ -49,7 +49,7 @@ class Signal:
 
 
 @dataclass(frozen=True, eq=False)
-class Course:
+class Trajectory:
     """Where a pin goes, piece by piece; times are since the motion's begin, s."""
 
     motion: Motion
@@ -258,6 +258,6 @@ class Way:
 def peak_displacement(motion: Motion) -> float:
     """The largest |x| over the motion's duration, m, at its ends or where its velocity is zero.
 
-    Turning points as `Course` finds them.
+    Turning points as `Trajectory` finds them.
     """
-    return float(np.abs(motion.position(Course(motion).knots)).max())
+    return float(np.abs(motion.position(Trajectory(motion).knots)).max())

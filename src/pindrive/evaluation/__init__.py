@@ -2,8 +2,8 @@
 
 - `Echo`: a swing of a pin that feels like a line and is none
 - `Edge`: one end of a printed line, and what became of it
-- `judge`: what the finger was shown, line by line
-- `Judgement`: what the finger was shown in a scan
+- `evaluate`: what the finger was shown, line by line
+- `Evaluation`: what the finger was shown in a scan
 - `largest_speeds`: the largest hand speed at which two lines stay distinct
 - `Line`: one printed line under one pin
 - `PageSpeeds`: what becomes of the lines of a page at each hand speed

@@ -16,7 +16,7 @@ from pindrive.device.device import Criteria, Device
 from pindrive.device.page_description import Page
 from pindrive.device.reading import Reading
 from pindrive.device.scanning import Progress, scan
-from pindrive.evaluation.perception import judge
+from pindrive.evaluation.perception import evaluate
 from pindrive.evaluation.resolution import check_tried
 from pindrive.lazy import mpl_figure, xr
 from pindrive.quantities.status import Status
@@ -29,7 +29,7 @@ PRECISION: Final = 1e-2
 """Of a border, a part of it."""
 _MOST: Final = TRIED + 14
 """Trials at most: the grid, and two bisections of one of its intervals."""
-COUNTED: Final = ("lines", "shown", "unsettled", "sure", "echoes")
+COUNTED: Final = ("crossed", "shown", "unsettled", "sure", "false")
 
 
 @equal_by_value
@@ -41,7 +41,7 @@ class PageSpeeds(lazy.NotebookHtml):
         title: of the page.
         tried: the slowest hand and the fastest, m/s.
         counts: for each speed that was tried, m/s in ascending order, how many lines and false
-            lines there were, by the names of `Judgement.counts`.
+            lines there were, by the names of `Evaluation.counts`.
     """
 
     title: str
@@ -81,7 +81,7 @@ class PageSpeeds(lazy.NotebookHtml):
         """The counts over `hand_speed`, and the two limits, with units."""
         speed = QUANTITIES["hand_speed"].attributes
         data = {
-            name: ("hand_speed", [counts[f"judged.{name}"] for counts in self.counts.values()])
+            name: ("hand_speed", [counts[f"lines.{name}"] for counts in self.counts.values()])
             for name in COUNTED
         }
         limits = {
@@ -100,12 +100,12 @@ class PageSpeeds(lazy.NotebookHtml):
 
 def all_shown(counts: Mapping[str, int]) -> bool:
     """Whether all lines are shown and none is false."""
-    return counts["judged.shown"] == counts["judged.lines"] and not counts["judged.echoes"]
+    return counts["lines.shown"] == counts["lines.crossed"] and not counts["lines.false"]
 
 
 def all_settled(counts: Mapping[str, int]) -> bool:
     """Whether the pin also settles after each line."""
-    return all_shown(counts) and not counts["judged.unsettled"]
+    return all_shown(counts) and not counts["lines.unsettled"]
 
 
 def speeds_over_page(
@@ -119,7 +119,7 @@ def speeds_over_page(
     fastest: float = default("speed.fastest"),
     progress: Progress | None = None,
 ) -> PageSpeeds:
-    """Scan a page at many hand speeds, and judge its lines at each.
+    """Scan a page at many hand speeds, and evaluate its lines at each.
 
     Args:
         device: what is moved over the page.
@@ -145,7 +145,7 @@ def speeds_over_page(
             scene = page.scene(at_speed, device.array)
             hand = page.hand(at_speed, scene, device.array)
             done = scan(device, scene, hand, touch=touch, max_angle=reading.max_angle)
-            found[speed] = judge(done, criteria or Criteria()).counts
+            found[speed] = evaluate(done, criteria or Criteria()).counts
             if progress:
                 progress(min(len(found), _MOST - 1), _MOST)
         return found[speed]

@@ -42,7 +42,7 @@ from pindrive._core import settling_band
 from pindrive.device.device import Criteria
 from pindrive.device.scanning import PinScan, Scan
 from pindrive.device.touch import spans
-from pindrive.device.trajectory import Course, Signal, Way
+from pindrive.device.trajectory import Signal, Trajectory, Way
 from pindrive.evaluation.line_crossings import (
     CUES,
     FATES,
@@ -66,7 +66,7 @@ from pindrive.quantities.value import equal_by_value
 
 @equal_by_value
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Judgement(lazy.NotebookHtml):
+class Evaluation(lazy.NotebookHtml):
     """What the finger was shown in a scan."""
 
     scan: Scan
@@ -80,7 +80,7 @@ class Judgement(lazy.NotebookHtml):
         """What became of the lines, in a line."""
         lines, missed = len(self.lines), len(self.lines) - len(self.shown)
         shown = f"{lines - missed} of {counted(lines, 'line')} shown"
-        return f"<Judgement of {self.scan.scene.title}: {shown}, {len(self.echoes)} false>"
+        return f"<Evaluation of {self.scan.scene.title}: {shown}, {len(self.echoes)} false>"
 
     @property
     def status(self) -> Status:
@@ -152,12 +152,12 @@ class Judgement(lazy.NotebookHtml):
         shown = self.shown
         cues = [CUES.index(line.begin.cue) for line in shown]
         return {
-            "judged.lines": len(self.lines),
-            **{f"judged.{fate}": sum(line.fate == fate for line in self.lines) for fate in FATES},
-            "judged.echoes": len(self.echoes),
-            "judged.unsettled": sum(isnan(line.settled) for line in shown),
-            "judged.direction": sum(cue >= CUES.index("direction") for cue in cues),
-            "judged.sure": sum(cue >= CUES.index("sure") for cue in cues),
+            "lines.crossed": len(self.lines),
+            **{f"lines.{fate}": sum(line.fate == fate for line in self.lines) for fate in FATES},
+            "lines.false": len(self.echoes),
+            "lines.unsettled": sum(isnan(line.settled) for line in shown),
+            "lines.direction": sum(cue >= CUES.index("direction") for cue in cues),
+            "lines.sure": sum(cue >= CUES.index("sure") for cue in cues),
         }
 
     def spread(self, name: str) -> tuple[float, float, float]:
@@ -176,11 +176,11 @@ class Judgement(lazy.NotebookHtml):
     def numbers(self) -> dict[str, float]:
         """What a study keeps of a scan, SI, by the names there; NaN where one does not exist."""
         counts, path = self.counts, self.scan.path
-        lines, duration = counts["judged.lines"], path.end - path.begin
+        lines, duration = counts["lines.crossed"], path.end - path.begin
         on = max(sum(end - begin for begin, end in pin.energised) for pin in self.scan.pins)
         coil = self.scan.device.magnet.coil
         found: dict[str, float] = {
-            "judged.shown_part": counts["judged.shown"] / lines if lines else nan,
+            "lines.shown_part": counts["lines.shown"] / lines if lines else nan,
             **counts,
             "hand.duration": duration,
             "magnet.on_part": on / duration,
@@ -194,7 +194,7 @@ class Judgement(lazy.NotebookHtml):
         return found
 
 
-def judge(scan: Scan, criteria: Criteria | None = None) -> Judgement:
+def evaluate(scan: Scan, criteria: Criteria | None = None) -> Evaluation:
     """Hold what each pin did in a scan against what is printed along its way.
 
     Args:
@@ -207,10 +207,10 @@ def judge(scan: Scan, criteria: Criteria | None = None) -> Judgement:
     echoes: list[Echo] = []
     lines_passed = printed(scan.device, scan.path, scan.scene)
     for pin, passed in zip(scan.pins, lines_passed, strict=True):
-        judged = JudgedPin(scan, pin, passed, stops, way, limits)
-        lines += judged.lines()
-        echoes += judged.echoes()
-    return Judgement(scan=scan, criteria=limits, lines=tuple(lines), echoes=tuple(echoes))
+        evaluated = EvaluatedPin(scan, pin, passed, stops, way, limits)
+        lines += evaluated.lines()
+        echoes += evaluated.echoes()
+    return Evaluation(scan=scan, criteria=limits, lines=tuple(lines), echoes=tuple(echoes))
 
 
 @dataclass(frozen=True, slots=True)
@@ -229,7 +229,7 @@ class _Pull:
     """Of the plate's velocity."""
 
 
-class JudgedPin:
+class EvaluatedPin:
     """One pin's lines and swings. Times are since the scan's begin, s.
 
     Args:
@@ -257,8 +257,8 @@ class JudgedPin:
         ]
         self.stops = stops - pin.begin
         self.latency = scan.device.control.latency
-        self.course, self.end = Course(pin.motion), pin.motion.duration
-        self.held = self.course.held()
+        self.trajectory, self.end = Trajectory(pin.motion), pin.motion.duration
+        self.held = self.trajectory.held()
         self.plate = scan.path.plate_velocity(scan.device.array.axis)
         self.touching = spans(pin.finger_load)
         self.pulls = self._pulls()
@@ -272,7 +272,7 @@ class JudgedPin:
             sign = self._sign(max(0.0, on - self.latency))
             x = Signal(self.pin.motion.position, sign)
             stop = min(limit, self._stop(off))
-            begin, dip = self.course.climb(x, self.criteria.felt, on, stop)
+            begin, dip = self.trajectory.climb(x, self.criteria.felt, on, stop)
             release = next((end for start, end in self.held if start <= off < end), off)
             pulls.append(_Pull(on, off, begin, dip, release, sign))
         return pulls
@@ -332,16 +332,16 @@ class JudgedPin:
             pull = self.pulls[first]
             on = (pull.on, nan, nan)
             if pull.begin == pull.begin:
-                peak_time, peak = self.course.highest(x, pull.begin, self._until(first))
+                peak_time, peak = self.trajectory.highest(x, pull.begin, self._until(first))
                 stroke = peak - float(x(pull.dip))
                 moved, cue_on = self._moved(skin, pull.dip, peak_time)
                 on = (pull.on, pull.begin, moved)
         if last is not None:
             pull, limit = self.pulls[last], self._until(last)
             release = min(pull.release, limit)
-            peak_time, peak = self.course.highest(x, pull.on, limit)
-            low = -self.course.highest(-x, peak_time, limit)[1]
-            back = self.course.climb(-x, self.criteria.felt, pull.off, limit)[0]
+            peak_time, peak = self.trajectory.highest(x, pull.on, limit)
+            low = -self.trajectory.highest(-x, peak_time, limit)[1]
+            back = self.trajectory.climb(-x, self.criteria.felt, pull.off, limit)[0]
             off = (pull.off, back, nan)
             if back == back:
                 moved, cue_off = self._moved(-skin, peak_time, limit)
@@ -392,7 +392,7 @@ class JudgedPin:
             return False  # nothing before it, or nothing that had moved the pin
         until = pull.begin if pull.begin == pull.begin else self._until(k)
         back = -Signal(self.pin.motion.position, pull.sign)
-        return not self.course.climbs(back, self.criteria.felt, before.off, until)
+        return not self.trajectory.climbs(back, self.criteria.felt, before.off, until)
 
     # ---- numbers -----------------------------------------------------------------------------
 
@@ -411,11 +411,11 @@ class JudgedPin:
         """The same between two times from one to the other of which the finger touches."""
         limits = self.criteria
         base = float(skin(begin, "left"))
-        way = self.course.highest(skin, begin, end)[1] - base
+        way = self.trajectory.highest(skin, begin, end)[1] - base
         soon = begin + limits.direction_sure / limits.direction_speed
         if way >= limits.direction_sure:
             sure = base + limits.direction_sure
-            if self.course.first_at(skin, sure, begin, end) <= soon:
+            if self.trajectory.first_at(skin, sure, begin, end) <= soon:
                 return way, "sure"
         if way < limits.felt:
             return way, "none"
@@ -429,8 +429,8 @@ class JudgedPin:
             return nan, nan
         end = float(x(limit))
         band = settling_band * abs(float(x(release)) - end)
-        since = self.course.last_beyond(x, end, band, release, limit)
-        settles = limit - since >= self._patience or self.course.rests(limit)
+        since = self.trajectory.last_beyond(x, end, band, release, limit)
+        settles = limit - since >= self._patience or self.trajectory.rests(limit)
         load = self.pin.finger_load
         pressed = load(limit) if isinstance(load, Profile) else load
         place = end if settles else self.scan.device.drag(finger_load=pressed)
@@ -461,7 +461,7 @@ class JudgedPin:
         x, skin = Signal(self.pin.motion.position, sign), self._skin(sign)
         swings = [
             (low, high, float(x(high) - x(low)), self._puller(low, high))
-            for low, high in self.course.swings(x, begin, end)
+            for low, high in self.trajectory.swings(x, begin, end)
         ]
         heights: dict[int, float] = {}  # of the line for which each pull was: its highest swing
         for _, _, height, k in swings:

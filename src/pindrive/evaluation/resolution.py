@@ -9,8 +9,8 @@ speed if, wherever the control block's looks happen to fall (`PHASES` of them ar
 - each of them moves the skin, forward or back, enough for its direction to be perceived (of a rigid
   finger: the pin).
 
-They are **settled** if moreover the transient that the first line alone leaves (see `judging`) is
-over before the second takes the pin along. Every trial is an exact simulation.
+They are **settled** if, in addition, the transient after the first line alone is over before the
+second line takes the pin along. Every trial is an exact simulation.
 
 Distinct speeds need not be one interval: a swing may fit by chance, and a slow hand may leave the
 pin where the finger's friction holds it. So all of a geometric grid of speeds is tried first, and
@@ -37,7 +37,7 @@ from pindrive.device.pin_array import PinArray
 from pindrive.device.scanning import PinState, Progress, scan
 from pindrive.device.trajectory import Way, brackets, check_vibration
 from pindrive.evaluation.line_crossings import Line, Printed
-from pindrive.evaluation.perception import JudgedPin
+from pindrive.evaluation.perception import EvaluatedPin
 from pindrive.lazy import mpl_figure, xr
 from pindrive.motion.drive import Drive
 from pindrive.quantities import budgets
@@ -407,7 +407,7 @@ def _pass(
     speed: float,
     after: float,
     criteria: Criteria,
-) -> list[JudgedPin]:
+) -> list[EvaluatedPin]:
     """Go evenly over lines that begin at these places (m), once for each phase, and `after` (s)."""
     look = 1.0 / device.control.sample_rate
     begin, end = -speed * (MOMENT + look), begins[-1] + width + speed * after
@@ -423,12 +423,12 @@ def _pass(
         replace(device, array=phases), page, path, start=[steady(device)] * PHASES, threads=1
     )
     stops, way = np.zeros(0), Way(path)
-    judged = []
+    evaluated = []
     for pin, shift in zip(done.pins, shifts, strict=True):
         times = [(x - begin - shift) / speed for x in begins]
         passed = [Printed(time, time + width / speed, True) for time in times]
-        judged.append(JudgedPin(done, pin, passed, stops, way, criteria))
-    return judged
+        evaluated.append(EvaluatedPin(done, pin, passed, stops, way, criteria))
+    return evaluated
 
 
 def _clear(device: Device) -> float:

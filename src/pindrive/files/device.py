@@ -165,7 +165,7 @@ class DeviceFile:
     @property
     def criteria(self) -> Criteria:
         """What counts as felt."""
-        return Criteria(**table_of(self._whole.values, "judge"))
+        return Criteria(**table_of(self._whole.values, "criteria"))
 
     @property
     def inputs(self) -> tuple[Path, ...]:

@@ -124,7 +124,7 @@ def write_scan_events(scan: Scan, path: Path) -> None:
 
 
 def write_lines(found: Mapping[str, NDArray[Any]], path: Path) -> None:
-    """Write `Judgement.columns`, a row for each line; a number that does not exist is empty."""
+    """Write `Evaluation.columns`, a row for each line; a number that does not exist is empty."""
     stated = {quantity.variable: quantity.heading for quantity in (*EDGES, *LINE)}
     rows = (
         ["" if isinstance(cell, float) and isnan(cell) else cell for cell in row]

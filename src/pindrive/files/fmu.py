@@ -75,14 +75,14 @@ _RATES: Final = {"m/s": "m/s^2", "1": "1/s", "N": "N/s"}
 
 ELSEWHERE: Final = {
     "motion.duration": "the stop time of the default experiment",
-    "motion.settling_band": "judges a motion, does not change it",
+    "motion.settling_band": "criterion of the evaluation: the motion does not depend on it",
     "magnet.outer_diameter": "says whether the device can be built",
     "magnet.height": "says whether the device can be built",
-    "magnet.temperature_rise": "judges the warming, does not change it",
+    "magnet.temperature_rise": "limit of the warming: the motion does not depend on it",
     "control": "what commands the magnet is the importer's",
     "array": "the unit is one pin of it",
     "scan": "how a hand reads: the importer moves the plate",
-    "judge": "judges what is felt, does not change it",
+    "criteria": "criterion of the evaluation: the motion does not depend on it",
 }
 """The keys and tables of a device file that are no variables of its unit, and why."""
 COMMAND: Final = "magnet_on"

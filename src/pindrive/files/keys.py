@@ -32,7 +32,7 @@ STUDY_KEYS: Final = (
 )
 """What stands at the top of a study file beside the tables of a device and the name."""
 KEYS: Final = ("device.name", "device.description", *NUMBERS)
-AROUND: Final = ("magnet", "control", "array", "scan", "judge")
+AROUND: Final = ("magnet", "control", "array", "scan", "criteria")
 ALONE: Final = ("device", "drive", "plate", "finger", "motion")
 TABLES: Final = (*ALONE, *AROUND)
 

@@ -305,5 +305,5 @@ STUDY_NETCDF: Final = Kind(
 )
 DEVICE_FILE: Final = Kind("device file", _is_device_file, costly=True)
 STUDY_FILE: Final = Kind("study file", _is_study_file, costly=True)
-WISH_FILE: Final = Kind("wish file", lambda path: "goals" in _tables(path), costly=True)
+PROBLEM_FILE: Final = Kind("problem file", lambda path: "goals" in _tables(path), costly=True)
 REPORT: Final = Kind("report of the paper", lambda path: b"Dynamics of tactile" in _head(path))

@@ -9,8 +9,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from pindrive.optimisation.design_space import DesignSpace
 from pindrive.optimisation.goals import Variable
-from pindrive.optimisation.problem import Problem
 from pindrive.optimisation.results import Alternative, Map
 
 Array = NDArray[np.float64]
@@ -22,26 +22,26 @@ _END: Final = 2e-3
 """Part of a range that is its end."""
 
 
-def maps(problem: Problem, point: Array, resolution: int) -> tuple[Map, ...]:
-    """The first goal, and where all demands are met, over pairs of variables.
+def maps(space: DesignSpace, point: Array, resolution: int) -> tuple[Map, ...]:
+    """The first goal, and where all constraints are met, over pairs of variables.
 
     Args:
-        problem: what designs are worth.
+        space: what designs are worth.
         point: the design, which is one of the places.
         resolution: places along an axis that is a range; 0: no map.
     """
     if not resolution:
         return ()
-    problem = replace(problem, coarse=True)
+    space = replace(space, coarse=True)
     found = []
-    count = 2 if problem.scans else MAPPED
+    count = 2 if space.scans else MAPPED
     for i, j in combinations(range(min(count, len(point))), 2):
-        one, other = problem.variables[i], problem.variables[j]
+        one, other = space.variables[i], space.variables[j]
         x, y = (_parts(v, resolution, float(point[k])) for v, k in ((one, i), (other, j)))
         across, up = np.meshgrid(x, y)
         points = np.tile(point, (across.size, 1))
         points[:, i], points[:, j] = across.ravel(), up.ravel()
-        goals, violation = problem(points)
+        goals, violation = space(points)
         first = goals[:, 0].reshape(across.shape)
         first = np.where(np.isinf(first), np.nan, first)
         along = tuple(_first(v, parts) for v, parts in ((one, x), (other, y)))
@@ -50,7 +50,7 @@ def maps(problem: Problem, point: Array, resolution: int) -> tuple[Map, ...]:
             Map(
                 (one, other),
                 (along[0], along[1]),
-                -first if problem.goals[0].maximise else first,
+                -first if space.goals[0].maximise else first,
                 (violation <= 0.0).reshape(across.shape),
                 (here[0], here[1]),
             )
@@ -75,10 +75,10 @@ def _first(variable: Variable, parts: Array) -> Array:
     return next(iter(variable.columns(parts).values()))
 
 
-def alternatives(problem: Problem, point: Array) -> tuple[Alternative, ...]:
+def alternatives(space: DesignSpace, point: Array) -> tuple[Alternative, ...]:
     """The design with other parts of its catalogues, the nearest by their values first."""
     found = []
-    for i, variable in enumerate(problem.variables):
+    for i, variable in enumerate(space.variables):
         catalogue = variable.catalogue
         if catalogue is None:
             continue
@@ -88,13 +88,13 @@ def alternatives(problem: Problem, point: Array) -> tuple[Alternative, ...]:
             continue
         points = np.tile(point, (len(rows), 1))
         points[:, i] = [variable.part(row) for row in rows]
-        numbers = problem.numbers(points)
-        excess = problem.excess(numbers).max(axis=2)
-        goals = problem.minimised(numbers).max(axis=2)
+        numbers = space.numbers(points)
+        excess = space.excess(numbers).max(axis=2)
+        goals = space.minimised(numbers).max(axis=2)
         for place, row in enumerate(rows):
-            misses = [
-                (demand, float(over))
-                for demand, over in zip(problem.demands, excess[:, place], strict=True)
+            violations = [
+                (constraint, float(over))
+                for constraint, over in zip(space.constraints, excess[:, place], strict=True)
                 if over > 0.0
             ]
             found.append(
@@ -105,18 +105,18 @@ def alternatives(problem: Problem, point: Array) -> tuple[Alternative, ...]:
                     catalogue.prices[row],
                     tuple(
                         float(-value if goal.maximise else value)
-                        for goal, value in zip(problem.goals, goals[:, place], strict=True)
+                        for goal, value in zip(space.goals, goals[:, place], strict=True)
                     ),
-                    tuple(misses),
+                    tuple(violations),
                 )
             )
     return tuple(found)
 
 
-def at_ends(problem: Problem, point: Array) -> tuple[tuple[str, str], ...]:
+def at_ends(space: DesignSpace, point: Array) -> tuple[tuple[str, str], ...]:
     """The variables that a design has at an end of their range, and which end."""
     return tuple(
         (variable.name, "lower" if part < 0.5 else "upper")
-        for variable, part in zip(problem.variables, point, strict=True)
+        for variable, part in zip(space.variables, point, strict=True)
         if not variable.choices and not _END < part < 1.0 - _END
     )

@@ -1,4 +1,4 @@
-"""`optimise`: the best design that meets a wish, by screening, a search, and checks of both."""
+"""`optimise`: solution of a design problem by screening, search and checks."""
 
 from __future__ import annotations
 
@@ -15,31 +15,31 @@ from pindrive.device.scanning import Progress
 from pindrive.files.device import DeviceFile
 from pindrive.lazy import qmc
 from pindrive.optimisation.around import alternatives, at_ends, maps
-from pindrive.optimisation.effort import Count, Effort, usual_effort
-from pindrive.optimisation.goals import PRICE, Goal, Wish
-from pindrive.optimisation.line_speed import speeds
-from pindrive.optimisation.problem import (
-    Problem,
+from pindrive.optimisation.design_space import (
+    DesignSpace,
     first_cases,
     spread_cases,
     worst_cases,
 )
-from pindrive.optimisation.results import Demanded, Design, Front, Reached
+from pindrive.optimisation.effort import Count, Effort, usual_effort
+from pindrive.optimisation.goals import PRICE, DesignProblem, Goal
+from pindrive.optimisation.line_speed import speeds
+from pindrive.optimisation.problem import problem_of, read_problem
+from pindrive.optimisation.results import ConstraintResult, Design, Front, Reached
 from pindrive.optimisation.scan_search import search_scans
 from pindrive.optimisation.search import Population, non_dominated, search
 from pindrive.optimisation.tolerance import excess_as_built, reserves, share_of
-from pindrive.optimisation.wish import read_wish, wish_of
 from pindrive.quantities.refusal import check_whole
 from pindrive.study.design import device_at
 from pindrive.study.distributions import with_links
-from pindrive.study.outputs import Demand
+from pindrive.study.outputs import Constraint
 from pindrive.study.workers import Cluster, crew
 
 __all__ = ["optimise"]
 
 Array = NDArray[np.float64]
 GAIN: Final = 0.05
-"""Part by which the first goal gets better where a demand is relaxed."""
+"""Part by which the first goal gets better where a constraint is relaxed."""
 ROUNDS: Final = 6
 """Searches, each with the worst conditions of the design that the one before found."""
 WORSE: Final = 1e-3
@@ -48,7 +48,7 @@ WORSE: Final = 1e-3
 
 def optimise(
     device: DeviceFile | None,
-    wish: Mapping[str, Any] | Wish | str | PathLike[str],
+    problem: Mapping[str, Any] | DesignProblem | str | PathLike[str],
     *,
     seed: int = 1,
     effort: Effort | None = None,
@@ -56,33 +56,34 @@ def optimise(
     cluster: str | None = None,
     progress: Progress = lambda done, total: None,
 ) -> Design:
-    """Find the design that meets a wish best.
+    """Find the best design for a design problem.
 
-    Candidates are spread over what may vary by a Sobol' sequence and simulated as a batch; the best
-    of them are improved by differential evolution, of one goal or of several. Every demand and
-    every goal counts by its worst condition: conditions that are worse than those considered are
-    looked for at the design that was found, and the search is repeated with them. The same seed
-    gives the same design.
+    A Sobol' sequence of candidates over the variables is simulated as a batch. Differential
+    evolution then improves the best candidates, for one goal or several. Each constraint and each
+    goal is evaluated at its worst condition: the optimiser searches for conditions under which the
+    design performs worse than under those considered, and repeats the search with these. The same
+    seed gives the same design.
 
     Args:
-        device: what varies; None where `wish` is a file that names one, which it stands for else.
-        wish: the tables of a wish file, in which a number is SI and text has a unit, or the path of
-            one: `axes` and `catalogues` (what may vary), `conditions`, `specification` (what is
-            demanded), `tolerances`, `goals` and `page`.
-        seed: of all draws, at least 0.
-        effort: how much is tried; as the kind of the wish needs unless given.
-        threads: how many work, at least 1; all cores unless given.
-        cluster: the address of a Dask scheduler, whose workers do the work instead.
-        progress: called with the parts of the work done and in all.
+        device: Device to be varied. None if `problem` is a file that names its device; otherwise
+            `device` replaces the device of the file.
+        problem: Tables of a problem file, in which numbers are SI and texts have a unit, or the
+            path of a problem file: `axes` and `catalogues` (variables), `conditions`,
+            `specification` (constraints), `tolerances`, `goals` and `page`.
+        seed: Seed of all random numbers, >= 0.
+        effort: Size of the search. None: by the kind of the design problem.
+        threads: Number of threads, >= 1. None: all cores.
+        cluster: Address of a Dask scheduler whose workers simulate. None: this machine.
+        progress: Function of the finished and of the total parts of the work.
 
     Returns:
-        The best design, or where none meets the demands the closest one: its device file, the front
-        of several goals, what the demands cost, maps around it, the nearest catalogue parts, and
-        the part of the designs built within the tolerances that meets the demands.
+        The best design, or the closest one if no design meets the constraints: its device file, the
+        front of several goals, the cost of each constraint, maps around the design, the nearest
+        catalogue parts, and the yield within the tolerances.
 
     Raises:
-        ConfigError: the wish holds anything unknown, malformed, out of bounds or contradictory. It
-            is a ValueError.
+        ConfigError: An entry of the design problem is unknown, malformed, out of bounds or
+            contradictory. The error is a ValueError.
 
     Examples:
         >>> import pindrive as pd
@@ -96,19 +97,19 @@ def optimise(
         True
     """
     check_whole(seed, "seed", 0)
-    if isinstance(wish, str | PathLike):
-        wanted = read_wish(wish, device=device)
-    elif isinstance(wish, Wish):
-        wanted = wish
+    if isinstance(problem, str | PathLike):
+        wanted = read_problem(problem, device=device)
+    elif isinstance(problem, DesignProblem):
+        wanted = problem
     else:
         if device is None:
             raise ValueError("device must be what load_device reads, got None")
-        wanted = wish_of(device, wish)
+        wanted = problem_of(device, problem)
     if threads is not None and cluster is not None:
         raise ValueError("give threads or cluster, not both: workers have their own")
     run = _Optimisation(wanted, seed, effort, threads, progress)
     with crew(cluster) as workers:
-        run.problem.crew = workers if isinstance(workers, Cluster) else None
+        run.space.crew = workers if isinstance(workers, Cluster) else None
         return run.run()
 
 
@@ -117,27 +118,27 @@ class _Optimisation:
 
     def __init__(
         self,
-        wish: Wish,
+        problem: DesignProblem,
         seed: int,
         effort: Effort | None,
         threads: int | None,
         progress: Callable[[int, int], None],
     ) -> None:
-        self.wish, self.seed = wish, seed
+        self.problem, self.seed = problem, seed
         self.rng = np.random.default_rng(seed)
-        self.problem = Problem(
-            plan=wish.plan,
-            variables=wish.variables,
-            conditions=wish.conditions,
-            cases=first_cases(wish.conditions),
-            links=wish.plan.links,
-            demands=wish.demands,
-            goals=wish.goals,
+        self.space = DesignSpace(
+            plan=problem.plan,
+            variables=problem.variables,
+            conditions=problem.conditions,
+            cases=first_cases(problem.conditions),
+            links=problem.plan.links,
+            constraints=problem.constraints,
+            goals=problem.goals,
             line_speeds=speeds,
             threads=threads,
             count=Count(),
         )
-        self.effort = effort or usual_effort(scans=self.problem.scans, slow=self.problem.slow)
+        self.effort = effort or usual_effort(scans=self.space.scans, slow=self.space.slow)
         self.done, self.total = 0, 8 + self.effort.generations
         self.progress = progress
         self.warnings: list[str] = []
@@ -151,66 +152,70 @@ class _Optimisation:
         """All of it."""
         found, chosen = self._with_worst_conditions(self._screened())
         point, device, excess = self._as_built(found, chosen)
-        if self.wish.least_yield:
-            found, chosen, excess = self._with_yield(found, chosen, excess, self.wish.least_yield)
-        limits = [nan] * len(self.wish.demands)
+        if self.problem.least_yield:
+            found, chosen, excess = self._with_yield(
+                found, chosen, excess, self.problem.least_yield
+            )
+        limits = [nan] * len(self.problem.constraints)
         for _ in range(ROUNDS):
             if found.violation[chosen] > 0.0:
                 break
             limits, better = self._relaxations(found, chosen)
             if better is None:
                 break
-            more = (found + self.problem.population(better[None])).best(len(found.points))
-            more = self._again(more) if self.problem.scans else more
+            more = (found + self.space.population(better[None])).best(len(found.points))
+            more = self._again(more) if self.space.scans else more
             found, chosen = self._with_worst_conditions(more)  # what is asked of less found more
         point, device, excess = self._as_built(found, chosen)
-        self.problem = replace(self.problem, demands=self.wish.demands)  # as they were written
-        goals, demanded = self._reached(point, limits)
-        feasible = all(d.excess <= 0.0 for d in demanded) and all(isfinite(r.value) for r in goals)
+        self.space = replace(
+            self.space, constraints=self.problem.constraints
+        )  # as they were written
+        goals, required = self._reached(point, limits)
+        feasible = all(d.excess <= 0.0 for d in required) and all(isfinite(r.value) for r in goals)
         built = share_of(excess) if excess is not None else None
-        if built and self.wish.least_yield:
-            feasible &= built.met >= self.wish.least_yield * built.of
+        if built and self.problem.least_yield:
+            feasible &= built.met >= self.problem.least_yield * built.of
         self.step()
-        drawn = maps(self.problem, point, self.effort.resolution)
+        drawn = maps(self.space, point, self.effort.resolution)
         self.step()
-        beside = alternatives(self.problem, point)
+        beside = alternatives(self.space, point)
         self.progress(self.total, self.total)
         return Design(
-            wish=self.wish,
+            problem=self.problem,
             device=device,
             values=self._values(point),
             parts=self._parts(point),
             feasible=feasible,
             goals=goals,
-            demands=demanded,
+            constraints=required,
             front=self._front(found, chosen),
             maps=drawn,
             alternatives=beside,
             built=built,
             gain=GAIN,
-            at_ends=at_ends(self.problem, point),
-            count=self.problem.count,
+            at_ends=at_ends(self.space, point),
+            count=self.space.count,
             seed=self.seed,
             warnings=tuple(self.warnings),
         )
 
     def _as_built(self, found: Population, chosen: int) -> tuple[Array, DeviceFile, Array | None]:
-        """The chosen design, its device file, and how far devices like it exceed the demands."""
+        """Return the chosen design, its device file, and the excess of toleranced devices."""
         point = found.points[chosen]
-        device = device_at(self.wish.plan, self._values(point))
-        if not self.wish.tables.get("tolerances") or not self.wish.demands:
+        device = device_at(self.problem.plan, self._values(point))
+        if not self.problem.tables.get("tolerances") or not self.problem.constraints:
             return point, device, None
-        problem = replace(self.problem, demands=self.wish.demands)
+        space = replace(self.space, constraints=self.problem.constraints)
         draws = self.effort.draws
-        return point, device, excess_as_built(self.wish, problem, device, point, draws, self.seed)
+        return point, device, excess_as_built(self.problem, space, device, point, draws, self.seed)
 
     def _with_yield(
         self, found: Population, chosen: int, excess: Array | None, least: float
     ) -> tuple[Population, int, Array | None]:
-        """Repeat the search with tighter limits until enough of the devices built meet the demands.
+        """Repeat the search with tighter limits until the yield is reached.
 
-        Each limit is tightened by how far devices within the tolerances scatter beyond the design,
-        as in sequential optimisation and reliability assessment (Du and Chen 2004).
+        Each limit is tightened by the scatter of toleranced devices beyond the design, as in
+        sequential optimisation and reliability assessment (Du and Chen 2004).
         """
         part = least
         for _ in range(ROUNDS):
@@ -218,14 +223,14 @@ class _Optimisation:
             share = share_of(excess)
             if share.met >= least * share.of:
                 break
-            original = replace(self.problem, demands=self.wish.demands)
+            original = replace(self.space, constraints=self.problem.constraints)
             own = original.excess(original.numbers(found.points[[chosen]]))[:, 0].max(axis=1)
             room = reserves(excess, own, part)
-            self.problem = replace(
-                self.problem,
-                demands=tuple(
+            self.space = replace(
+                self.space,
+                constraints=tuple(
                     replace(d, limit=d.limit - r if d.at_most else d.limit + r)
-                    for d, r in zip(self.wish.demands, room.tolist(), strict=True)
+                    for d, r in zip(self.problem.constraints, room.tolist(), strict=True)
                 ),
             )
             found, chosen = self._with_worst_conditions(self._again(found))
@@ -237,22 +242,22 @@ class _Optimisation:
 
     def _screened(self) -> Population:
         """The best of many candidates, improved."""
-        first = self._candidates(self.problem, self.effort.motions)
+        first = self._candidates(self.space, self.effort.motions)
         self.step()
-        return self._searched(self.problem, first, self.effort.generations, self.step)
+        return self._searched(self.space, first, self.effort.generations, self.step)
 
     def _searched(
         self,
-        problem: Problem,
+        space: DesignSpace,
         first: Population,
         generations: int,
         progress: Callable[[], None] = lambda: None,
     ) -> Population:
         """The population improved, the best first."""
         patience = self.effort.patience
-        if not problem.scans:
+        if not space.scans:
             return search(
-                problem,
+                space,
                 first,
                 generations=generations,
                 patience=patience,
@@ -260,24 +265,24 @@ class _Optimisation:
                 progress=progress,
             )
         found = search_scans(
-            problem,
+            space,
             size=len(first.points),
             rounds=generations,
             patience=patience,
             rng=self.rng,
             progress=progress,
         )
-        while not problem.confirm(found.points[[choose(found)]]):
-            found = problem.known().best(len(first.points))
+        while not space.confirm(found.points[[choose(found)]]):
+            found = space.known().best(len(first.points))
         return found
 
-    def _candidates(self, problem: Problem, motions: int) -> Population:
+    def _candidates(self, space: DesignSpace, motions: int) -> Population:
         """The best of candidates that are spread over all that may vary."""
         size = max(self.effort.population, 8)
-        count = max(size, motions // len(problem.cases))
+        count = max(size, motions // len(space.cases))
         count = 1 << (count - 1).bit_length()  # a Sobol' sequence is even over powers of two
-        sequence = qmc.Sobol(len(problem.variables), scramble=True, rng=self.seed)
-        kept, rough = None, replace(problem, coarse=True)
+        sequence = qmc.Sobol(len(space.variables), scramble=True, rng=self.seed)
+        kept, rough = None, replace(space, coarse=True)
         each = 1 << 16
         for begin in range(0, count, each):
             found = rough.population(sequence.random(min(each, count - begin)))
@@ -295,8 +300,8 @@ class _Optimisation:
             worst = self._worse_cases(found.points[chosen], attempt)
             if not len(worst):
                 return found, chosen
-            self.problem = replace(
-                self.problem, cases=np.unique(np.concatenate([self.problem.cases, worst]), axis=0)
+            self.space = replace(
+                self.space, cases=np.unique(np.concatenate([self.space.cases, worst]), axis=0)
             )
             found = self._again(found)
         for i in np.argsort(found.goals[:, 0], kind="stable"):  # a little beside the best, then
@@ -309,41 +314,46 @@ class _Optimisation:
 
     def _again(self, found: Population) -> Population:
         """The search continued, after conditions or limits have changed."""
-        again = self.problem.population(found.points)
-        return self._searched(self.problem, again, max(1, self.effort.generations // 2))
+        again = self.space.population(found.points)
+        return self._searched(self.space, again, max(1, self.effort.generations // 2))
 
     def _worse_cases(self, point: Array, attempt: int) -> Array:
-        """Conditions at which the design is worse than at those of the problem, in what matters."""
-        problem = self.problem
-        if not problem.conditions:
+        """Conditions at which the design is worse than at those of the space, in what matters."""
+        space = self.space
+        if not space.conditions:
             return np.empty((0, 0))
-        worst = worst_cases(problem, point, self.effort.conditions, self.seed + attempt)
-        before, now = problem.numbers(point[None]), problem.numbers(point[None], worst)
-        over, excess = (problem.excess(n)[:, 0].max(axis=1) for n in (before, now))
-        old, new = (problem.minimised(n)[:, 0].max(axis=1) for n in (before, now))
+        worst = worst_cases(space, point, self.effort.conditions, self.seed + attempt)
+        before, now = space.numbers(point[None]), space.numbers(point[None], worst)
+        over, excess = (space.excess(n)[:, 0].max(axis=1) for n in (before, now))
+        old, new = (space.minimised(n)[:, 0].max(axis=1) for n in (before, now))
         with np.errstate(invalid="ignore"):
             misses = excess > np.maximum(over, 0.0) * (1.0 + WORSE)
             slower = new > old + WORSE * np.abs(old)
         found: Array = worst[np.concatenate([misses, slower])]
         return found
 
-    # ---- what the demands cost -------------------------------------------------------------------
+    # ---- cost of the constraints -----------------------------------------------------------------
 
     def _relaxations(self, found: Population, chosen: int) -> tuple[list[float], Array | None]:
-        """For each demand the limit with which the first goal is better by `GAIN`.
+        """Return for each constraint the limit with which the first goal is better by `GAIN`.
 
-        And a better design than the chosen one that meets all demands, if one was met on the way.
+        The second value is a better design than the chosen one that meets all constraints, if the
+        search came across one.
         """
-        problem, demands = self.problem, self.problem.demands
+        space, constraints = self.space, self.space.constraints
         limits: list[float] = []
-        for i, demand in enumerate(demands):
+        for i, constraint in enumerate(constraints):
             relaxed = replace(
-                problem,
-                demands=(*demands[:i], *demands[i + 1 :], *self._no_worse(found.goals[chosen])),
-                goals=(Goal(demand.name, not demand.at_most),),
+                space,
+                constraints=(
+                    *constraints[:i],
+                    *constraints[i + 1 :],
+                    *self._no_worse(found.goals[chosen]),
+                ),
+                goals=(Goal(constraint.name, not constraint.at_most),),
             )
             first = relaxed.population(found.points)
-            if not problem.scans:  # all that has been scanned is known to that search
+            if not space.scans:  # all that has been scanned is known to that search
                 size = len(first.points)
                 first = (first + self._candidates(relaxed, self.effort.motions // 8)).best(size)
             result = self._searched(relaxed, first, max(1, self.effort.generations // 2))
@@ -351,32 +361,32 @@ class _Optimisation:
             if result.violation[0] > 0.0:
                 limits.append(nan)
                 continue
-            value = float(result.goals[0, 0]) * (1.0 if demand.at_most else -1.0)
-            if demand.met(np.array([value])).all():
-                return [nan] * len(demands), result.points[0]
-            limits.append(value - demand.limit + self.wish.demands[i].limit)
+            value = float(result.goals[0, 0]) * (1.0 if constraint.at_most else -1.0)
+            if constraint.met(np.array([value])).all():
+                return [nan] * len(constraints), result.points[0]
+            limits.append(value - constraint.limit + self.problem.constraints[i].limit)
         return limits, None
 
-    def _no_worse(self, goals: Array) -> tuple[Demand, ...]:
+    def _no_worse(self, goals: Array) -> tuple[Constraint, ...]:
         """The first goal better by `GAIN`, the others as they are."""
         wanted = [goals[0] - GAIN * abs(goals[0]), *goals[1:]]
         return tuple(
-            Demand(goal.name, not goal.maximise, float(-value if goal.maximise else value))
-            for goal, value in zip(self.problem.goals, wanted, strict=True)
+            Constraint(goal.name, not goal.maximise, float(-value if goal.maximise else value))
+            for goal, value in zip(self.space.goals, wanted, strict=True)
         )
 
     # ---- what comes back -------------------------------------------------------------------------
 
     def _reached(
         self, point: Array, limits: list[float]
-    ) -> tuple[tuple[Reached, ...], tuple[Demanded, ...]]:
-        """Every goal and every demand of a design at its worst condition."""
-        problem = self.problem
-        worst = worst_cases(problem, point, self.effort.conditions, self.seed)
-        cases = np.concatenate([problem.cases, worst]) if problem.conditions else problem.cases
-        problem.confirm(point[None], cases)
-        numbers = problem.numbers(point[None], cases)
-        bad = np.concatenate([problem.excess(numbers), problem.minimised(numbers)])[:, 0]
+    ) -> tuple[tuple[Reached, ...], tuple[ConstraintResult, ...]]:
+        """Every goal and every constraint of a design at its worst condition."""
+        space = self.space
+        worst = worst_cases(space, point, self.effort.conditions, self.seed)
+        cases = np.concatenate([space.cases, worst]) if space.conditions else space.cases
+        space.confirm(point[None], cases)
+        numbers = space.numbers(point[None], cases)
+        bad = np.concatenate([space.excess(numbers), space.minimised(numbers)])[:, 0]
         places = bad.argmax(axis=1)
 
         def value(name: str, place: int) -> float:
@@ -385,29 +395,29 @@ class _Optimisation:
         def case(name: str, place: int) -> dict[str, float]:
             return {} if name == PRICE else self._case(cases[place])
 
-        split = len(problem.demands)
-        demanded = tuple(
-            Demanded(d, value(d.name, place), case(d.name, place), limit)
-            for d, place, limit in zip(problem.demands, places[:split], limits, strict=True)
+        split = len(space.constraints)
+        required = tuple(
+            ConstraintResult(d, value(d.name, place), case(d.name, place), limit)
+            for d, place, limit in zip(space.constraints, places[:split], limits, strict=True)
         )
         goals = tuple(
             Reached(goal, value(goal.name, place), case(goal.name, place))
-            for goal, place in zip(problem.goals, places[split:], strict=True)
+            for goal, place in zip(space.goals, places[split:], strict=True)
         )
-        return goals, demanded
+        return goals, required
 
     def _values(self, point: Array) -> dict[str, float]:
         """The value of every key of a design, SI, and of those that follow them."""
         found: dict[str, Array] = {}
-        for variable, part in zip(self.problem.variables, point, strict=True):
+        for variable, part in zip(self.space.variables, point, strict=True):
             found |= variable.columns(np.asarray(part))
-        plan = self.wish.plan
+        plan = self.problem.plan
         linked = with_links(plan.device, found, plan.links)
         return {key: float(value) for key, value in linked.items()}
 
     def _parts(self, point: Array) -> dict[str, str]:
         """The part of each catalogue."""
-        pairs = zip(self.problem.variables, point, strict=True)
+        pairs = zip(self.space.variables, point, strict=True)
         return {
             v.catalogue.name: v.catalogue.parts[int(v.index(np.asarray(part)))]
             for v, part in pairs
@@ -417,39 +427,39 @@ class _Optimisation:
     def _case(self, case: Array) -> dict[str, float]:
         """The value of each condition, SI."""
         found = {}
-        for condition, part in zip(self.problem.conditions, case, strict=True):
+        for condition, part in zip(self.space.conditions, case, strict=True):
             for key, value in condition.columns(np.asarray(part)).items():
                 found[key] = float(value)
         return found
 
     def _front(self, found: Population, chosen: int) -> Front | None:
         """The designs of which none is better in all goals, at all conditions looked at."""
-        if len(self.problem.goals) < 2 or found.violation[chosen] > 0.0:
+        if len(self.space.goals) < 2 or found.violation[chosen] > 0.0:
             return None
-        dense = spread_cases(self.problem.conditions, 4 * self.effort.conditions // 16, self.seed)
-        problem = replace(self.problem, cases=np.concatenate([self.problem.cases, dense]))
-        all_cases = problem.population(found.points)
+        dense = spread_cases(self.space.conditions, 4 * self.effort.conditions // 16, self.seed)
+        space = replace(self.space, cases=np.concatenate([self.space.cases, dense]))
+        all_cases = space.population(found.points)
         keep = np.flatnonzero(all_cases.violation <= WORSE)
         keep = np.union1d(keep, [chosen])
         keep = keep[non_dominated(all_cases.goals[keep]) | (keep == chosen)]
         members = all_cases[keep]
         order = np.argsort(members.goals[:, 0], kind="stable")
-        signs = np.array([-1.0 if goal.maximise else 1.0 for goal in problem.goals])
-        columns = problem.columns(members.points[order], self.problem.cases[:1])
+        signs = np.array([-1.0 if goal.maximise else 1.0 for goal in space.goals])
+        columns = space.columns(members.points[order], self.space.cases[:1])
         kept = {key: x for key, x in columns.items() if key not in self._condition_keys}
         place = int(np.flatnonzero(keep[order] == chosen)[0])
         return Front(kept, signs * members.goals[order], place)
 
     @property
     def _condition_keys(self) -> set[str]:
-        return {key for condition in self.problem.conditions for key in condition.axes}
+        return {key for condition in self.space.conditions for key in condition.axes}
 
 
 def choose(found: Population) -> int:
-    """The best design; of a front the one nearest to the best of all goals at once.
+    """Return the best design; of a front the one nearest to the best of all goals at once.
 
-    Each goal is measured by its range over the front. Where no design meets the demands, the one
-    that misses them by the least.
+    Each goal is measured by its range over the front. If no design meets the constraints, return
+    the design with the smallest violation.
     """
     meets = np.flatnonzero(found.violation <= 0.0)
     if not len(meets):

@@ -1,4 +1,4 @@
-"""How much is tried for a design, by the kind of its wish, and how much was."""
+"""How much is tried for a design, by the kind of its design problem, and how much was."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ SCANNED: Final = Effort(16, 12, 24, 8, 5, 100, 3)
 
 
 def usual_effort(*, scans: bool, slow: bool) -> Effort:
-    """What a wish needs.
+    """What a design problem needs.
 
     Args:
         scans: whether its designs are scanned.

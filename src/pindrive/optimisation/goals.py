@@ -1,4 +1,4 @@
-"""A wish as data: what may vary, under which conditions, what is demanded, and the goals."""
+"""Data of a design problem: variables, conditions, constraints and goals."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from pindrive.quantities.names import label
 from pindrive.quantities.value import concise
 from pindrive.study.design import Plan
 from pindrive.study.distributions import Distribution, Grid
-from pindrive.study.outputs import Demand
+from pindrive.study.outputs import Constraint
 
 Array = NDArray[np.float64]
 
@@ -102,17 +102,17 @@ class Asked(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Wish:
+class DesignProblem:
     """What is wanted of a design.
 
     Attributes:
         plan: the device, what follows what, and the page; its axes are variables and conditions.
         tables: as they were written.
         variables: what may be chosen.
-        conditions: under which each demand must be met, and each goal counts by its worst.
-        demands: limits on numbers.
+        conditions: under which each constraint must be met, and each goal counts by its worst.
+        constraints: limits on numbers.
         least_yield: the part of the devices built within the tolerances that must meet them all;
-            None: none is demanded.
+            None: none is required.
         goals: one to three, the first the most important.
         catalogues: whose parts are chosen.
         si: whether bare numbers in `tables` are SI, as from Python.
@@ -122,7 +122,7 @@ class Wish:
     tables: Mapping[str, Any]
     variables: tuple[Variable, ...]
     conditions: tuple[Variable, ...]
-    demands: tuple[Demand, ...]
+    constraints: tuple[Constraint, ...]
     least_yield: float | None
     goals: tuple[Goal, ...]
     catalogues: tuple[Catalogue, ...]
@@ -136,4 +136,4 @@ class Wish:
     def __repr__(self) -> str:
         """What varies and what is best, in a line."""
         what = ", ".join(variable.name for variable in self.variables)
-        return f"<Wish {' and '.join(goal.text() for goal in self.goals)} over {what}>"
+        return f"<DesignProblem {' and '.join(goal.text() for goal in self.goals)} over {what}>"

@@ -1,409 +1,340 @@
-"""What designs are worth: their numbers under all conditions, and the worst of these."""
+"""Reader of design problems: device, variables, conditions, constraints and goals.
+
+A problem file is a study file (see `pindrive.study.spec`) with three tables more: `[conditions]`,
+written as axes are, `[catalogues]` and `[goals]`.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
-from functools import cached_property
-from itertools import product
+import json
+from collections.abc import Iterable, Mapping
+from itertools import combinations
+from os import PathLike
+from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pindrive.lazy import qmc
-from pindrive.optimisation.effort import Count
-from pindrive.optimisation.goals import PRICE, SPEED, Asked, Goal, Variable
-from pindrive.optimisation.scanned import Scanned
-from pindrive.optimisation.search import Population
-from pindrive.quantities.budgets import worker_count
-from pindrive.study.design import Plan
-from pindrive.study.distributions import Linked, with_links
-from pindrive.study.evaluate import evaluate, exist, is_slow
-from pindrive.study.outputs import DESIGN_OUTPUTS, NUMBERS, Demand
-from pindrive.study.workers import Cluster, standing
+from pindrive.device.page_description import Page
+from pindrive.files.device import ConfigError, DeviceFile, read_tables
+from pindrive.files.keys import NAMES, STUDY_KEYS, TABLES, written
+from pindrive.optimisation.catalogue import Catalogue, read_catalogue
+from pindrive.optimisation.goals import PRICE, SPEED, YIELD, DesignProblem, Goal, Variable
+from pindrive.quantities import budgets
+from pindrive.quantities.names import Names, label
+from pindrive.quantities.refusal import quoted, refusal
+from pindrive.study.axes import as_read, written_axes
+from pindrive.study.design import COUNTS, Dimension, Plan, read_page
+from pindrive.study.distributions import Distribution
+from pindrive.study.outputs import (
+    DESIGN_OUTPUTS,
+    OUTPUTS,
+    SCAN_OUTPUTS,
+    Constraint,
+    constraints,
+    is_measured,
+    known_output,
+)
+from pindrive.study.spec import device_in, plan_of
 
 Array = NDArray[np.float64]
-POINTS: Final = 1 << 18
-"""Motions that are simulated together."""
-PORTION: Final = 4
-"""Scans, or devices whose speeds are found, that a process takes at a time."""
-SENT: Final = 1 << 14
-"""Motions that a worker elsewhere takes at a time."""
-GUESSED: Final = 2
-"""A speed is guessed once so many devices for each variable have been scanned."""
-SHORTER: Final = 0.02
-"""A speed that is confirmed may be less by that part of it than what it was taken for."""
-FAR: Final = 1e3
-"""The most that a demand counts in a violation, and what a missing number adds to it."""
-MOST_CONDITIONS: Final = 32
-"""With which a search begins."""
+MOST_GOALS: Final = 3
+_DIRECTIONS: Final = ("minimise", "maximise")
+_BESIDE: Final = ("conditions", "catalogues", "goals")
+_KEYS: Final = (
+    *("name", "base", "set", "page", "axes", "zip", "tolerances", "specification"),
+    *_BESIDE,
+)
+_TEMPLATE: Final = (
+    'a design problem names its device, base = "device.toml", its variables in [axes], its '
+    "constraints in [specification] and its goals in [goals]"
+)
 
 
-@dataclass(kw_only=True)
-class Problem:
-    """Designs as points of the unit cube, and what they are worth under conditions.
-
-    Attributes:
-        plan: the device and its page.
-        variables: of a design; a point has a part from 0 to 1 for each.
-        conditions: under which it is followed, likewise.
-        cases: the conditions at which designs are compared, shape (c, conditions).
-        links: keys that follow others.
-        demands: limits on numbers.
-        goals: at least one.
-        line_speeds: the largest hand speeds of some devices, with the trials that they took, as
-            `pindrive.optimisation.line_speed.speeds` finds them.
-        threads: how many work.
-        count: of what was simulated.
-        scanned: what was.
-        tell: called after each part of the work.
-    """
-
-    plan: Plan
-    variables: tuple[Variable, ...]
-    conditions: tuple[Variable, ...]
-    cases: Array
-    links: Mapping[str, Linked]
-    demands: tuple[Demand, ...]
-    goals: tuple[Goal, ...]
-    line_speeds: Callable[[Plan, Sequence[Asked]], list[tuple[float, int]]]
-    threads: int | None = None
-    crew: Cluster | None = None
-    """Workers elsewhere, which take scans, and motions by the ten thousand; None: none are."""
-    price: float = 0.0
-    """Of parts that are no variables."""
-    count: Count = field(default_factory=Count)
-    scanned: Scanned = field(default_factory=Scanned)
-    coarse: bool = False
-    """Whether hand speeds are found roughly, as for a map."""
-    tell: Callable[[], None] = lambda: None
-
-    @cached_property
-    def names(self) -> tuple[str, ...]:
-        """The numbers that it needs."""
-        names = (*(goal.name for goal in self.goals), *(demand.name for demand in self.demands))
-        return tuple(dict.fromkeys(names))
-
-    @cached_property
-    def scales(self) -> Array:
-        """What an excess over each demand is measured in: its limit, or a unit for display."""
-        sizes = [abs(d.limit) or 1.0 / NUMBERS[d.name].display_scale for d in self.demands]
-        return np.array(sizes, np.float64)
-
-    @property
-    def slow(self) -> bool:
-        """Whether its motions are followed one by one."""
-        swept = {key: 0 for v in (*self.variables, *self.conditions) for key in v.axes}
-        return self.plan.page is None and is_slow(self.plan.device, swept)
-
-    @property
-    def scans(self) -> bool:
-        """Whether it scans a page."""
-        return self.plan.page is not None
-
-    # ---- points ----------------------------------------------------------------------------------
-
-    def columns(self, points: Array, cases: Array) -> dict[str, Array]:
-        """The keys of every point at every case, SI, shape (n * c,)."""
-        n, c = len(points), len(cases)
-        found: dict[str, Array] = {}
-        for variable, parts in zip(self.variables, points.T, strict=True):
-            for key, values in variable.columns(parts).items():
-                found[key] = np.repeat(values, c)
-        for condition, parts in zip(self.conditions, cases.T, strict=True):
-            for key, values in condition.columns(parts).items():
-                found[key] = np.tile(values, n)
-        linked = with_links(self.plan.device, found, self.links)
-        return {key: np.broadcast_to(values, (n * c,)) for key, values in linked.items()}
-
-    def prices(self, points: Array) -> Array:
-        """The price of the parts of each point, shape (n,)."""
-        total = np.full(len(points), self.price)
-        for variable, parts in zip(self.variables, points.T, strict=True):
-            if variable.catalogue and variable.catalogue.priced:
-                total = total + np.array(variable.catalogue.prices)[variable.index(parts)]
-        return total
-
-    # ---- numbers ---------------------------------------------------------------------------------
-
-    def numbers(self, points: Array, cases: Array | None = None) -> dict[str, Array]:
-        """The numbers of points at cases, SI, each of shape (n, c); NaN where there is none.
-
-        Args:
-            points: shape (n, variables).
-            cases: shape (c, conditions); the own ones unless given.
-        """
-        at = self.cases if cases is None else cases
-        each = max(1, POINTS // len(at))
-        parts = []
-        for begin in range(0, len(points), each):
-            parts.append(self._numbers(points[begin : begin + each], at))
-            self.tell()
-        return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
-
-    def _numbers(self, points: Array, cases: Array) -> dict[str, Array]:
-        shape = len(points), len(cases)
-        if self.scans:
-            self._scan(points, cases)
-            known = self.scanned.look_up(self.inputs(points, cases))
-            found = {name: column.reshape(shape) for name, column in known.items()}
-        else:
-            size = shape[0] * shape[1]
-            simulated = self._simulated(self.columns(points, cases), size)
-            found = {name: column.reshape(shape) for name, column in simulated.items()}
-            self.count.motions += size if found else 0
-        if PRICE in self.names:
-            found[PRICE] = np.repeat(self.prices(points)[:, None], shape[1], axis=1)
-        return found
-
-    def _simulated(self, columns: dict[str, Array], size: int) -> dict[str, Array]:
-        """The numbers of motions or of scans, each (size,)."""
-        asked = [name for name in self.names if name not in DESIGN_OUTPUTS]
-        if not asked:
-            return {}
-        table = self._evaluated(columns, size, (*asked, "status"))
-        exists = exist(table["status"])
-        return {name: np.where(exists, table[name], np.nan) for name in asked}
-
-    # ---- scans -----------------------------------------------------------------------------------
-
-    def snapped(self, points: Array) -> Array:
-        """Points with each choice in the middle of the parts that stand for it."""
-        found = points.copy()
-        for variable, parts in zip(self.variables, found.T, strict=True):
-            if variable.choices:
-                parts[:] = (variable.index(parts) + 0.5) / variable.choices
-        return found
-
-    def inputs(self, points: Array, cases: Array) -> Array:
-        """Every point at every case as `scanned` has it, shape (n * c, variables + conditions)."""
-        n, c = len(points), len(cases)
-        return np.hstack([np.repeat(self.snapped(points), c, axis=0), np.tile(cases, (n, 1))])
-
-    def _scan(self, points: Array, cases: Array) -> None:
-        """Scan what has not been."""
-        inputs = self.inputs(points, cases)
-        new = self.scanned.missing(inputs)
-        if not len(new):
-            return
-        columns = {key: x[new] for key, x in self.columns(points, cases).items()}
-        found = self._simulated(columns, len(new))
-        self.count.scans += len(new) if found else 0
-        if SPEED in self.names:
-            found[SPEED] = self._speeds(columns, self._guessed(inputs[new]), self._beat(), False)
-        self.scanned.keep(inputs[new], found)
-
-    def confirm(self, points: Array, cases: Array | None = None) -> bool:
-        """Find the speeds of points over the whole grid; whether they are what they were taken for.
-
-        Args:
-            points: shape (n, variables).
-            cases: as for `numbers`.
-        """
-        at = self.cases if cases is None else cases
-        if SPEED not in self.names:
-            return True
-        before = self.numbers(points, at)[SPEED].ravel()
-        inputs = self.inputs(points, at)
-        new = self.scanned.unconfirmed(inputs)
-        columns = {key: x[new] for key, x in self.columns(points, at).items()}
-        found = self._speeds(columns, np.full(len(new), np.nan), np.nan, True)
-        self.scanned.keep(inputs[new], {SPEED: found}, confirmed=True)
-        return bool((found >= (1.0 - SHORTER) * before[new]).all())
-
-    def known(self) -> Population:
-        """All that has been scanned at all cases."""
-        keys = len(self.variables)
-        every = self.scanned.inputs.reshape(self.scanned.count, -1)[:, :keys]
-        if not len(every):
-            return Population(np.empty((0, keys)), np.empty((0, len(self.goals))), np.empty(0))
-        points = every[np.sort(np.unique(every, axis=0, return_index=True)[1])]
-        each = [not len(self.scanned.missing(self.inputs(p[None], self.cases))) for p in points]
-        return self.population(points[np.array(each, np.bool_)])
-
-    def expected(self, points: Array, trust: float) -> tuple[Array, Array]:
-        """Goals and violations of points, better than is expected by standard deviations."""
-        shape, inputs = (len(points), len(self.cases)), self.inputs(points, self.cases)
-        least, most = {}, {}
-        for name in self.names:
-            if name == PRICE:
-                low = high = np.repeat(self.prices(points)[:, None], shape[1], axis=1)
-            else:
-                low, high = self.scanned.expected(
-                    name, inputs, trust, large_is_bad=self._large_is_bad(name)
-                )
-            least[name], most[name] = low.reshape(shape), high.reshape(shape)
-        return self.worth(least, most)
-
-    def _large_is_bad(self, name: str) -> bool:
-        if any(goal.name == name for goal in self.goals):
-            return Goal(name, False) in self.goals
-        return any(demand.name == name and demand.at_most for demand in self.demands)
-
-    def _guessed(self, inputs: Array) -> Array:
-        if self.scanned.count < GUESSED * inputs.shape[1]:
-            return np.full(len(inputs), np.nan)
-        return self.scanned.expected(SPEED, inputs, 0.0, large_is_bad=False)[0]
-
-    def _beat(self) -> float:
-        """The speed below which that of a device matters little, m/s; NaN: there is none."""
-        if self.coarse:
-            return np.inf
-        limits = [d.limit for d in self.demands if d.name == SPEED and not d.at_most]
-        if self.goals == (Goal(SPEED, True),):
-            known = self.known()
-            limits += [-float(goal) for goal in known.goals[known.violation <= 0.0, 0]]
-        elif any(goal.name == SPEED for goal in self.goals):
-            return np.nan
-        return max(limits, default=np.nan)
-
-    def _evaluated(
-        self, columns: dict[str, Array], size: int, outputs: tuple[str, ...]
-    ) -> dict[str, Any]:
-        """The outputs at points, by the workers elsewhere where there are any."""
-        each = PORTION if self.scans or self.slow else SENT
-        if self.crew is None or size <= each:
-            return evaluate(self.plan, columns, size, outputs, self.threads)
-        portions = []
-        for begin in range(0, size, each):
-            end = min(begin + each, size)
-            part = {key: values[begin:end] for key, values in columns.items()}
-            portions.append((part, end - begin, outputs))
-        done = [*self.crew.spread(_evaluate, self.plan, portions)]
-        return {name: np.concatenate([table[name] for table in done]) for name in outputs}
-
-    def _speeds(
-        self, columns: dict[str, Array], near: Array, beat: float, confirmed: bool
-    ) -> Array:
-        """The largest speeds of devices, m/s, shape (n,)."""
-        asked = [
-            Asked({key: float(x[i]) for key, x in columns.items()}, float(guess), beat, confirmed)
-            for i, guess in enumerate(near)
-        ]
-        processes = worker_count(self.threads)
-        each = min(PORTION, -(-len(asked) // processes)) or 1
-        portions = [asked[i : i + each] for i in range(0, len(asked), each)]
-        if self.crew is not None:
-            rows = [*self.crew.spread(self.line_speeds, self.plan, portions)]
-        elif processes == 1 or len(portions) == 1:
-            rows = [self.line_speeds(self.plan, portion) for portion in portions]
-        else:
-            rows = standing(processes).spread(self.line_speeds, self.plan, portions)
-        every = [row for portion in rows for row in portion]
-        self.count.scans += sum(trials for _, trials in every)
-        return np.array([speed for speed, _ in every])
-
-    # ---- what they are worth ---------------------------------------------------------------------
-
-    def excess(
-        self, numbers: Mapping[str, Array], most: Mapping[str, Array] | None = None
-    ) -> Array:
-        """How far each demand is exceeded at each case, SI, shape (demands, n, c), at best.
-
-        Args:
-            numbers: each (n, c).
-            most: what they may be at most, where `numbers` are what they may be at least.
-        """
-        shape = next(iter(numbers.values())).shape
-        high = numbers if most is None else most
-        each = [d.excess((numbers if d.at_most else high)[d.name]) for d in self.demands]
-        return np.array(each).reshape(len(self.demands), *shape)
-
-    def minimised(
-        self, numbers: Mapping[str, Array], most: Mapping[str, Array] | None = None
-    ) -> Array:
-        """The goals at each case, least is best, shape (goals, n, c); arguments as for `excess`."""
-        high = numbers if most is None else most
-        return np.array(
-            [g.minimised((high if g.maximise else numbers)[g.name]) for g in self.goals]
-        )
-
-    def worth(
-        self, numbers: Mapping[str, Array], most: Mapping[str, Array] | None = None
-    ) -> tuple[Array, Array]:
-        """Goals (n, g) and violations (n,), by the worst case of each, as for `excess`."""
-        goals = self.minimised(numbers, most).max(axis=2).T
-        over = self.excess(numbers, most).max(axis=2).T / self.scales
-        violation = np.clip(over, 0.0, FAR).sum(axis=1)
-        violation += FAR * np.isinf(goals).sum(axis=1)
-        return goals, violation
-
-    def __call__(self, points: Array) -> tuple[Array, Array]:
-        """Goals and violations of points, as `search` takes them."""
-        return self.worth(self.numbers(points))
-
-    def population(self, points: Array) -> Population:
-        """Points with what they are worth."""
-        return Population(points, *self(points))
-
-
-def _evaluate(plan: Plan, portion: tuple[dict[str, Array], int, tuple[str, ...]]) -> dict[str, Any]:
-    """The outputs at a portion of points, with one thread."""
-    columns, size, outputs = portion
-    return evaluate(plan, columns, size, outputs, 1)
-
-
-def first_cases(conditions: tuple[Variable, ...]) -> Array:
-    """The conditions with which a search begins: ends and middles of all, or as many as fit."""
-    if not conditions:
-        return np.zeros((1, 0))
-    nodes = []
-    for condition in conditions:
-        if condition.choices:
-            rows = {0, condition.choices // 2, condition.choices - 1}
-            nodes.append([condition.part(row) for row in sorted(rows)])
-        else:
-            nodes.append([0.0, 0.5, 1.0])
-    size = np.prod([len(node) for node in nodes])
-    if size <= MOST_CONDITIONS:
-        return np.array([*product(*nodes)], np.float64).reshape(-1, len(nodes))
-    unit = qmc.Sobol(len(nodes), scramble=False).random(MOST_CONDITIONS)
-    return np.where(unit < 0.25, 0.0, np.where(unit > 0.75, 1.0, 0.5))
-
-
-def spread_cases(conditions: tuple[Variable, ...], count: int, seed: int) -> Array:
-    """Conditions spread over all, a power of two of them; one where there are none."""
-    if not conditions:
-        return np.zeros((1, 0))
-    unit: Array = qmc.Sobol(len(conditions), scramble=True, rng=seed).random(count)
-    return unit
-
-
-def worst_cases(problem: Problem, point: Array, count: int, seed: int) -> Array:
-    """The worst case found of each demand and each goal of one design.
-
-    Conditions are spread evenly, and again, ever closer, about the worst so far.
+def read_problem(
+    path: str | PathLike[str], overrides: Iterable[str] = (), device: DeviceFile | None = None
+) -> DesignProblem:
+    """Read a design problem from a file.
 
     Args:
-        problem: whose demands and goals; its own cases are looked at too.
-        point: the design, shape (variables,).
-        count: conditions of the first spread, a power of two.
-        seed: of the spreads.
+        path: a TOML file.
+        overrides: "key=value" each, as for `load_device`.
+        device: what varies in place of the device that the file names.
 
-    Returns:
-        Of each demand, then of each goal, a case; shape (demands + goals, conditions).
+    Raises:
+        ConfigError: it cannot be read, or holds anything unknown, malformed, out of bounds or
+            contradictory; a line for each problem.
     """
-    if not problem.conditions:
-        return np.zeros((len(problem.demands) + len(problem.goals), 0))
-    rng = np.random.default_rng(seed)
-    cases = np.concatenate([problem.cases, spread_cases(problem.conditions, count, seed)])
-    width = 0.25
+    file = Path(path)
+    tables: dict[str, Any] = read_tables(file, _TEMPLATE)
+    if not tables.keys() & {*STUDY_KEYS, *_BESIDE}:
+        what = "is a device file" if tables.keys() & {*TABLES} else "is no design problem"
+        raise ConfigError([f"{file}: {what}; {_TEMPLATE}"])
+    problems = [*_unknown(tables, file)]
+    own, text = device_in(tables, file, overrides, problems)
+    return _problem(tables, device or own, file, str(file), text, problems, si=False)
 
-    def badness(at: Array) -> Array:
-        found = problem.numbers(point[None], at)
-        return np.concatenate([problem.excess(found), problem.minimised(found)])[:, 0]
 
-    bad = badness(cases)
-    best, level = cases[bad.argmax(axis=1)], bad.max(axis=1)
-    for _ in range(4 if count > 64 else 1):
-        each = max(4, count // 8)
-        near = best[:, None] + width * rng.uniform(-1.0, 1.0, (len(best), each, best.shape[1]))
-        near = np.clip(near, 0.0, 1.0).reshape(-1, best.shape[1])
-        found = badness(near)
-        for row in range(len(best)):
-            i = int(found[row].argmax())
-            if found[row, i] > level[row]:
-                best[row], level[row] = near[i], found[row, i]
-        width *= 0.25
-    return np.asarray(best)
+def problem_of(device: DeviceFile, tables: Mapping[str, Any]) -> DesignProblem:
+    """Read a design problem from tables: numbers are SI, texts have a unit.
+
+    Paths are relative to the folder of the device file.
+
+    Args:
+        device: what varies.
+        tables: `axes`, `goals` and the other tables of a problem file; `page` may be a `Page`.
+
+    Raises:
+        ConfigError: as for `read_problem`.
+    """
+    if not isinstance(device, DeviceFile):
+        raise ValueError(refusal("device", "what load_device reads", repr(device)))
+    given = dict(tables)
+    problems = [*_unknown(given, Path("problem"))]
+    for name in ("axes", "conditions", "tolerances"):
+        if name in given:
+            given[name] = as_read(given[name], name)
+    if isinstance(given.get("page"), str):
+        given["page"] = Page(text=given["page"])
+    if isinstance(given.get("page"), Mapping):
+        given["page"] = read_page(dict(given["page"]), device.path)
+    if isinstance(given.get("page"), Page):
+        given["page"].check("page.{}")
+    text = json.dumps(given, indent=1, ensure_ascii=False, default=repr)
+    return _problem(given, device, device.path, "problem", text, problems, si=True)
+
+
+def _unknown(tables: Mapping[str, Any], file: Path) -> Iterable[str]:
+    known = _KEYS if "base" in tables else (*_KEYS, *TABLES)
+    names = Names("key", dict.fromkeys(known, ()), listed="docs/reference/problem-file.md")
+    for key in tables:
+        if key in known:
+            continue
+        if key in TABLES:
+            yield f"{file}: give base or the table {key}, not both"
+            continue
+        yield f"{file}: {names.unknown(key)}"
+
+
+def _problem(
+    tables: Mapping[str, Any],
+    device: DeviceFile,
+    path: Path,
+    place: str,
+    text: str,
+    problems: list[str],
+    *,
+    si: bool,
+) -> DesignProblem:
+    scans = "page" in tables
+    for name in (*_BESIDE, "axes", "tolerances", "specification"):
+        if not isinstance(tables.get(name, {}), Mapping):
+            problems.append(refusal(name, f"a table, [{name}]", quoted(tables[name]), place))
+    if problems:
+        raise ConfigError(problems)
+    catalogues = _catalogues(tables.get("catalogues", {}), path, place, scans, problems)
+    chosen = {key: c.name for c in catalogues for key in c.values}
+    conditions = _keys(tables.get("conditions", {}))
+    for name in ("axes", "conditions", "tolerances"):
+        for key in _keys(tables.get(name, {})):
+            if name != "tolerances" and key in chosen:
+                problems.append(
+                    f"{place}: {key} is in [{name}] and in the catalogue {chosen[key]}; "
+                    "leave one out"
+                )
+            if name != "conditions" and key in conditions:
+                problems.append(f"{place}: {key} is in [{name}] and in [conditions]; leave one out")
+    if not tables.get("axes") and not catalogues:
+        problems.append(f"{place}: nothing may vary; write what may in [axes] or [catalogues]")
+    goals = _goals(tables.get("goals", {}), place, _among(scans), problems)
+    required = constraints(tables.get("specification", {}), place, problems, _among(scans))
+    try:
+        budgets.CONSTRAINTS.check(len(required), where=place)
+    except ValueError as error:
+        problems.append(str(error))
+    least = _least_yield(required, goals, tables, place, problems)
+    required = tuple(constraint for constraint in required if constraint.name != YIELD)
+    if problems:
+        raise ConfigError(problems)
+    listed, groups = _as_axes(catalogues)
+    axes = {**tables.get("axes", {}), **listed}
+    rest = {k: v for k, v in tables.items() if k not in ("catalogues", "goals", "specification")}
+    study = rest | {"axes": axes, "zip": [*tables.get("zip", []), *groups]}
+    chunk = (budgets.CHUNK_OF_SCANS if scans else budgets.CHUNK).most
+    study |= {"sample": {"count": 1}, "chunk": chunk}  # no points are computed of it
+    plan = plan_of(study, device, path=path, place=place, text=text, problems=problems, si=si)
+    problems += _contradictions(plan, required, goals, catalogues, place)
+    problems += _no_ranges(plan, conditions, place)
+    if problems:
+        raise ConfigError([*dict.fromkeys(problems)])
+    found = [*_variables(plan, catalogues)]
+    return DesignProblem(
+        plan=plan,
+        tables=tables,
+        variables=tuple(v for v in found if not conditions & v.axes.keys()),
+        conditions=tuple(v for v in found if conditions & v.axes.keys()),
+        constraints=required,
+        least_yield=least,
+        goals=goals,
+        catalogues=catalogues,
+        si=si,
+    )
+
+
+def _among(scans: bool) -> tuple[str, ...]:
+    return (*(SCAN_OUTPUTS if scans else OUTPUTS), *DESIGN_OUTPUTS)
+
+
+def _keys(table: Mapping[str, Any]) -> set[str]:
+    """The keys that a table names; what is unknown or ambiguous is said where it is read."""
+    found = (NAMES.matches(given) for given, _ in written_axes(table))
+    return {keys[0] for keys in found if len(keys) == 1}
+
+
+def _catalogues(
+    table: Mapping[str, Any], path: Path, place: str, scans: bool, problems: list[str]
+) -> tuple[Catalogue, ...]:
+    found = []
+    for name, given in table.items():
+        label_ = f"{place}: catalogues.{name}"
+        try:
+            if not isinstance(given, str | PathLike):
+                required = 'the path of a CSV file, like "springs.csv"'
+                raise ValueError(refusal(f"catalogues.{name}", required, quoted(given), place))
+            found.append(read_catalogue(name, path.parent / given, label_, scans))
+        except ValueError as error:
+            problems.append(str(error))
+    for one, other in combinations(found, 2):
+        problems.extend(
+            f"{place}: {key} is in the catalogues {one.name} and {other.name}; leave one out"
+            for key in one.values.keys() & other.values.keys()
+        )
+    return tuple(found)
+
+
+def _as_axes(catalogues: Iterable[Catalogue]) -> tuple[dict[str, Any], list[list[str]]]:
+    """The keys of catalogues as axes of lists, and those that go together."""
+    axes: dict[str, Any] = {}
+    groups = []
+    for catalogue in catalogues:
+        for key, values in catalogue.values.items():
+            axes[key] = [written(key, value) for value in values]
+        if len(catalogue.values) > 1:
+            groups.append([*catalogue.values])
+    return axes, groups
+
+
+def _variables(plan: Plan, catalogues: Iterable[Catalogue]) -> Iterable[Variable]:
+    of = {key: catalogue for catalogue in catalogues for key in catalogue.values}
+    for dimension in plan.dimensions:
+        if dimension.sample:
+            for key, axis in dimension.axes.items():
+                yield Variable(key, {key: axis})
+        else:
+            first = next(iter(dimension.axes))
+            name = of[first].name if first in of else first
+            yield Variable(name, dimension.axes, dimension.size, of.get(first))
+
+
+def _goals(
+    table: Mapping[str, Any], place: str, among: tuple[str, ...], problems: list[str]
+) -> tuple[Goal, ...]:
+    found: list[Goal] = []
+    for direction, given in table.items():
+        if direction not in _DIRECTIONS:
+            problems.append(
+                f"{place}: unknown key goals.{direction}; there are {' and '.join(_DIRECTIONS)}"
+            )
+            continue
+        for one in given if isinstance(given, list) else [given]:
+            try:
+                name = known_output(one, f"{place}: goals.{direction}", among)
+            except ValueError as error:
+                problems.append(str(error))
+                continue
+            if not is_measured(name):
+                problems.append(f"{place}: goals.{direction}: {one} is no number")
+            elif any(goal.name == name for goal in found):
+                problems.append(f"{place}: goals: {label(name)} is named twice; leave one out")
+            else:
+                found.append(Goal(name, direction == "maximise"))
+    if not problems and not 1 <= len(found) <= MOST_GOALS:
+        example = 'minimise = ["settling_time"]'
+        required = f"one to {MOST_GOALS} numbers, like {example}"
+        problems.append(refusal("goals", required, str(len(found)) if found else "none", place))
+    return tuple(found)
+
+
+def _least_yield(
+    required: tuple[Constraint, ...],
+    goals: tuple[Goal, ...],
+    tables: Mapping[str, Any],
+    place: str,
+    problems: list[str],
+) -> float | None:
+    """The yield that is required; what is wrong with it is appended to `problems`."""
+    own = [constraint for constraint in required if constraint.name == YIELD]
+    where = f"{place}: specification.yield"
+    if any(goal.name == YIELD for goal in goals):
+        problems.append(f'{place}: goals: yield is no goal; constraint it, yield = ">= 95 %"')
+    if not own:
+        return None
+    if len(own) > 1 or own[0].at_most or not 0.0 < own[0].limit < 1.0:
+        given = quoted(tables["specification"].get("yield"))
+        problems.append(f'{where}: must be one limit like ">= 95 %", got {given}')
+    elif not tables.get("tolerances"):
+        problems.append(f"{where}: is within tolerances; write them in [tolerances]")
+    elif len(required) == 1:
+        problems.append(f"{where}: is of the other constraints; there are none")
+    return own[0].limit
+
+
+def _contradictions(
+    plan: Plan,
+    required: tuple[Constraint, ...],
+    goals: tuple[Goal, ...],
+    catalogues: tuple[Catalogue, ...],
+    place: str,
+) -> Iterable[str]:
+    """Constraints that no number meets, and numbers that this design problem does not have."""
+    for one, other in combinations(required, 2):
+        low, high = (other, one) if one.at_most else (one, other)
+        if one.name == other.name and one.at_most != other.at_most and low.limit > high.limit:
+            yield (
+                f"{place}: specification.{label(one.name)}: nothing is both {_side(high)} and "
+                f"{_side(low)}; correct one of them"
+            )
+    names = {*(constraint.name for constraint in required), *(goal.name for goal in goals)}
+    if PRICE in names and not any(catalogue.priced for catalogue in catalogues):
+        yield f"{place}: no part has a price; give a catalogue with a column price in [catalogues]"
+    if SPEED in names and not (plan.page and plan.page.page.grating):
+        yield (
+            f"{place}: {label(SPEED)} is of lines a pitch apart; write which, "
+            'grating = ["3 mm"] in [page]'
+        )
+
+
+def _side(constraint: Constraint) -> str:
+    return f"{'≤' if constraint.at_most else '≥'} {constraint.shown()}"
+
+
+def _no_ranges(plan: Plan, conditions: set[str], place: str) -> Iterable[str]:
+    """Of axes without ends, and of counts without steps."""
+    for dimension in plan.dimensions:
+        for key, axis in dimension.axes.items():
+            table = "conditions" if key in conditions else "axes"
+            if isinstance(axis, Distribution) and axis.kind not in ("uniform", "loguniform"):
+                yield (
+                    f"{place}: {table}.{key}: a range has two ends; write uniform or loguniform, "
+                    f"not {axis.kind}"
+                )
+            if isinstance(axis, Distribution) and key in COUNTS:
+                yield f"{place}: {table}.{key} counts pins; give a list of whole numbers"
+        yield from _mixed(dimension, conditions, place)
+
+
+def _mixed(dimension: Dimension, conditions: set[str], place: str) -> Iterable[str]:
+    inside = conditions & dimension.axes.keys()
+    if not dimension.sample and inside and inside != dimension.axes.keys():
+        yield f"{place}: zip: {', '.join(dimension.axes)} are not all of one table"

@@ -20,15 +20,15 @@ from pindrive.files.keys import variable
 from pindrive.lazy import mpl_figure, xr
 from pindrive.motion.motion import Motion
 from pindrive.optimisation.effort import Count
-from pindrive.optimisation.goals import Goal, Variable, Wish
+from pindrive.optimisation.goals import DesignProblem, Goal, Variable
 from pindrive.quantities.names import label
 from pindrive.quantities.status import Status
 from pindrive.quantities.value import concise, equal_by_value
 from pindrive.study.distributions import with_links
 from pindrive.study.evaluate import follow
-from pindrive.study.outputs import NUMBERS, Demand, Share, attributes
+from pindrive.study.outputs import NUMBERS, Constraint, Share, attributes
 
-__all__ = ["Alternative", "Demanded", "Design", "Front", "Map", "Reached"]
+__all__ = ["Alternative", "ConstraintResult", "Design", "Front", "Map", "Reached"]
 
 Array = NDArray[np.float64]
 
@@ -53,32 +53,31 @@ class Reached:
 @equal_by_value
 @concise
 @dataclass(frozen=True, slots=True)
-class Demanded:
-    """A demand, and how the design meets it.
+class ConstraintResult:
+    """A constraint, and how the design meets it.
 
     Attributes:
-        demand: which limit.
+        constraint: which limit.
         value: at its worst condition, SI.
         case: that condition, SI by key.
-        relaxed: the limit, SI, that would have to be written for the first goal to get better by
-            `Design.gain`, with all other demands as they are; NaN: no such limit was found, or none
-            was looked for.
+        relaxed: the limit, SI, at which the first goal improves by `Design.gain` while all other
+            constraints remain unchanged; NaN: no such limit was found, or none was searched for.
     """
 
-    demand: Demand
+    constraint: Constraint
     value: float
     case: Mapping[str, float]
     relaxed: float = nan
 
     @property
     def excess(self) -> float:
-        """How far the limit is missed, SI; negative: how much room is left."""
-        return float(self.demand.excess(np.array([self.value]))[0])
+        """Violation of the limit, SI; negative: the margin to the limit."""
+        return float(self.constraint.excess(np.array([self.value]))[0])
 
     @property
     def binds(self) -> bool:
         """Whether the goal could be better were this limit another."""
-        return isfinite(self.relaxed) and self.relaxed != self.demand.limit
+        return isfinite(self.relaxed) and self.relaxed != self.constraint.limit
 
 
 @equal_by_value
@@ -93,7 +92,7 @@ class Alternative:
         values: what it sets, SI by key.
         price: NaN where there is none.
         goals: of the design with it, SI.
-        misses: the demands that it misses, each with by how much, SI.
+        violations: the violated constraints, each with its excess, SI.
     """
 
     catalogue: str
@@ -101,7 +100,7 @@ class Alternative:
     values: Mapping[str, float]
     price: float
     goals: tuple[float, ...]
-    misses: tuple[tuple[Demand, float], ...]
+    violations: tuple[tuple[Constraint, float], ...]
 
 
 @equal_by_value
@@ -131,7 +130,7 @@ class Map:
         variables: along the abscissa, along the ordinate.
         along: the values of the first key of each, SI.
         goal: shape (y, x); NaN where there is none.
-        met: whether all demands are met, shape (y, x).
+        met: whether all constraints are met, shape (y, x).
         design: the values of the design.
     """
 
@@ -149,7 +148,7 @@ class Map:
 
     @property
     def share(self) -> float:
-        """Part of the map in which all demands are met."""
+        """Part of the map in which all constraints are met."""
         return float(self.met.mean())
 
 
@@ -159,32 +158,32 @@ class Design(lazy.NotebookHtml):
     """What `optimise` found.
 
     Attributes:
-        wish: what was wanted.
-        device: the device file of the best design; of the closest where none meets the demands.
+        problem: what was wanted.
+        device: the device file of the best design; of the closest where none meets the constraints.
         values: every key that may vary, SI.
         parts: the part chosen from each catalogue.
-        feasible: whether it meets all demands, at all conditions.
-        goals: in the order of the wish.
-        demands: likewise.
+        feasible: whether it meets all constraints, at all conditions.
+        goals: in the order of the design problem.
+        constraints: likewise.
         front: with two or three goals.
         maps: of the feasible region around the design.
         alternatives: the nearest parts of each catalogue.
-        built: the part of the designs built within the tolerances that meets all demands; None
+        built: the part of the designs built within the tolerances that meets all constraints; None
             where there are no tolerances.
-        gain: the part by which the first goal gets better where a demand is relaxed.
+        gain: the part by which the first goal gets better where a constraint is relaxed.
         at_ends: variables at an end of their range.
         count: how much was simulated.
         seed: of all draws.
         warnings: what is doubtful.
     """
 
-    wish: Wish
+    problem: DesignProblem
     device: DeviceFile
     values: Mapping[str, float]
     parts: Mapping[str, str]
     feasible: bool
     goals: tuple[Reached, ...]
-    demands: tuple[Demanded, ...]
+    constraints: tuple[ConstraintResult, ...]
     front: Front | None
     maps: tuple[Map, ...]
     alternatives: tuple[Alternative, ...]
@@ -196,7 +195,7 @@ class Design(lazy.NotebookHtml):
     warnings: tuple[str, ...] = field(default=())
 
     def __repr__(self) -> str:
-        """The goals of the design, or what it misses, in a line."""
+        """The goals of the design, or its violations, in a line."""
         if not self.feasible:
             return f"<No design: {self.closest}, {self.status.name}>"
         reached = ", ".join(
@@ -207,31 +206,31 @@ class Design(lazy.NotebookHtml):
 
     @property
     def status(self) -> Status:
-        """`incomplete` where no design meets the demands, or where `warnings` says so."""
+        """`incomplete` where no design meets the constraints, or where `warnings` says so."""
         return Status.ok if self.feasible and not self.warnings else Status.incomplete
 
     @property
     def closest(self) -> str:
-        """Which demands the closest design misses, and by how much; empty where it misses none."""
-        missed = [d for d in self.demands if d.excess > 0.0]
-        if not missed:
-            least = self.wish.least_yield
+        """Constraints violated by the closest design, with their excess; empty if feasible."""
+        violated = [d for d in self.constraints if d.excess > 0.0]
+        if not violated:
+            least = self.problem.least_yield
             if self.feasible or not (self.built and least):
                 return "" if self.feasible else "no design has the numbers of the goals"
             return f"the closest has a yield of {self.built.text}, not {100.0 * least:g} %"
-        return "the closest misses " + " and ".join(
-            f"{d.demand.text()} by {shown(d.demand.name, d.excess)}"
+        return "the closest violates " + " and ".join(
+            f"{d.constraint.text()} by {shown(d.constraint.name, d.excess)}"
             if isfinite(d.excess)
-            else f"{d.demand.text()}: it has no such number"
-            for d in missed
+            else f"{d.constraint.text()}: it has no such number"
+            for d in violated
         )
 
     @cached_property
     def motion(self) -> Motion | None:
         """The transient at the worst condition of the first goal; None of a scan."""
-        if self.wish.plan.page:
+        if self.problem.plan.page:
             return None
-        plan = self.wish.plan
+        plan = self.problem.plan
         at = {key: np.asarray(x) for key, x in (*self.values.items(), *self.goals[0].case.items())}
         found = with_links(plan.device, at, plan.links)
         return follow(plan, {key: float(x) for key, x in found.items()})
@@ -247,24 +246,27 @@ class Design(lazy.NotebookHtml):
 
         Returns:
             The varied keys and the goals of the design, SI; over `limit` the value, the excess and
-            the relaxed limit of each demand; over `front` the keys and goals of the front; over the
-            axes of each map its goal and whether the demands are met.
+            the relaxed limit of each constraint; over `front` the keys and goals of the front; over
+            the axes of each map its goal and whether the constraints are met.
         """
         data: dict[str, Any] = {
             variable(key): ((), value, KEYS[key].attributes) for key, value in self.values.items()
         }
         for reached in self.goals:
             data[reached.goal.name] = ((), reached.value, attributes(reached.goal.name))
-        data["feasible"] = ((), self.feasible, {"long_name": "whether all demands are met"})
+        data["feasible"] = ((), self.feasible, {"long_name": "whether all constraints are met"})
         if self.built:
-            words = {"units": "1", "long_name": "part of the designs built that meets all demands"}
+            words = {
+                "units": "1",
+                "long_name": "part of the designs built that meets all constraints",
+            }
             data["yield"] = ((), self.built.met / self.built.of, words)
             data["yield_low"] = ((), self.built.low, {"units": "1"})
             data["yield_high"] = ((), self.built.high, {"units": "1"})
         for name, values in (
-            ("value", [d.value for d in self.demands]),
-            ("excess", [d.excess for d in self.demands]),
-            ("relaxed", [d.relaxed for d in self.demands]),
+            ("value", [d.value for d in self.constraints]),
+            ("excess", [d.excess for d in self.constraints]),
+            ("relaxed", [d.relaxed for d in self.constraints]),
         ):
             data[f"limit_{name}"] = ("limit", np.array(values, np.float64))
         if self.front:
@@ -281,11 +283,11 @@ class Design(lazy.NotebookHtml):
             for dim, key, along in zip(reversed(dims), drawn.keys, drawn.along, strict=True):
                 data[dim] = (dim, along, {**KEYS[key].attributes, "key": key})
         coords = {
-            "limit": [d.demand.text() for d in self.demands],
-            "limit_unit": ("limit", [NUMBERS[d.demand.name].unit for d in self.demands]),
+            "limit": [d.constraint.text() for d in self.constraints],
+            "limit_unit": ("limit", [NUMBERS[d.constraint.name].unit for d in self.constraints]),
         }
         attrs = {
-            "title": f"Design of {self.wish.plan.name or 'a device'}",
+            "title": f"Design of {self.problem.plan.name or 'a device'}",
             "status": self.status.name,
             "seed": self.seed,
             "parts": ", ".join(f"{name} {part}" for name, part in self.parts.items()),
@@ -307,19 +309,19 @@ def designed_file(found: Design, target: Path) -> str:
     """
     head = [
         "Designed by pindrive.",
-        f"Wish: {found.wish.plan.path.name}, {found.wish.plan.name}; seed {found.seed}.",
+        f"Problem: {found.problem.plan.path.name}, {found.problem.plan.name}; seed {found.seed}.",
     ]
     if not found.feasible:
-        head.append(f"No design meets the demands; {found.closest}.")
+        head.append(f"No design meets the constraints; {found.closest}.")
     head += [
         f"{reached.goal.text()}: {shown(reached.goal.name, reached.value)}"
         for reached in found.goals
     ]
     head += [f"part {name}: {part}" for name, part in found.parts.items()]
     head += [
-        f"{demanded.demand.text()}: {label(demanded.demand.name)} is "
-        f"{shown(demanded.demand.name, demanded.value)} at worst"
-        for demanded in found.demands
+        f"{required.constraint.text()}: {label(required.constraint.name)} is "
+        f"{shown(required.constraint.name, required.value)} at worst"
+        for required in found.constraints
     ]
-    comments = {key: ["chosen by the design"] for v in found.wish.variables for key in v.axes}
+    comments = {key: ["chosen by the design"] for v in found.problem.variables for key in v.axes}
     return device_text(found.device, {}, target, [*head, *found.warnings], comments)

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pindrive.lazy import qmc
-from pindrive.optimisation.problem import Problem
+from pindrive.optimisation.design_space import DesignSpace
 from pindrive.optimisation.search import Population, gained, non_dominated, search
 
 Array = NDArray[np.float64]
@@ -36,7 +36,7 @@ PROGRESS: Final = 1e-3
 
 
 def search_scans(
-    problem: Problem,
+    space: DesignSpace,
     *,
     size: int,
     rounds: int,
@@ -44,10 +44,10 @@ def search_scans(
     rng: np.random.Generator,
     progress: Callable[[], None] = lambda: None,
 ) -> Population:
-    """Improve what has been scanned of a problem.
+    """Improve what has been scanned of a space.
 
     Args:
-        problem: with some devices scanned at all of its conditions.
+        space: with some devices scanned at all of its conditions.
         size: members that come back.
         rounds: of scans, at most.
         patience: rounds without progress after which it ends.
@@ -57,10 +57,10 @@ def search_scans(
     Returns:
         The best of all that is known, the best first.
     """
-    now, still = problem.known().best(size), 0
+    now, still = space.known().best(size), 0
     for _ in range(rounds):
-        problem.numbers(_candidates(problem, rng))
-        before, now = now, problem.known().best(size)
+        space.numbers(_candidates(space, rng))
+        before, now = now, space.known().best(size)
         progress()
         still = 0 if gained(before, now, PROGRESS) else still + 1
         if still >= patience:
@@ -68,9 +68,9 @@ def search_scans(
     return now
 
 
-def _candidates(problem: Problem, rng: np.random.Generator) -> Array:
+def _candidates(space: DesignSpace, rng: np.random.Generator) -> Array:
     """What is scanned next, a point for each of `TRUSTS`."""
-    known = problem.known().points
+    known = space.known().points
     keys = known.shape[1]
     anywhere = qmc.Sobol(keys, rng=rng).random(SPREAD)
     taken = known
@@ -78,27 +78,29 @@ def _candidates(problem: Problem, rng: np.random.Generator) -> Array:
     for trust in TRUSTS:
 
         def function(points: Array, trust: float = trust) -> tuple[Array, Array]:
-            return problem.expected(points, trust)
+            return space.expected(points, trust)
 
-        points = problem.snapped(np.concatenate([known, anywhere]))
+        points = space.snapped(np.concatenate([known, anywhere]))
         first = Population(points, *function(points)).best(min(MEMBERS, len(points)))
         result = search(function, first, generations=GENERATIONS, patience=PATIENCE, rng=rng)
-        point = _newest(problem, result, taken, rng)
+        point = _newest(space, result, taken, rng)
         found.append(point)
         taken = np.vstack([taken, point])
     return np.array(found)
 
 
-def _newest(problem: Problem, result: Population, taken: Array, rng: np.random.Generator) -> Array:
+def _newest(
+    space: DesignSpace, result: Population, taken: Array, rng: np.random.Generator
+) -> Array:
     """Of the best points the one that is farthest from all that are taken."""
     meets = result.violation <= 0.0
     best = result[meets] if meets.any() else result[np.zeros(1, np.int64)]
-    points = problem.snapped(best.points[non_dominated(best.goals)])
+    points = space.snapped(best.points[non_dominated(best.goals)])
     for _ in range(20):
         far = np.abs(points[:, None] - taken[None]).max(axis=2).min(axis=1)
         if far.max() > CLOSE:
             return np.asarray(points[far.argmax()])
         beside = points[:1] + BESIDE * rng.normal(size=points[:1].shape)
-        points = problem.snapped(np.clip(beside, 0.0, 1.0))
-    anywhere: Array = problem.snapped(rng.random((1, taken.shape[1])))[0]
+        points = space.snapped(np.clip(beside, 0.0, 1.0))
+    anywhere: Array = space.snapped(rng.random((1, taken.shape[1])))[0]
     return anywhere

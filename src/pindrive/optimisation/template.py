@@ -1,4 +1,4 @@
-"""How a wish file is written: a device, what may vary, what is demanded, and what is best."""
+"""How a problem file is written: a device, what may vary, what is required, and what is best."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ finger.kinetic = { uniform = ["2 mN", "30 mN"] }
 # spring = "springs.csv"
 
 [conditions]
-# Under which each demand must be met, and each goal counts by its worst.
+# Under which each constraint must be met, and each goal counts by its worst.
 motion.mouse_velocity = { uniform = ["50 mm/s", "150 mm/s"] }
 
 [specification]
-# What is demanded. With yield = ">= 95 %", of so many of those that are built within [tolerances].
+# What is required. With yield = ">= 95 %", of so many of those that are built within [tolerances].
 peak_displacement = ">= 2.1 mm"
 trough_displacement = ">= -1.5 mm"
 
@@ -50,7 +50,7 @@ magnet.hold_force = { uniform = ["0.5 N", "2 N"] }
 control.latency = { uniform = ["2 ms", "10 ms"] }
 
 [specification]
-# What is demanded, at the hand speed of the device.
+# What is required, at the hand speed of the device.
 worst_overshoot = "<= 2 %"
 worst_stroke = ">= 0.5 mm"
 
@@ -60,16 +60,16 @@ maximise = "distinct_speed"
 """
 
 
-def wish_template(*, whole: bool = False) -> str:
-    """A commented wish file that holds its device, as `pindrive init --wish` writes it.
+def problem_template(*, whole: bool = False) -> str:
+    """A commented problem file that holds its device, as `pindrive init --problem` writes it.
 
     Args:
-        whole: a wish for a whole device, which is scanned; for single releases otherwise.
+        whole: a design problem for a whole device, which is scanned; for single releases otherwise.
     """
     head = [
-        "# A wish for pindrive: the device that meets the demands and reaches the goals best.",
+        "# A design problem for pindrive: variables, constraints and goals of a device.",
         "",
-        'name = "my wish"',
+        'name = "my design"',
         "",
         *device_lines(whole=whole),
     ]

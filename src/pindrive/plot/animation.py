@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
     from pindrive.device.hand import HandPath
     from pindrive.device.scanning import Progress, Scan
-    from pindrive.evaluation.perception import Judgement
+    from pindrive.evaluation.perception import Evaluation
 
 
 FRAMES: Final = 25
@@ -97,7 +97,7 @@ def frame_times(path: HandPath, slow: float) -> NDArray[np.float64]:
 
 
 def animate(
-    judgement: Judgement,
+    evaluation: Evaluation,
     target: Path,
     kind: str,
     *,
@@ -107,7 +107,7 @@ def animate(
     """Write a scan as a moving picture.
 
     Args:
-        judgement: of the scan.
+        evaluation: of the scan.
         target: where to.
         kind: "gif" or "mp4".
         slow: how many times slower than the hand; greater than 0.
@@ -116,9 +116,9 @@ def animate(
     Raises:
         ValueError: too many frames, or ffmpeg fails.
     """
-    times = frame_times(judgement.scan.path, slow)
+    times = frame_times(evaluation.scan.path, slow)
     with matplotlib.style.context(STYLE, after_reset=True):
-        stage = _Stage.of(judgement, times, slow)
+        stage = _Stage.of(evaluation, times, slow)
         write = _write_gif if kind == "gif" else _write_mp4
         write(_told(stage, len(times), progress), target)
 
@@ -214,9 +214,9 @@ class _Stage:
         return np.array(self.canvas.buffer_rgba())
 
     @classmethod
-    def of(cls, judgement: Judgement, times: NDArray[np.float64], slow: float) -> _Stage:
+    def of(cls, evaluation: Evaluation, times: NDArray[np.float64], slow: float) -> _Stage:
         """Set it for a scan."""
-        scan = judgement.scan
+        scan = evaluation.scan
         figure = Figure(figsize=(SIZE[0] / DPI, SIZE[1] / DPI), dpi=DPI, layout="constrained")
         canvas: Any = FigureCanvasAgg(figure)
         rows = figure.add_gridspec(2, 2, height_ratios=(2.6, 1.0), width_ratios=(1.6, 1.0))
@@ -226,7 +226,7 @@ class _Stage:
         parts = [
             _page(scan, page, times),
             _finger(scan, finger, times),
-            _strip(judgement, strip, times, slow),
+            _strip(evaluation, strip, times, slow),
         ]
         moving = [
             (axes, artist)
@@ -340,10 +340,10 @@ def _finger(scan: Scan, axes: Axes, times: NDArray[np.float64]) -> Part:
     return [pins, arrows], move
 
 
-def _strip(judgement: Judgement, axes: Axes, times: NDArray[np.float64], slow: float) -> Part:
+def _strip(evaluation: Evaluation, axes: Axes, times: NDArray[np.float64], slow: float) -> Part:
     """One pin's deflection over the whole scan, and now."""
-    scan = judgement.scan
-    pin = scan.pins[moment(judgement).pin]
+    scan = evaluation.scan
+    pin = scan.pins[moment(evaluation).pin]
     t = np.linspace(pin.begin, pin.end, 4000)
     axes.axhline(0.0, color="0.8", lw=0.5)
     for on, off in pin.energised:

@@ -43,7 +43,7 @@ def plot_design(found: Design) -> Figure:
     """Draw a design among others.
 
     The front, with two or three goals, the first goal along the abscissa; then the first goal over
-    pairs of variables, grey where a demand is not met.
+    pairs of variables, grey where a constraint is not met.
 
     Args:
         found: what `optimise` found.
@@ -62,7 +62,7 @@ def plot_design(found: Design) -> Figure:
         for axes in panels[count:]:
             axes.set_axis_off()
         figure.legend(handles=_key(found), loc="outside lower left", ncols=4 if columns > 2 else 2)
-        name = found.wish.plan.name or found.device.name
+        name = found.problem.plan.name or found.device.name
         title = plain(f"{name}: {_outcome(found)}", _WIDTH if columns > 2 else 2 * _WIDTH // 3)
         figure.head(title + ("\nmaps: all else as the design has it" if found.maps else ""))
     return figure
@@ -127,8 +127,10 @@ def _draw_map(figure: Figure, axes: Axes, found: Design, drawn: Map) -> None:
     bar = figure.colorbar(mesh, ax=axes, pad=0.02, fraction=0.06, aspect=20)
     bar.set_label(axis_label(goal))
     bar.outline.set_linewidth(0.0)
-    if found.demands:
-        axes.set_title(f"demands met in {100.0 * drawn.share:.3g} %", fontsize=SMALL, loc="left")
+    if found.constraints:
+        axes.set_title(
+            f"constraints met in {100.0 * drawn.share:.3g} %", fontsize=SMALL, loc="left"
+        )
 
 
 def _key(found: Design) -> list[Artist]:
@@ -139,6 +141,6 @@ def _key(found: Design) -> list[Artist]:
         look: dict[str, Any] = {"marker": "o", "ls": "none", "ms": 4.0, "color": PALETTE["curve"]}
         handles.append(Line2D([], [], **look, label="no other is better in all goals"))
     if any(not drawn.met.all() for drawn in found.maps):
-        handles.append(Patch(color=_UNMET, label="a demand is not met"))
-        handles.append(Line2D([], [], color="black", lw=0.7, label="border of the demands"))
+        handles.append(Patch(color=_UNMET, label="a constraint is not met"))
+        handles.append(Line2D([], [], color="black", lw=0.7, label="border of the constraints"))
     return handles

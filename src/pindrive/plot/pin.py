@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from pindrive.device.touch import spans
-from pindrive.device.trajectory import Course
+from pindrive.device.trajectory import Trajectory
 from pindrive.evaluation.line_crossings import printed
 from pindrive.plot.style import (
     GREY,
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
     from pindrive.device.scanning import PinScan
     from pindrive.evaluation.line_crossings import Line
-    from pindrive.evaluation.perception import Judgement
+    from pindrive.evaluation.perception import Evaluation
 
 LINES: Final = 4
 """Shown in the history, at most."""
@@ -57,25 +57,25 @@ class Moment:
     """s, on the path's clock."""
 
 
-def moment(judgement: Judgement, pin: int | None = None) -> Moment:
+def moment(evaluation: Evaluation, pin: int | None = None) -> Moment:
     """A part worth a closer look: a few lines that passed under one pin.
 
     Args:
-        judgement: of the scan.
+        evaluation: of the scan.
         pin: its number; None: of the pins that were shown most lines the nearest to the middle.
 
     Raises:
         ValueError: there is no such pin.
     """
-    scan = judgement.scan
+    scan = evaluation.scan
     count = len(scan.pins)
     if pin is not None:
         pin = check_whole(pin, "pin", 0, count - 1)
     else:
-        shown = np.bincount([line.pin for line in judgement.shown], minlength=count)
+        shown = np.bincount([line.pin for line in evaluation.shown], minlength=count)
         middle = np.hypot(*np.array(scan.device.array.places).T)
         pin = int(np.lexsort((middle, -shown))[0])
-    lines = [line for line in judgement.lines if line.pin == pin]
+    lines = [line for line in evaluation.lines if line.pin == pin]
     begin, end = scan.path.begin, scan.path.end
     if not lines:
         return Moment(pin, begin, min(end, begin + LONGEST))
@@ -101,13 +101,13 @@ def _closest(lines: list[Line]) -> tuple[int, int]:
 
 
 def draw_history(
-    judgement: Judgement, chosen: Moment, figure: Figure, place: SubplotSpec, where: str
+    evaluation: Evaluation, chosen: Moment, figure: Figure, place: SubplotSpec, where: str
 ) -> list[Artist]:
     """Draw it: four panels over one time axis; what their signs mean, for a legend.
 
     `where` says where on the page that is.
     """
-    scan = judgement.scan
+    scan = evaluation.scan
     pin = scan.pins[chosen.pin]
     rows = place.subgridspec(4, 1, height_ratios=(0.8, 0.8, 2.0, 1.2))
     seen = figure.add_subplot(rows[0], label="seen")
@@ -117,14 +117,14 @@ def draw_history(
     t = _times(pin, chosen)
     ms = MS * (t - chosen.begin)
     for axes in (seen, pull, x, force):
-        _draw_bands(judgement, chosen, axes)
+        _draw_bands(evaluation, chosen, axes)
         axes.tick_params(labelbottom=axes is force)
-    _draw_seen(judgement, chosen, seen, t, ms)
+    _draw_seen(evaluation, chosen, seen, t, ms)
     pull.plot(ms, scan.device.magnet.pull(pin.current.flux(t)), color=PALETTE["curve"], gid="pull")
     pull.set_ylabel("pull (N)")
     pull.set_ylim(0.0, 1.15 * scan.device.magnet.hold_force)
     signs = _draw_motion(pin, chosen, x, t, ms)
-    _draw_force(judgement, pin, force, t, ms)
+    _draw_force(evaluation, pin, force, t, ms)
     lifted = _draw_lifted(pin, chosen, force)
     number = f" {chosen.pin}" if len(scan.pins) > 1 else ""
     seen.set_title(
@@ -143,14 +143,14 @@ def draw_history(
 def _times(pin: PinScan, chosen: Moment) -> NDArray[np.float64]:
     """Close together, with every event and turning point, and just before each."""
     even = np.linspace(chosen.begin, chosen.end, 3000)
-    knots = pin.begin + Course(pin.motion).knots
+    knots = pin.begin + Trajectory(pin.motion).knots
     knots = knots[(knots > chosen.begin) & (knots < chosen.end)]
     return np.union1d(even, np.concatenate([knots, np.nextafter(knots, -np.inf)]))
 
 
-def _draw_bands(judgement: Judgement, chosen: Moment, axes: Axes) -> None:
+def _draw_bands(evaluation: Evaluation, chosen: Moment, axes: Axes) -> None:
     """Where a printed line is under the pin's spot."""
-    scan = judgement.scan
+    scan = evaluation.scan
     spans = [
         (MS * (line.begin - chosen.begin), MS * (line.end - line.begin))
         for line in printed(scan.device, scan.path, scan.scene)[chosen.pin]
@@ -160,13 +160,13 @@ def _draw_bands(judgement: Judgement, chosen: Moment, axes: Axes) -> None:
 
 
 def _draw_seen(
-    judgement: Judgement,
+    evaluation: Evaluation,
     chosen: Moment,
     axes: Axes,
     t: NDArray[np.float64],
     ms: NDArray[np.float64],
 ) -> None:
-    scan = judgement.scan
+    scan = evaluation.scan
     pin, control = scan.pins[chosen.pin], scan.device.control
     spots = scan.spot(chosen.pin, t)
     axes.axhline(control.threshold, color=GREY, lw=0.6, ls=":", gid="threshold")
@@ -187,7 +187,7 @@ def _draw_motion(
     axes.axhline(0.0, color="0.8", lw=0.5, zorder=0.2, gid="zero")
     carried = [
         (MS * (pin.begin + begin - chosen.begin), MS * (end - begin))
-        for begin, end in Course(pin.motion).held()
+        for begin, end in Trajectory(pin.motion).held()
         if pin.begin + end > chosen.begin and pin.begin + begin < chosen.end
     ]
     shade(axes, carried, "carried", color=PALETTE["carried"], alpha=0.6, zorder=0.1)
@@ -206,13 +206,13 @@ def _draw_motion(
 
 
 def _draw_force(
-    judgement: Judgement,
+    evaluation: Evaluation,
     pin: PinScan,
     axes: Axes,
     t: NDArray[np.float64],
     ms: NDArray[np.float64],
 ) -> None:
-    finger = judgement.scan.device.drive.finger
+    finger = evaluation.scan.device.drive.finger
     axes.axhline(0.0, color="0.8", lw=0.5, zorder=0.2, gid="zero")
     axes.plot(ms, 1e3 * pin.skin_force(t), color=PALETTE["curve"], lw=1.1, gid="force")
     axes.margins(y=0.15)

@@ -90,9 +90,9 @@ def plot_page_speeds(found: PageSpeeds, device: str = "") -> Figure:
         axes = figure.add_subplot(label="page")
         speed = np.array([*found.counts]) * MM
         counts = [*found.counts.values()]
-        lines = np.array([max(1, each["judged.lines"]) for each in counts])
-        shown = np.array([each["judged.shown"] for each in counts])
-        calm = shown - np.array([each["judged.unsettled"] for each in counts])
+        lines = np.array([max(1, each["lines.crossed"]) for each in counts])
+        shown = np.array([each["lines.shown"] for each in counts])
+        calm = shown - np.array([each["lines.unsettled"] for each in counts])
         axes.axvspan(*_STUDIED, **HANDS, zorder=0, gid="hands")
         handles: list[Artist] = []
         for part, marker, said in ((shown, "o", "shown"), (calm, "s", "shown and settled")):

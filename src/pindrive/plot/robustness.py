@@ -56,14 +56,14 @@ def _draw(axes: Axes, found: Robustness, number: str) -> None:
     scale = QUANTITY[number].display_scale
     values = scale * found.values[number]
     values = values[np.isfinite(values)]
-    demands = [demand for demand, _ in found.shares if demand.name == number]
-    cases = [case for case in found.worst if case.demand.name == number]
+    constraints = [constraint for constraint, _ in found.shares if constraint.name == number]
+    cases = [case for case in found.worst if case.constraint.name == number]
     marks = [scale * found.own[number], *(scale * case.value for case in cases)]
     marks = [mark for mark in marks if np.isfinite(mark)]
     ends = [*marks, *(values[[values.argmin(), values.argmax()]] if values.size else [])]
     low, high = (min(ends), max(ends)) if ends else (0.0, 1.0)
     reach = _REACH * (high - low) or abs(high) or 1.0
-    limits = [scale * demand.limit for demand in demands]
+    limits = [scale * constraint.limit for constraint in constraints]
     near = [limit for limit in limits if low - reach <= limit <= high + reach]
     low, high = min([low, *near]), max([high, *near])
     room = 0.04 * (high - low or abs(high) or 1.0)
@@ -77,10 +77,10 @@ def _draw(axes: Axes, found: Robustness, number: str) -> None:
             axes.axvline(place, color="black", lw=0.7, ls=style, gid="quantile")
     top = axes.get_ylim()[1]
     notes = []
-    for demand, limit in zip(demands, limits, strict=True):
+    for constraint, limit in zip(constraints, limits, strict=True):
         if limit not in near:
-            notes.append(f"limit {demand.shown()}: off the axis")
-        ends_at = max(limit, high + room) if demand.at_most else min(limit, low - room)
+            notes.append(f"limit {constraint.shown()}: off the axis")
+        ends_at = max(limit, high + room) if constraint.at_most else min(limit, low - room)
         tint: dict[str, Any] = {"color": PALETTE["stick"], "alpha": 0.13, "lw": 0.0}
         axes.axvspan(limit, ends_at, **tint, zorder=0, gid="beyond")
         axes.axvline(limit, color=PALETTE["stick"], lw=1.0, gid="limit")
@@ -121,7 +121,7 @@ def _outcome(found: Robustness) -> str:
     """The yield in words."""
     if not found.all_met:
         return "how the designs scatter"
-    said = " and ".join(demand.text().replace("_", " ") for demand, _ in found.shares)
+    said = " and ".join(constraint.text().replace("_", " ") for constraint, _ in found.shares)
     share = found.all_met
     return (
         f"{share.text} of the designs have {said} "

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from pindrive.device.scanning import Scan
-    from pindrive.evaluation.perception import Judgement
+    from pindrive.evaluation.perception import Evaluation
 
 WIDTH: Final = 180.0
 """Of the page that it is drawn for, mm."""
@@ -67,11 +67,11 @@ SEEN: Final = 0.01
 DOTTED: Final[dict[str, Any]] = {"fc": "none", "ec": "0.35", "hatch": "....", "lw": 0.0}
 
 
-def plot_scan(judgement: Judgement, pin: int | None = None) -> Figure:
+def plot_scan(evaluation: Evaluation, pin: int | None = None) -> Figure:
     """Draw a scan: the page and the way over it, the tactile image, and one pin's history.
 
     Args:
-        judgement: of the scan.
+        evaluation: of the scan.
         pin: whose history, its number; None: one that was shown many lines, near the middle.
 
     Returns:
@@ -80,10 +80,10 @@ def plot_scan(judgement: Judgement, pin: int | None = None) -> Figure:
     Raises:
         ValueError: there is no such pin.
     """
-    scan = judgement.scan
+    scan = evaluation.scan
     left, right, top, bottom = view(scan)
     wide = right - left > WIDE * (bottom - top)
-    chosen = moment(judgement, pin)
+    chosen = moment(evaluation, pin)
     with matplotlib.style.context(STYLE, after_reset=True):
         scale = (WIDTH - 32.0) / (1 if wide else 2) / (right - left)
         scale = min(scale, TALLEST / (bottom - top))
@@ -116,34 +116,34 @@ def plot_scan(judgement: Judgement, pin: int | None = None) -> Figure:
             felt.tick_params(labelleft=False)
         handles = [
             *_key(scan, [felt]),
-            *draw_history(judgement, chosen, figure, rows[3], _where(scan, chosen)),
+            *draw_history(evaluation, chosen, figure, rows[3], _where(scan, chosen)),
         ]
         lines = -(-len(handles) // KEY_COLUMNS)
         figure.set_figheight((pages + 106.0 + 2.0 * APART + 4.0 * lines) / 25.4)
         _draw_key(figure, handles, KEY_COLUMNS)
-        figure.head(_title(judgement))
+        figure.head(_title(evaluation))
     return figure
 
 
-def plot_reliefs(judgements: Sequence[Judgement]) -> Figure:
+def plot_reliefs(evaluations: Sequence[Evaluation]) -> Figure:
     """Draw what several scans of one scene showed, side by side in one scale, beside the print.
 
     Args:
-        judgements: of the scans, at least one; what is drawn of the page is as the first has it.
+        evaluations: of the scans, at least one; what is drawn of the page is as the first has it.
 
     Returns:
         A figure that belongs to nobody else.
     """
-    first = judgements[0].scan
+    first = evaluations[0].scan
     left, right, top, bottom = view(first, around=True)
     with matplotlib.style.context(STYLE, after_reset=True):
-        side = (WIDTH - 26.0) / (len(judgements) + 1)
+        side = (WIDTH - 26.0) / (len(evaluations) + 1)
         height = min(side * (bottom - top) / (right - left), TALLEST) + 33.0
         figure = new_figure(WIDTH, height)
         figure.set_layout_engine(
             "constrained", h_pad=0.03, w_pad=0.03, rect=(0.012, 0.0, 0.98, 1.0)
         )
-        count = len(judgements) + 1
+        count = len(evaluations) + 1
         cells = figure.add_gridspec(1, count + 1, width_ratios=(*[1.0] * count, 2.0 * BAR))
         panels = [figure.add_subplot(cells[0, 0], label="print")]
         panels += [
@@ -151,10 +151,10 @@ def plot_reliefs(judgements: Sequence[Judgement]) -> Figure:
             for i in range(1, count)
         ]
         _draw_print(first, panels[0], None)
-        size = max(_size(paint(judgement.scan)) for judgement in judgements)
-        for axes, judgement in zip(panels[1:], judgements, strict=True):
-            image = _draw_felt(judgement.scan, axes, None, size)
-            axes.set_title(_relief_title(judgement), loc="left", fontsize=SMALL, pad=3.0)
+        size = max(_size(paint(evaluation.scan)) for evaluation in evaluations)
+        for axes, evaluation in zip(panels[1:], evaluations, strict=True):
+            image = _draw_felt(evaluation.scan, axes, None, size)
+            axes.set_title(_relief_title(evaluation), loc="left", fontsize=SMALL, pad=3.0)
             axes.set_ylabel("")
             axes.tick_params(labelleft=False)
         panels[0].set_xlim(MM * left, MM * right)
@@ -187,14 +187,14 @@ def _draw_key(figure: Figure, handles: list[Artist], columns: int) -> None:
     )
 
 
-def _relief_title(judgement: Judgement) -> str:
+def _relief_title(evaluation: Evaluation) -> str:
     """How fast the hand was, and what came of it."""
-    counts = judgement.counts
-    speed = f"{MM * judgement.scan.path.peak_speed:.4g} mm/s"
-    lag, smear = (judgement.spread(f"line.{name}")[1] for name in ("lag_off", "smear"))
-    found = f"{counts['judged.shown']} of {counted(counts['judged.lines'], 'line')} shown"
+    counts = evaluation.counts
+    speed = f"{MM * evaluation.scan.path.peak_speed:.4g} mm/s"
+    lag, smear = (evaluation.spread(f"line.{name}")[1] for name in ("lag_off", "smear"))
+    found = f"{counts['lines.shown']} of {counted(counts['lines.crossed'], 'line')} shown"
     smeared = "not settled" if isnan(smear) else f"smear {MM * smear:.2g} mm"
-    scan = judgement.scan
+    scan = evaluation.scan
     overlap = "".join(
         f"\n{name} overlap by {-MM * gap.size:.2g} mm"
         for name, gap in (("pins", scan.smallest_gap), ("magnets", scan.smallest_magnet_gap))
@@ -346,10 +346,10 @@ def _frame(axes: Axes, title: str) -> None:
         spine.set_color("0.6")
 
 
-def _title(judgement: Judgement) -> str:
+def _title(evaluation: Evaluation) -> str:
     """What was scanned, and how well it was shown."""
-    scan, counts = judgement.scan, judgement.counts
-    lines, shown = counts["judged.lines"], counts["judged.shown"]
+    scan, counts = evaluation.scan, evaluation.counts
+    lines, shown = counts["lines.crossed"], counts["lines.shown"]
     pins = f"{len(scan.pins)} pin{'s' if len(scan.pins) > 1 else ''}"
     speed = QUANTITIES["hand_speed"].text(scan.path.peak_speed)
     what = f"{pins}, {scan.path.end - scan.path.begin:.3g} s, hand at up to {speed}"
@@ -357,12 +357,12 @@ def _title(judgement: Judgement) -> str:
         return "\n".join([f"{what}; no line passed whole under a pin.", *gap_words(scan)])
     medians = []
     for name in ("lag_on", "lag_off", "smear", "overshoot", "contrast"):
-        value, unit = judgement.spread(f"line.{name}")[1], QUANTITIES[f"line.{name}"].unit
+        value, unit = evaluation.spread(f"line.{name}")[1], QUANTITIES[f"line.{name}"].unit
         if not isnan(value):
             label = LABELS.get(name, name)
             medians.append(
                 f"{label} {value:.2f}" if unit == "1" else f"{label} {MM * value:.2g} mm"
             )
-    found = f"{shown} of {counted(lines, 'line')} shown, {counts['judged.echoes']} false"
+    found = f"{shown} of {counted(lines, 'line')} shown, {counts['lines.false']} false"
     told = [*([f"Medians: {', '.join(medians)}."] if medians else []), *gap_words(scan)]
     return "\n".join([f"{what}: {found}.", *told])

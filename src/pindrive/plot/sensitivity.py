@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from pindrive.motion.sensitivity import Sensitivity
     from pindrive.study.local_sensitivity import Elasticities
-    from pindrive.study.sensitivity import Influence
+    from pindrive.study.sensitivity import SobolIndices
 
 
 _SIGNED: Final = LinearSegmentedColormap.from_list(
@@ -44,7 +44,7 @@ _FEW: Final = 8
 MINUS: Final = "\N{MINUS SIGN}"
 
 
-def plot_influence(found: Influence, name: str) -> Figure:
+def plot_sobol_indices(found: SobolIndices, name: str) -> Figure:
     """Draw elasticities as a table of colours, and Sobol' indices as bars beside them.
 
     Args:
@@ -85,7 +85,7 @@ def plot_influence(found: Influence, name: str) -> Figure:
     return figure
 
 
-def _known(found: Influence, number: str) -> bool:
+def _known(found: SobolIndices, number: str) -> bool:
     near = found.near.table[number] if found.near else {}
     return any(not np.isnan(x) for x in near.values())
 
@@ -115,7 +115,7 @@ def draw_elasticities(axes: Axes, near: Elasticities, numbers: Sequence[str]) ->
     axes.set_xlabel(signs, fontsize=SMALL, color=GREY)
 
 
-def _draw_over(axes: Axes, found: Influence, numbers: Sequence[str]) -> None:
+def _draw_over(axes: Axes, found: SobolIndices, numbers: Sequence[str]) -> None:
     """Sobol' indices: a bar for each key, as long as its column where it explains everything."""
     for column in range(len(found.keys)):
         left = column - 0.5 * _BAR

@@ -15,7 +15,7 @@ from pindrive._core import settling_band
 from pindrive.plot.contours import MAP, draw_contours, jump_key, line_colours
 from pindrive.plot.style import CURVES, GREY, PALETTE, SMALL, STYLE, Figure, new_figure, plain
 from pindrive.study.outputs import MEASURED, is_stepped
-from pindrive.study.slices import QUANTITY, View, axis_label, value, values, words
+from pindrive.study.slices import QUANTITY, Slice, axis_label, value, values, words
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -41,7 +41,7 @@ _FLAT: Final = 0.25
 
 
 def plot_study(
-    view: View, numbers: Sequence[str], x: str, y: str, held: Mapping[str, float]
+    view: Slice, numbers: Sequence[str], x: str, y: str, held: Mapping[str, float]
 ) -> Figure:
     """Draw numbers of a study: a row for each, slices side by side.
 
@@ -83,7 +83,7 @@ def plot_study(
 
 def plot_sweep(path: Path) -> Figure:
     """Draw the file of a complete sweep: its usual number over the first two keys that vary."""
-    with View(path) as view:
+    with Slice(path) as view:
         return plot_study(view, view.usual_numbers(), *view.axes(None, None, {}), {})
 
 
@@ -93,7 +93,7 @@ def _common(panels: Sequence[Panel]) -> dict[str, float]:
     return {k: v for k, v in first.items() if all(panel.at[k] == v for panel in panels)}
 
 
-def _title(figure: Figure, view: View, fixed: Mapping[str, float], width: int) -> None:
+def _title(figure: Figure, view: Slice, fixed: Mapping[str, float], width: int) -> None:
     shown = {
         name: number
         for name, number in fixed.items()
@@ -104,7 +104,7 @@ def _title(figure: Figure, view: View, fixed: Mapping[str, float], width: int) -
     figure.head("\n".join(filter(None, said)))
 
 
-def _scale(axes: Axes, view: View, x: str, y: str) -> None:
+def _scale(axes: Axes, view: Slice, x: str, y: str) -> None:
     for key, axis in ((x, "x"), (y, "y")):
         if key and view.data[key].attrs.get("spacing") == "log":
             getattr(axes, f"set_{axis}scale")("log")

@@ -73,7 +73,7 @@ MOMENTS: Final = Budget(
 TURNS: Final = Budget(
     "the turning points of the pins",
     1_500_000,
-    "2 in each period of the fastest vibration; 16 bytes and some µs each to judge",
+    "2 in each period of the fastest vibration; 16 bytes and some µs each to evaluate",
 )
 PAGE_LOOKS: Final = Budget(
     "the looks for lines on the page",
@@ -81,7 +81,7 @@ PAGE_LOOKS: Final = Budget(
     "4 in each pixel of every pin's way, 0.3 µs each; nothing of them is kept",
 )
 LINES: Final = Budget(
-    "the lines that pass under all pins", 100_000, "to judge one takes a millisecond"
+    "the lines that pass under all pins", 100_000, "to evaluate one takes a millisecond"
 )
 PIXELS: Final = Budget(
     "the pixels of the page",
@@ -127,7 +127,7 @@ CHUNKS: Final = Budget(
 AXIS: Final = Budget(
     "the values of an axis", CHUNK.most * CHUNKS.most, "no study could have more points"
 )
-DEMANDS: Final = Budget(
+CONSTRAINTS: Final = Budget(
     "the limits of the specification", 50, "for each the worst case is searched for"
 )
 DESIGN_VALUES: Final = Budget(

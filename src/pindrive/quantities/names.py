@@ -131,7 +131,7 @@ class Names:
 def label(variable: str) -> str:
     """A number as a table names it: "settling_time", "shown"; an ending's, a median in full."""
     head, _, tail = variable.partition("_")
-    return tail if head in ("transient", "judged", "design") else variable
+    return tail if head in ("transient", "lines", "design") else variable
 
 
 def number_names(variables: Mapping[str, Quantity | None]) -> Names:

@@ -1,4 +1,4 @@
-"""The table of quantities, last part: what is found of motions and scans, and judged by what."""
+"""Table of quantities, last part: results of motions and scans, and criteria of the evaluation."""
 
 from __future__ import annotations
 
@@ -221,7 +221,7 @@ HANDS: Final = "hand speed in finger studies, 20-100 mm/s (arXiv 2505.11162)"
 FELT: Final = between(1e-9, 1.0)
 
 CRITERIA: Final = optional(
-    "judge",
+    "criteria",
     Quantity(
         "felt",
         "d_1",
@@ -269,7 +269,7 @@ CRITERIA: Final = optional(
         "assumed",
     ),
 )
-"""The limits that a scan is judged by: a table of a device file."""
+"""Criteria of the evaluation of a scan: a table of a device file."""
 
 _FOUND: Final = (
     ("latency_on", "t_l,on", "s", "from a line's first edge until the pin goes along"),
@@ -312,15 +312,15 @@ def last_part(quantity: Quantity) -> str:
     return quantity.name.partition(".")[2]
 
 
-JUDGED: Final[tuple[Quantity, ...]] = tuple(
-    Quantity(f"judged.{name}", symbol, "", meaning)
+LINE_COUNTS: Final[tuple[Quantity, ...]] = tuple(
+    Quantity(f"lines.{name}", symbol, "", meaning)
     for name, symbol, meaning in (
-        ("lines", "n", "printed lines that passed whole under a pin, counted under each pin"),
+        ("crossed", "n", "printed lines that passed whole under a pin, counted under each pin"),
         ("shown", "n_1", "shown: the pin went along, and the skin moved enough to be felt"),
         ("unseen", "n_2", "missed: the control block did not see them"),
         ("merged", "n_3", "missed: the magnet or the pin was not yet back from the line before"),
         ("faint", "n_4", "missed: the pin did not go along, or the skin did not move enough"),
-        ("echoes", "n_5", "false: swings forward that no magnet made, felt like a line"),
+        ("false", "n_5", "false: swings forward that no magnet made, felt like a line"),
         ("unsettled", "n_6", "shown, yet not settled before the next line or the hand's stop"),
         ("direction", "n_7", "shown, and the skin moved enough to tell its direction"),
         ("sure", "n_8", "shown, and it moved enough to tell it right in 95 % of cases"),
@@ -363,7 +363,7 @@ SPEED: Final[tuple[Quantity, ...]] = (
 )
 """What the largest hand speed is found for, and what it is."""
 
-JUDGE: Final = LINE + JUDGED + SPEED
+JUDGE: Final = LINE + LINE_COUNTS + SPEED
 """What is found of scans and speeds."""
 
 DESIGNED: Final[tuple[Quantity, ...]] = (
@@ -374,7 +374,7 @@ DESIGNED: Final[tuple[Quantity, ...]] = (
         "design.yield",
         "Y",
         "1",
-        "part of the devices built within the tolerances that meets all demands",
+        "part of the devices built within the tolerances that meets all constraints",
         between(0.0, 1.0),
     ),
     Quantity(

@@ -4,7 +4,7 @@ A study file, or Python, names a device and says which of its keys change and ho
 `sweep` compute every point; sensitivities and yields follow from the same study.
 
 - `Elasticities`: by how many per cent each number changes when a key grows by one per cent
-- `Influence`: which key matters to which number, by Sobol' indices
+- `SobolIndices`: which key matters to which number, by Sobol' indices
 - `load_study`: a study from its file
 - `Robustness`: what `robustness` found
 - `Study`: a device, and what is varied of it

@@ -4,7 +4,7 @@ from .local_sensitivity import Elasticities as Elasticities
 from .robustness import Robustness as Robustness
 from .runner import Sweep as Sweep
 from .runner import sweep as sweep
-from .sensitivity import Influence as Influence
+from .sensitivity import SobolIndices as SobolIndices
 from .study import Study as Study
 from .study import load_study as load_study
 

@@ -33,7 +33,7 @@ from pindrive.study.distributions import (
     as_distribution,
     with_links,
 )
-from pindrive.study.outputs import Demand
+from pindrive.study.outputs import Constraint
 
 Columns = dict[str, NDArray[np.float64]]
 
@@ -206,7 +206,7 @@ class Plan:
     chunk: int = CHUNK
     tolerances: Mapping[str, Distribution]
     tolerance_links: Mapping[str, Linked]
-    demands: tuple[Demand, ...] = ()
+    constraints: tuple[Constraint, ...] = ()
     page: StudyPage | None = None
     """What is scanned at every point; None: every point is a release."""
 

@@ -23,8 +23,8 @@ from pindrive.quantities.results import (
     DESIGNED,
     ENDING,
     ENERGY,
-    JUDGED,
     LINE,
+    LINE_COUNTS,
     TRANSIENT,
     last_part,
 )
@@ -46,8 +46,8 @@ def _worst(quantity: Quantity) -> Quantity:
 
 
 SCANNED: Final[tuple[Quantity, ...]] = (
-    Quantity("judged.shown_part", "r_1", "1", "part of the lines that was shown"),
-    *JUDGED,
+    Quantity("lines.shown_part", "r_1", "1", "part of the lines that was shown"),
+    *LINE_COUNTS,
     *(_median(quantity) for quantity in LINE),
     *(_worst(quantity) for quantity in LINE),
     Quantity("hand.duration", "T_h", "s", "how long the hand moves and pauses"),
@@ -56,7 +56,7 @@ SCANNED: Final[tuple[Quantity, ...]] = (
 )
 """Medians and worst values are of the lines that have the number: one that does not settle has no
 smear, and is counted as unsettled."""
-COUNTED: Final = tuple(quantity.name for quantity in JUDGED)
+COUNTED: Final = tuple(quantity.name for quantity in LINE_COUNTS)
 
 
 def variables(quantities: Iterable[Quantity]) -> dict[str, Quantity]:
@@ -98,7 +98,7 @@ def is_measured(name: str) -> bool:
 
 def is_stepped(name: str) -> bool:
     """Whether a variable is a count, or a part of one: it has no values between."""
-    return name in _COUNTS or name == "judged_shown_part"
+    return name in _COUNTS or name == "lines_shown_part"
 
 
 def usual_outputs(among: Sequence[str], *, rigid: bool, coil: bool) -> tuple[str, ...]:
@@ -165,7 +165,7 @@ _AT_MOST: Final = ("<=", "≤")
 
 @concise
 @dataclass(frozen=True, slots=True)
-class Demand:
+class Constraint:
     """A limit on one number: at most, or at least, `limit` (SI)."""
 
     name: str
@@ -191,38 +191,38 @@ class Demand:
         return f"{quantity.display_scale * self.limit:.6g} {quantity.display_unit}".rstrip()
 
 
-def as_attribute(demanded: Sequence[Demand]) -> str:
-    """Demands as an attribute of a study's file holds them; empty where there are none."""
-    return json.dumps([[d.name, d.at_most, d.limit] for d in demanded]) if demanded else ""
+def as_attribute(required: Sequence[Constraint]) -> str:
+    """Constraints as an attribute of a study's file holds them; empty where there are none."""
+    return json.dumps([[d.name, d.at_most, d.limit] for d in required]) if required else ""
 
 
-def from_attribute(text: str) -> tuple[Demand, ...]:
-    """The demands that `as_attribute` wrote."""
-    return tuple(Demand(*parts) for parts in json.loads(text or "[]"))
+def from_attribute(text: str) -> tuple[Constraint, ...]:
+    """The constraints that `as_attribute` wrote."""
+    return tuple(Constraint(*parts) for parts in json.loads(text or "[]"))
 
 
-def demands(
+def constraints(
     table: Any, file: str, problems: list[str], among: tuple[str, ...] = OUTPUTS
-) -> tuple[Demand, ...]:
-    """The demands of a [specification] on outputs; what is wrong is appended to `problems`."""
+) -> tuple[Constraint, ...]:
+    """The constraints of a [specification] on outputs; what is wrong is appended to `problems`."""
     found = []
     for given, conditions in table.items():
         try:
             name = known_output(given, f"{file}: specification", among)
             if not is_measured(name):
-                raise ValueError(f"{file}: specification.{given} is no number to be demanded")
+                raise ValueError(f"{file}: specification.{given} is no number to be required")
         except ValueError as error:
             problems.append(str(error))
             continue
         for condition in conditions if isinstance(conditions, list) else [conditions]:
             try:
-                found.append(_demand(name, condition, f"specification.{given}", file))
+                found.append(_constraint(name, condition, f"specification.{given}", file))
             except ValueError as error:
                 problems.append(str(error))
     return tuple(found)
 
 
-def _demand(name: str, condition: object, where: str, file: str) -> Demand:
+def _constraint(name: str, condition: object, where: str, file: str) -> Constraint:
     quantity = NUMBERS[name]
     example = f'"<= 60 {quantity.display_unit}"'.replace(' "', '"')
     match = _CONDITION.fullmatch(condition) if isinstance(condition, str) else None
@@ -237,7 +237,7 @@ def _demand(name: str, condition: object, where: str, file: str) -> Demand:
     if not abs(limit) <= LARGEST:
         required = f"a finite limit, of at most {LARGEST:g} in size"
         raise ValueError(refusal(where, required, quoted(condition), file))
-    return Demand(name, match[1] in _AT_MOST, limit)
+    return Constraint(name, match[1] in _AT_MOST, limit)
 
 
 # ---- how many meet a specification ---------------------------------------------------------------
@@ -262,7 +262,7 @@ class Share:
     low: float
     high: float
     without: int = 0
-    """How many have no number to meet the demand with, such as one that never settles."""
+    """How many have no number to meet the constraint with, such as one that never settles."""
 
     @property
     def text(self) -> str:
@@ -285,13 +285,13 @@ def points_that_meet(path: Path) -> tuple[int, int] | None:
     None where it holds none.
     """
     with h5py.File(path, "r") as file:
-        demanded = from_attribute(str(file.attrs.get("specification", "")))
-        if not demanded:
+        required = from_attribute(str(file.attrs.get("specification", "")))
+        if not required:
             return None
         met = of = 0
         for part in _slices(file["status"].shape):
             exist = file["status"][part] == 0
-            here = exist & _all_met(file, demanded, part)
+            here = exist & _all_met(file, required, part)
             met, of = met + int(here.sum()), of + int(exist.sum())
     return met, of
 
@@ -304,12 +304,12 @@ def _slices(shape: tuple[int, ...]) -> Iterator[slice]:
         yield slice(begin, begin + rows)
 
 
-def _all_met(file: Any, demanded: tuple[Demand, ...], part: slice) -> NDArray[np.bool_]:
+def _all_met(file: Any, required: tuple[Constraint, ...], part: slice) -> NDArray[np.bool_]:
     each = []
-    for demand in demanded:
-        values = file[demand.name][part].astype(np.float64)
-        none = missing(demand.name)
+    for constraint in required:
+        values = file[constraint.name][part].astype(np.float64)
+        none = missing(constraint.name)
         each.append(
-            demand.met(values if none is None else np.where(values == none, np.nan, values))
+            constraint.met(values if none is None else np.where(values == none, np.nan, values))
         )
     return np.asarray(np.logical_and.reduce(each))

@@ -21,13 +21,13 @@ from pindrive.quantities.value import concise, equal_by_value
 from pindrive.study.design import Plan, Ranges, ranges_of
 from pindrive.study.distributions import Sample
 from pindrive.study.evaluate import RefusedPoints, evaluate, evaluate_all, exist, follow
-from pindrive.study.outputs import NUMBERS, Demand, Share, attributes
+from pindrive.study.outputs import NUMBERS, Constraint, Share, attributes
 
 USUAL_COUNT: Final = 100_000
 USUAL_COUNT_OF_SCANS: Final = 1000
 """A scan takes some ten thousand times as long as a release."""
 WATCHED: Final = ("transient_settling_time", "transient_swing")
-WATCHED_OF_SCANS: Final = ("judged_shown_part", "median_lag_on")
+WATCHED_OF_SCANS: Final = ("lines_shown_part", "median_lag_on")
 _POPULATION: Final = 15
 """Members for each key of the search for the worst case."""
 _GENERATIONS: Final = 60
@@ -39,9 +39,9 @@ _GENERATIONS_OF_SCANS: Final = 10
 @concise
 @dataclass(frozen=True, slots=True)
 class WorstCase:
-    """Where a demand is missed by the most, or met by the least."""
+    """Where a constraint is missed by the most, or met by the least."""
 
-    demand: Demand
+    constraint: Constraint
     keys: Mapping[str, float]
     """SI."""
     value: float
@@ -68,8 +68,8 @@ class Robustness(lazy.NotebookHtml):
     """Draws that cannot exist, as their values contradict each other: no designs."""
     stopped: int
     """Designs whose motion was stopped early, after too many events."""
-    shares: tuple[tuple[Demand, Share], ...]
-    """For each demand, how many designs meet it; without a number a design does not."""
+    shares: tuple[tuple[Constraint, Share], ...]
+    """For each constraint, how many designs meet it; without a number a design does not."""
     all_met: Share | None
     """How many meet all of them: the yield."""
     worst: tuple[WorstCase, ...]
@@ -112,7 +112,7 @@ class Robustness(lazy.NotebookHtml):
             ("worst", [case.value for case in self.worst]),
         ):
             data[name] = ("limit", np.array(parts, np.float64))
-        coords = {"limit": [demand.text() for demand, _ in self.shares]}
+        coords = {"limit": [constraint.text() for constraint, _ in self.shares]}
         found: dict[str, Any] = {"status": self.status.name, "draws": self.draws, "seed": self.seed}
         if self.all_met:
             found["yield"] = self.all_met.met / self.all_met.of
@@ -172,7 +172,7 @@ def robustness(
     if count is None:
         count = USUAL_COUNT_OF_SCANS if plan.page else USUAL_COUNT
     usual = WATCHED_OF_SCANS if plan.page else WATCHED
-    watched = tuple(dict.fromkeys((*usual, *(demand.name for demand in plan.demands))))
+    watched = tuple(dict.fromkeys((*usual, *(constraint.name for constraint in plan.constraints))))
     each = len(ranges.scatter) + len(watched) + 1
     of = f"{count} draws of {len(ranges.scatter)} keys and {len(watched) + 1} results"
     budgets.DESIGN_VALUES.check(count * each, of)
@@ -191,7 +191,7 @@ def robustness(
         raise ValueError(f"{plan.path}: of {words} none can exist: {reason}")
     points, table = points[:, designs], {name: values[designs] for name, values in table.items()}
 
-    met = {demand: demand.met(table[demand.name]) for demand in plan.demands}
+    met = {constraint: constraint.met(table[constraint.name]) for constraint in plan.constraints}
     every = np.logical_and.reduce([*met.values()]) if met else None
     size = points.shape[1]
     return Robustness(
@@ -207,7 +207,7 @@ def robustness(
             for d, m in met.items()
         ),
         None if every is None else Share.of_designs(int(every.sum()), size),
-        tuple(_worst(plan, ranges, d, points, table, numbers, seed) for d in plan.demands),
+        tuple(_worst(plan, ranges, d, points, table, numbers, seed) for d in plan.constraints),
         plan.name,
     )
 
@@ -222,7 +222,7 @@ def _own(plan: Plan, watched: tuple[str, ...]) -> dict[str, float]:
 def _worst(
     plan: Plan,
     ranges: Ranges,
-    demand: Demand,
+    constraint: Constraint,
     points: NDArray[np.float64],
     table: Mapping[str, NDArray[np.float64]],
     numbers: Callable[[NDArray[np.float64]], Mapping[str, NDArray[np.float64]]],
@@ -237,15 +237,15 @@ def _worst(
 
     def badness(excess: NDArray[np.float64], status: NDArray[np.float64]) -> NDArray[np.float64]:
         """Lower is worse; what never happens is worst, what cannot exist does not count."""
-        far = 1e6 * abs(demand.limit or 1.0)
+        far = 1e6 * abs(constraint.limit or 1.0)
         return np.where(exist(status), -np.minimum(excess, far), far)
 
     def at(parts: NDArray[np.float64]) -> NDArray[np.float64]:
         found = numbers(low + width * parts.reshape(len(spans), -1))
-        return badness(demand.excess(found[demand.name]), found["status"])
+        return badness(constraint.excess(found[constraint.name]), found["status"])
 
     inside = ((points >= spans[:, :1]) & (points <= spans[:, 1:])).all(axis=0)
-    first = badness(demand.excess(table[demand.name]), table["status"])
+    first = badness(constraint.excess(table[constraint.name]), table["status"])
     order = np.argsort(np.where(inside, first, np.inf), kind="stable")
     population = _POPULATION_OF_SCANS if plan.page else _POPULATION
     members = points[:, order[: max(5, population * len(spans))]]
@@ -266,9 +266,11 @@ def _worst(
     )
     best = members[:, :1] if first[order[0]] <= search.fun else low + width * search.x[:, None]
     columns = {key: values.item() for key, values in ranges.columns(plan, best).items()}
-    sampled = float(table[demand.name][order[0]])
+    sampled = float(table[constraint.name][order[0]])
     if plan.page:
-        return WorstCase(demand, columns, float(numbers(best)[demand.name][0]), sampled, None)
+        return WorstCase(
+            constraint, columns, float(numbers(best)[constraint.name][0]), sampled, None
+        )
     motion = follow(plan, columns)
-    value = motion.numbers()[NUMBERS[demand.name].name]
-    return WorstCase(demand, columns, value, sampled, motion)
+    value = motion.numbers()[NUMBERS[constraint.name].name]
+    return WorstCase(constraint, columns, value, sampled, motion)

@@ -168,7 +168,7 @@ USUAL_ROWS_OF_SCANS: Final = 256
 
 @equal_by_value
 @dataclass(frozen=True, slots=True, repr=False)
-class Influence(lazy.NotebookHtml):
+class SobolIndices(lazy.NotebookHtml):
     """Which key matters to which number: Sobol' indices, and elasticities beside them if wanted."""
 
     keys: tuple[str, ...]
@@ -196,9 +196,9 @@ class Influence(lazy.NotebookHtml):
 
     def plot(self) -> mpl_figure.Figure:
         """The indices as bars, numbers down and keys across, as a figure that a notebook shows."""
-        from pindrive.plot.sensitivity import plot_influence
+        from pindrive.plot.sensitivity import plot_sobol_indices
 
-        return plot_influence(self, self.name)
+        return plot_sobol_indices(self, self.name)
 
     def to_dataset(self) -> xr.Dataset:
         """The indices with their 95 % confidence intervals.
@@ -237,7 +237,7 @@ def sobol(
     threads: int | None = None,
     progress: Progress = lambda done, total: None,
     near: bool = False,
-) -> Influence:
+) -> SobolIndices:
     """Which key matters over the ranges of a study: Sobol' indices of first order and total.
 
     The estimators are those of Saltelli et al. 2010, 10.1016/j.cpc.2009.09.018, the intervals a
@@ -300,4 +300,4 @@ def sobol(
     over = sobol_indices(function, [*ranges.scatter.values()], rows, seed)
     points = rows * (len(keys) + 2)
     local = elasticities(plan, keys, ranges.links) if near and not plan.page else None
-    return Influence(keys, ranges, local, over, rows, points, refused, plan.name)
+    return SobolIndices(keys, ranges, local, over, rows, points, refused, plan.name)

@@ -45,15 +45,15 @@ _WORDS: Final = {
     "latency": "latency of the control block",
     "fall_time": "fall time of the pull",
     "rise_time": "rise time of the pull",
-    "judged_shown_part": "part of the lines shown",
-    "judged_shown": "lines shown",
-    "judged_unseen": "lines unseen",
-    "judged_merged": "lines merged",
-    "judged_faint": "lines too faint",
-    "judged_echoes": "false lines",
-    "judged_unsettled": "lines not settled",
-    "judged_direction": "lines with a direction",
-    "judged_sure": "lines with a sure direction",
+    "lines_shown_part": "part of the lines shown",
+    "lines_shown": "lines shown",
+    "lines_unseen": "lines unseen",
+    "lines_merged": "lines merged",
+    "lines_faint": "lines too faint",
+    "lines_false": "false lines",
+    "lines_unsettled": "lines not settled",
+    "lines_direction": "lines with a direction",
+    "lines_sure": "lines with a sure direction",
     "median_skin": "median skin motion",
     "worst_skin": "least skin motion",
     "hand_duration": "time of the hand's way",
@@ -147,7 +147,7 @@ class Panel:
     """The part of the draws that meets the specification, 0 or 1 of a point; None: without one."""
 
 
-class View:
+class Slice:
     """An open study: which keys it varies, and slices of it."""
 
     def __init__(self, path: str | PathLike[str]) -> None:
@@ -189,7 +189,7 @@ class View:
             if c.size == 1 and str(name) in QUANTITY
         }
 
-        self.demands = from_attribute(str(self.data.attrs.get("specification", "")))
+        self.constraints = from_attribute(str(self.data.attrs.get("specification", "")))
         """The specification of the study."""
         links = json.loads(self.data.attrs["identity"])["links"]
         self.links = [
@@ -197,7 +197,7 @@ class View:
             for key, link in links.items()
         ]
 
-    def __enter__(self) -> View:
+    def __enter__(self) -> Slice:
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -321,7 +321,7 @@ class View:
 
     def _panel(self, number: str, x: str, y: str, choice: Mapping[str, int]) -> Panel:
         names = {number, "transient_settling_time", "transient_settled", "status"}
-        names |= {demand.name for demand in self.demands}
+        names |= {constraint.name for constraint in self.constraints}
         part = self.data[sorted(name for name in names if name in self.data)].isel(choice)
         keys = [key for key in (y, x) if key]
         dims = list(dict.fromkeys(self.dimension(key) for key in keys))
@@ -331,7 +331,7 @@ class View:
         values, refused = part[number].values, part["status"].values != 0
         unsettled = _unsettled(part) & ~refused
         absent = np.isnan(values) & ~unsettled & ~refused
-        met = [demand.met(part[demand.name].values) for demand in self.demands]
+        met = [constraint.met(part[constraint.name].values) for constraint in self.constraints]
         flags = np.array([unsettled, absent, refused, np.logical_and.reduce([*met, ~refused])])
         at = {
             key: float(self.data[key][choice[self.dimension(key)]])
@@ -347,7 +347,7 @@ class View:
         else:
             found = ([c.values for c in along], values, *flags[:3], None, None, flags[3] * 1.0)
         panel = Panel(number, keys, at, *found)
-        return panel if self.demands else replace(panel, met=None)
+        return panel if self.constraints else replace(panel, met=None)
 
 
 def _unsettled(part: xr.Dataset) -> NDArray[np.bool_]:

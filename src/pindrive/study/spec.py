@@ -39,8 +39,8 @@ from pindrive.study.distributions import (
 from pindrive.study.outputs import (
     OUTPUTS,
     SCAN_OUTPUTS,
-    Demand,
-    demands,
+    Constraint,
+    constraints,
     known_output,
     usual_outputs,
 )
@@ -96,7 +96,7 @@ def plan_of(
 
     Args:
         tables: what TOML makes of them; `page` is a `Page`, or None of a page that was refused, and
-            `conditions` are further axes, those of a wish (see `pindrive.optimisation`).
+            `conditions` are further axes, those of a design problem (see `pindrive.optimisation`).
         device: what varies.
         path: the file that a sweep must not write to.
         place: where the tables were written, for messages.
@@ -113,7 +113,7 @@ def plan_of(
         page = _gathered(tables["page"], place, problems)
         device = device if device.whole else device.with_whole()
     reader = _Reader(place, tables, device, problems, si)
-    demanded = demands(reader.table("specification"), place, problems, reader.among)
+    required = constraints(reader.table("specification"), place, problems, reader.among)
     plan = Plan(
         path=path,
         name=reader.text("name") or device.name,
@@ -121,11 +121,11 @@ def plan_of(
         device=device,
         dimensions=reader.dimensions,
         links=reader.links,
-        outputs=_with_demanded(reader.outputs(), demanded),
+        outputs=_with_required(reader.outputs(), required),
         chunk=reader.chunk(),
         tolerances=reader.tolerances,
         tolerance_links=reader.tolerance_links,
-        demands=demanded,
+        constraints=required,
         page=page,
     )
     problems += _too_much(plan)
@@ -135,9 +135,11 @@ def plan_of(
     return plan
 
 
-def _with_demanded(outputs: Sequence[str], demanded: Iterable[Demand]) -> tuple[str, ...]:
+def _with_required(outputs: Sequence[str], required: Iterable[Constraint]) -> tuple[str, ...]:
     """The variables to keep, and those that the specification limits."""
-    added = dict.fromkeys(demand.name for demand in demanded if demand.name not in outputs)
+    added = dict.fromkeys(
+        constraint.name for constraint in required if constraint.name not in outputs
+    )
     kept = [name for name in outputs if name != "status"]
     return (*kept, *added, "status") if added else tuple(outputs)
 
@@ -147,7 +149,7 @@ def _too_much(plan: Plan) -> Iterator[str]:
     of = f"{plan.size} points, {plan.chunk} in each; a larger chunk makes fewer"
     for budget, count, words in (
         (budgets.CHUNKS, plan.chunks, of),
-        (budgets.DEMANDS, len(plan.demands), ""),
+        (budgets.CONSTRAINTS, len(plan.constraints), ""),
     ):
         try:
             budget.check(count, words, where=str(plan.path))

@@ -151,7 +151,7 @@ def lay_out(path: Path, plan: Plan) -> None:
                 "study": plan.text,
                 **({"page": plan.page.page.words} if plan.page else {}),
                 **({"links": links} if links else {}),
-                "specification": outputs.as_attribute(plan.demands),
+                "specification": outputs.as_attribute(plan.constraints),
                 "identity": identity(plan),
             }
         )

@@ -88,7 +88,7 @@ def study_template(*, whole: bool = False) -> str:
 
 
 def device_lines(*, whole: bool) -> list[str]:
-    """The device as tables of a study or a wish, one pin where it is a whole one."""
+    """The device as tables of a study or a design problem, one pin where it is a whole one."""
     lines = [
         '# The device. A line base = "device.toml" in place of these tables takes it from a file;',
         f"# `pindrive init device.toml{' --device' if whole else ''}` writes one with all keys.",
@@ -99,7 +99,7 @@ def device_lines(*, whole: bool) -> list[str]:
     for key, quantity in (NUMBERS if whole else DRIVE).items():
         if whole:
             quantity = replace(quantity, **READER.get(key, {}))
-        kept = key not in _ONE_PIN and not key.startswith("judge.")
+        kept = key not in _ONE_PIN and not key.startswith("criteria.")
         if quantity.default is None or not kept:
             continue
         if key.partition(".")[0] != table:

@@ -1,4 +1,4 @@
-"""Wishes: what they say, and each mistake in a line with the fix."""
+"""Design problems: what they say, and each mistake in a line with the fix."""
 
 from __future__ import annotations
 
@@ -9,34 +9,34 @@ import numpy as np
 import pytest
 
 import pindrive as pd
+from design_problems import EXAMPLES, MOUSE, PAPER
 from pindrive.files.device import ConfigError
-from pindrive.optimisation import read_wish
-from pindrive.optimisation.wish import wish_of
-from wishes import EXAMPLES, MOUSE, PAPER
+from pindrive.optimisation import read_problem
+from pindrive.optimisation.problem import problem_of
 
 READER = EXAMPLES / "tactile-reader.toml"
 
 
-def test_a_wish_says_what_may_vary_and_under_which_conditions() -> None:
-    wish = read_wish(EXAMPLES / "catalogue-wish.toml")
-    names = {variable.name: variable for variable in wish.variables}
+def test_a_design_problem_says_what_may_vary_and_under_which_conditions() -> None:
+    problem = read_problem(EXAMPLES / "catalogue-problem.toml")
+    names = {variable.name: variable for variable in problem.variables}
     assert {*names} == {"drive.mass", "finger.kinetic", "spring", "damper"}
     assert names["spring"].choices == 11
-    assert [condition.name for condition in wish.conditions] == ["motion.mouse_velocity"]
-    assert wish.least_yield == 0.95
-    assert [goal.name for goal in wish.goals] == ["transient_settling_time", "design_price"]
-    assert {path.name for path in wish.inputs} == {
-        *("catalogue-wish.toml", "tactile-mouse.toml", "springs.csv", "dampers.csv")
+    assert [condition.name for condition in problem.conditions] == ["motion.mouse_velocity"]
+    assert problem.least_yield == 0.95
+    assert [goal.name for goal in problem.goals] == ["transient_settling_time", "design_price"]
+    assert {path.name for path in problem.inputs} == {
+        *("catalogue-problem.toml", "tactile-mouse.toml", "springs.csv", "dampers.csv")
     }
-    assert repr(wish) == (
-        "<Wish minimise settling_time and minimise price "
+    assert repr(problem) == (
+        "<DesignProblem minimise settling_time and minimise price "
         "over drive.mass, finger.kinetic, spring, damper>"
     )
 
 
 def test_numbers_from_python_are_si() -> None:
-    wish = wish_of(pd.load_device(MOUSE), PAPER)
-    stiffness = next(v for v in wish.variables if v.name == "drive.stiffness")
+    problem = problem_of(pd.load_device(MOUSE), PAPER)
+    stiffness = next(v for v in problem.variables if v.name == "drive.stiffness")
     assert stiffness.axes["drive.stiffness"].span == (30.0, 600.0)
 
 
@@ -45,77 +45,78 @@ def changed(**tables: Any) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize(
-    ("wish", "said"),
+    ("problem", "said"),
     [
         (
             changed(specification={"settling_time": ["<= 50 ms", ">= 60 ms"]}),
-            "wish: specification.settling_time: nothing is both ≤ 50 ms and ≥ 60 ms; correct one "
-            "of them",
+            "problem: specification.settling_time: nothing is both ≤ 50 ms and ≥ 60 ms; "
+            "correct one of them",
         ),
         (
             changed(goals={"minimise": "swing", "maximise": ["swing"]}),
-            "wish: goals: swing is named twice; leave one out",
+            "problem: goals: swing is named twice; leave one out",
         ),
         (
             changed(goals={}),
-            'wish: goals must be one to 3 numbers, like minimise = ["settling_time"], got none',
+            'problem: goals must be one to 3 numbers, like minimise = ["settling_time"], got none',
         ),
         (
             changed(goals={"minimize": "swing"}),
-            "wish: unknown key goals.minimize; there are minimise and maximise",
+            "problem: unknown key goals.minimize; there are minimise and maximise",
         ),
         (
             changed(goals={"minimise": "settling_tim"}),
-            "wish: goals.minimise: unknown number settling_tim; did you mean settling_time?",
+            "problem: goals.minimise: unknown number settling_tim; did you mean settling_time?",
         ),
         (
             changed(conditions={"drive.stiffness": [100.0, 200.0]}),
-            "wish: drive.stiffness is in [axes] and in [conditions]; leave one out",
+            "problem: drive.stiffness is in [axes] and in [conditions]; leave one out",
         ),
         (
             changed(tolerances={"mouse_velocity": {"uniform": [0.05, 0.06]}}),
-            "wish: motion.mouse_velocity is in [tolerances] and in [conditions]; leave one out",
+            "problem: motion.mouse_velocity is in [tolerances] and in [conditions]; leave one out",
         ),
-        (changed(axes={}), "wish: nothing may vary; write what may in [axes] or [catalogues]"),
+        (changed(axes={}), "problem: nothing may vary; write what may in [axes] or [catalogues]"),
         (
             changed(axes={"drive.mass": {"normal": [0.01, 0.001]}}),
-            "wish: axes.drive.mass: a range has two ends; write uniform or loguniform, not normal",
+            "problem: axes.drive.mass: a range has two ends; write uniform or loguniform, "
+            "not normal",
         ),
         (
             changed(goals={"minimise": "price"}),
-            "wish: no part has a price; give a catalogue with a column price in [catalogues]",
+            "problem: no part has a price; give a catalogue with a column price in [catalogues]",
         ),
         (
             changed(goals={"maximise": "distinct_speed"}),
-            "wish: distinct_speed is of lines a pitch apart; write which, "
+            "problem: distinct_speed is of lines a pitch apart; write which, "
             'grating = ["3 mm"] in [page]',
         ),
         (
             changed(specification={"yield": ">= 95 %"}),
-            "wish: specification.yield: is of the other demands; there are none",
+            "problem: specification.yield: is of the other constraints; there are none",
         ),
         (
             changed(specification={"yield": ">= 95 %", "swing": ">= 1 mm"}, tolerances={}),
-            "wish: specification.yield: is within tolerances; write them in [tolerances]",
+            "problem: specification.yield: is within tolerances; write them in [tolerances]",
         ),
         (
             changed(specification={"yield": "<= 95 %"}),
-            'wish: specification.yield: must be one limit like ">= 95 %", got "<= 95 %"',
+            'problem: specification.yield: must be one limit like ">= 95 %", got "<= 95 %"',
         ),
         (
             changed(goals={"maximise": "yield"}),
-            'wish: goals: yield is no goal; demand it, yield = ">= 95 %"',
+            'problem: goals: yield is no goal; constraint it, yield = ">= 95 %"',
         ),
-        (changed(condition={}), "wish: unknown key condition; did you mean conditions?"),
+        (changed(condition={}), "problem: unknown key condition; did you mean conditions?"),
         (
             changed(conditions=[1.0]),
             'conditions must be a mapping, like {"mass": [0.01, 0.02]}, got [1.0]',
         ),
     ],
 )
-def test_what_contradicts_itself_is_refused_in_a_line(wish: dict[str, Any], said: str) -> None:
+def test_what_contradicts_itself_is_refused_in_a_line(problem: dict[str, Any], said: str) -> None:
     with pytest.raises(ValueError) as error:
-        wish_of(pd.load_device(MOUSE), wish)
+        problem_of(pd.load_device(MOUSE), problem)
     assert str(error.value).splitlines()[0] == said
 
 
@@ -127,7 +128,7 @@ CATALOGUES = {
     ),
     "none.csv": (
         None,
-        "wish: catalogues.spring: {file}: cannot be read: No such file or directory",
+        "problem: catalogues.spring: {file}: cannot be read: No such file or directory",
     ),
     "unit.csv": (
         "part,drive.stiffness\nA,100\n",
@@ -161,38 +162,40 @@ def test_a_catalogue_with_a_mistake_is_refused(name: str, tmp_path: Path) -> Non
     if text is not None:
         file.write_text(text)
     axes = {"drive.damping_ratio": PAPER["axes"]["drive.damping_ratio"]}
-    wish = {**PAPER, "axes": axes, "catalogues": {"spring": str(file)}}
+    problem = {**PAPER, "axes": axes, "catalogues": {"spring": str(file)}}
     with pytest.raises(ConfigError) as error:
-        wish_of(pd.load_device(MOUSE), wish)
+        problem_of(pd.load_device(MOUSE), problem)
     assert str(error.value) == said.format(file=file)
 
 
 def test_a_key_of_two_catalogues_is_refused(tmp_path: Path) -> None:
     file = tmp_path / "springs.csv"
     file.write_text("part,drive.stiffness [N/m]\nA,100\n")
-    wish = {**PAPER, "catalogues": {"spring": str(file), "other": str(file)}}
+    problem = {**PAPER, "catalogues": {"spring": str(file), "other": str(file)}}
     with pytest.raises(ConfigError) as error:
-        wish_of(pd.load_device(MOUSE), wish)
+        problem_of(pd.load_device(MOUSE), problem)
     assert error.value.problems == (
-        "wish: drive.stiffness is in the catalogues spring and other; leave one out",
-        "wish: drive.stiffness is in [axes] and in the catalogue other; leave one out",
+        "problem: drive.stiffness is in the catalogues spring and other; leave one out",
+        "problem: drive.stiffness is in [axes] and in the catalogue other; leave one out",
     )
 
 
-def test_a_device_file_is_no_wish() -> None:
-    with pytest.raises(ConfigError, match="is a device file; a wish names its device, base = "):
-        read_wish(MOUSE)
+def test_a_device_file_is_no_problem() -> None:
+    with pytest.raises(
+        ConfigError, match="is a device file; a design problem names its device, base = "
+    ):
+        read_problem(MOUSE)
 
 
 def test_a_catalogue_sets_several_keys_of_a_part(tmp_path: Path) -> None:
     """Rows stay together, in the order of the first key."""
     file = tmp_path / "springs.csv"
     file.write_text("part;drive.stiffness [N/mm];mass [g];price\nstiff;0.2;12;3\nsoft;0.1;11;2\n")
-    wish = wish_of(
+    problem = problem_of(
         pd.load_device(MOUSE),
         {"catalogues": {"spring": str(file)}, "goals": {"minimise": "settling_time"}},
     )
-    (spring,) = wish.variables
+    (spring,) = problem.variables
     assert spring.catalogue is not None and spring.catalogue.parts == ("soft", "stiff")
     assert spring.catalogue.prices == (2.0, 3.0)
     found = {key: values.tolist() for key, values in spring.columns(np.array([0.2, 0.9])).items()}

@@ -1,4 +1,4 @@
-"""Wishes that several tests share, and how much is tried for them."""
+"""Design problems that several tests share, and how much is tried for them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pindrive.optimisation import Effort
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 MOUSE = EXAMPLES / "tactile-mouse.toml"
 SMALL = Effort(1 << 14, 48, 120, 128, 11, 2000)
-"""Enough for the wishes of these tests."""
+"""Enough for the design problems of these tests."""
 PAPER: Mapping[str, Any] = {
     "name": "short transient",
     "axes": {
@@ -31,4 +31,4 @@ PAPER: Mapping[str, Any] = {
     },
     "goals": {"minimise": "settling_time"},
 }
-"""The paper's question: the shortest transitional period at a demanded displacement."""
+"""The paper's question: the shortest transitional period at a required displacement."""
