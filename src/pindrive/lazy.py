@@ -1,4 +1,4 @@
-"""Libraries that take long to load, imported when one of their own names is first used.
+"""Lazy imports of slow libraries, at the first use of a name.
 
 The libraries of the extra "complete" need not be installed: what needs none of them works without.
 """
@@ -92,11 +92,11 @@ COMPLETE: Final = {
     "scipy": "scipy",
     "xarray": "xarray",
 }
-"""What the extra "complete" installs: the name of each distribution by that of its package."""
+"""Distributions of the extra "complete", by the names of their packages."""
 
 
 def missing(error: ModuleNotFoundError) -> str:
-    """How what an import lacks is installed; empty if it is not of the extra "complete"."""
+    """Return the advice to install a missing import; empty outside of the extra "complete"."""
     library = COMPLETE.get((error.name or "").partition(".")[0])
     if library is None:
         return ""

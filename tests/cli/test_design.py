@@ -57,9 +57,7 @@ def test_a_design_is_printed_and_written_or_the_closest_to_it() -> None:
     assert "Yield within the tolerances: " in done.stdout
     assert done.stdout.endswith("".join(f"Wrote {file}\n" for file in files))
     text = Path("design.toml").read_text("utf-8")
-    assert text.startswith(
-        "# Designed by pindrive.\n# Problem: problem.toml, short; seed 1.\n"
-    )
+    assert text.startswith("# Designed by pindrive.\n# Problem: problem.toml, short; seed 1.\n")
     device = load_device("design.toml")
     with xr.open_dataset("design.nc", engine="h5netcdf") as data:
         assert float(data.damping) == device.drive.damping

@@ -81,7 +81,7 @@ def _limits(found: Design) -> Table:
 
 
 def _relaxed(required: ConstraintResult) -> str:
-    """By how much a limit would have to give for the gain."""
+    """Return the limit that would give the gain."""
     if not required.binds:
         return "-"
     constraint = required.constraint

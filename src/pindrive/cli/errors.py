@@ -1,4 +1,4 @@
-"""How a command ends before its end: bad input in a line for each problem, and Ctrl-C."""
+"""Early ends of a command: bad input, a line for each error, and Ctrl-C."""
 
 from __future__ import annotations
 

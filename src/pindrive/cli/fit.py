@@ -1,4 +1,4 @@
-"""The command `pindrive fit`: parameters of a device from recordings of it."""
+"""The command `pindrive fit`: parameters of a device from recordings."""
 
 from __future__ import annotations
 
@@ -116,7 +116,7 @@ def fit(
 
 
 def _free(given: Sequence[str]) -> tuple[list[str], dict[str, tuple[float | str, float | str]]]:
-    """The keys that are free, and the bounds of those that have some."""
+    """Return the free keys, and their bounds as far as given."""
     keys, bounds = [], {}
     for part in (part.strip() for text in given for part in text.split(",")):
         key, equals, ends = (piece.strip() for piece in part.partition("="))
@@ -166,7 +166,7 @@ def _recordings(
 
 
 def _velocity(text: str, device: DeviceFile) -> Any:
-    """A speed, or the profile of a CSV of it or of a recorded hand."""
+    """Return a speed, or the velocity profile of a CSV or of a recorded hand."""
     from pindrive.files.device import load_device
     from pindrive.files.recording import is_file
 

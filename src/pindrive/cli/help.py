@@ -1,4 +1,4 @@
-"""How the program and its commands are listed and explained, and where each command is found."""
+"""Help of the program and its commands, and lazy import of each command."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ class HelpfulCommand(TyperCommand):
         _write_options(self.get_params(ctx), ctx, formatter)
 
     def format_epilog(self, ctx: Any, formatter: Any) -> None:
-        """Write the example as it is, without a break."""
+        """Write the example unchanged, without a line break."""
         if self.epilog:
             with formatter.section("Example"):
                 formatter.write(f"{'':>{formatter.current_indent}}{self.epilog}\n")

@@ -18,7 +18,7 @@ from types import FrameType
 INTERRUPTED = 130
 """Exit status after Ctrl-C."""
 STOPPED = "stopped; nothing was written"
-"""What is said then, unless there is more to say."""
+"""Message after an interrupt, unless there is more to report."""
 
 _UNINTERRUPTIBLE = (
     "importlib._bootstrap",

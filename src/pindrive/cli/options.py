@@ -37,7 +37,7 @@ def count_option(
 
 
 def option(panel: str, help: str, *names: str, metavar: str | None = None) -> Any:
-    """An option in one of the groups of a command's help; a flag where names are given alone."""
+    """Define an option in a group of a command's help; a flag for names alone."""
     return typer.Option(*names, metavar=metavar, help=help, rich_help_panel=panel)
 
 

@@ -49,7 +49,7 @@ Writer = tuple[Kind, Callable[[Result, Path], None]]
 def by_suffix(
     paths: Iterable[Path], writers: Mapping[str, Writer[Result]], option: str = "-o"
 ) -> list[Target[Result]]:
-    """The files at `paths`, each of the kind that the suffix of its name asks for.
+    """Return the files at `paths`, each by the suffix of its name.
 
     Raises:
         ValueError: a suffix asks for none.

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @contextmanager
 def bar(what: str) -> Iterator[Progress | None]:
-    """What to tell how many of how many are done; None where standard error is no terminal."""
+    """Return a function of the counts done and in all; None if standard error is no terminal."""
     if not sys.stderr.isatty():
         yield None
         return
@@ -26,7 +26,7 @@ def bar(what: str) -> Iterator[Progress | None]:
 
 @contextmanager
 def steps(count: int) -> Iterator[Callable[[str], None]]:
-    """What to tell, as each of so many steps begins, what it is."""
+    """Return a function that reports the name of each step as it begins."""
     columns = (
         rich_progress.BarColumn(),
         rich_progress.TextColumn("{task.description}"),

@@ -139,7 +139,7 @@ def scan(
 
 
 def _writers(frequency: float) -> dict[str, Writer[Evaluation]]:
-    """How a scan is written, by the suffix of a file; with so many samples a second in a CSV."""
+    """Return the writers of a scan by the suffix of a file, with the sampling rate of a CSV."""
     from pindrive.device.dataset import write_netcdf
     from pindrive.files import dataset, export
     from pindrive.files.output import SCAN_CSV, SCAN_NETCDF

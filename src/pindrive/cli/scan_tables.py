@@ -1,4 +1,4 @@
-"""Scans, what the finger was shown of them, and how fast a hand may move, in a terminal."""
+"""Terminal output of scans, of their evaluation, and of hand speeds."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 _MM: Final = 1e3
 PINS_HEAD, PINS_TAIL = 24, 8
-"""How many pins of a large array are shown, from its first and from its last."""
+"""Numbers of pins of a large array that are shown, from its first and from its last."""
 HEADINGS: Final = {
     "pin.energised": "magnet\non",
     "pin.switchings": "times\non",
@@ -106,7 +106,7 @@ def _words(scan: Scan) -> list[str]:
 
 
 def evaluation_report(evaluation: Evaluation) -> RenderableType:
-    """What became of the lines, in words, and the numbers of those shown."""
+    """Report the evaluation: counts of the lines in words, and the numbers of the shown lines."""
     lines = whole_lines(verdict_words(evaluation))
     tables = [_counts(evaluation)] if evaluation.lines else []
     if evaluation.shown:
@@ -137,7 +137,7 @@ def _spreads(evaluation: Evaluation) -> Table:
 
 
 def verdict_words(evaluation: Evaluation) -> list[str]:
-    """What became of the lines."""
+    """Return the counts of the lines in words."""
     counts = {name.removeprefix("lines."): n for name, n in evaluation.counts.items()}
     if not counts["crossed"]:
         return [f"No line passed whole under a pin; {_number(counts['false'], 'false line')}."]
@@ -218,7 +218,7 @@ def speed_report(limits: Sequence[SpeedLimit], part: float, criteria: Criteria) 
 
 
 def page_speed_report(found: PageSpeeds) -> RenderableType:
-    """What becomes of the lines of a page at each speed, and up to which speed all is well."""
+    """Report the counts of the lines of a page at each speed, and the largest safe speed."""
     speed = QUANTITIES["hand_speed"]
     headings = (
         ">hand speed",
@@ -252,7 +252,7 @@ def _up_to(limit: float, tried: Band) -> str:
 
 
 def hands_words(limits: Sequence[float]) -> str:
-    """How fast hands move that read, beside the limits (m/s) of a device."""
+    """Return the speeds of reading hands beside the limits (m/s) of a device."""
     speed = QUANTITIES["hand_speed"]
     slow, fast = STUDIED
     among = f"Hands in finger studies move at {speed.digits(slow)} to {speed.text(fast)}"
@@ -274,7 +274,7 @@ def _band(bands: tuple[Band, ...], limit: SpeedLimit) -> str:
 
 
 def beyond(limit: SpeedLimit, part: float, direction: float) -> str:
-    """What goes wrong for a hand that is faster than the limit, in words."""
+    """Return the failure of a hand that is faster than the limit, in words."""
     if not limit.distinct:
         return "at no speed tried are they distinct"
     trial = limit.beyond

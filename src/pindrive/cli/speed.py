@@ -91,7 +91,7 @@ def speed(
 
 
 class _Speeds(Protocol):
-    """What both kinds of speeds can do."""
+    """Common interface of both kinds of speeds."""
 
     def plot(self, device: str = "") -> Figure: ...
     def to_dataset(self) -> xr.Dataset: ...

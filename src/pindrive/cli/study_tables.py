@@ -77,7 +77,7 @@ def sweep_report(plan: Plan, done: Sweep) -> list[str]:
 
 
 def compliance_words(path: Path) -> list[str]:
-    """How many points of a study's file meet its specification; no line where it has none."""
+    """Return the number of points of a study's file that meet its specification; "" without one."""
     counts = points_that_meet(path)
     if counts is None or not counts[1]:
         return []
@@ -86,7 +86,7 @@ def compliance_words(path: Path) -> list[str]:
 
 
 def _why_without(plan: Plan, done: Sweep, status: str, number: int, first: int) -> str:
-    """How many points have a status, and why the first of them has."""
+    """Return the number of points with a status, and the reason of the first one."""
     columns = plan.columns(first, first + 1)
     at = {key: float(values.ravel()[0]) for key, values in columns.items()}
     reason = why(plan, at)
@@ -95,7 +95,7 @@ def _why_without(plan: Plan, done: Sweep, status: str, number: int, first: int) 
 
 
 def _statuses(done: Sweep) -> list[tuple[str, int, int]]:
-    """Each status but ok, at how many points it is, and the first of them; most first."""
+    """Return each status but ok, with its count and its first point, the most frequent first."""
     found: dict[int, tuple[int, int]] = {}
     with h5py.File(done.path, "r") as file:
         status = file["status"]
@@ -186,7 +186,7 @@ def _index(found: SobolIndices, order: str, name: str, i: int) -> str:
 
 
 def _notes(found: SobolIndices) -> list[str]:
-    """What the tables leave out, and from how much they come."""
+    """Return the notes on omitted values and on the sample sizes."""
     design = f"{counted(found.points, 'point')} (Sobol' design of {counted(found.rows, 'row')})"
     lines = [
         f"{design}; ± half of the 95 % bootstrap interval; · below 0.005.",
@@ -217,7 +217,7 @@ def _notes(found: SobolIndices) -> list[str]:
 
 
 def _refused(found: Sequence[RefusedPoints], of: int, what: str) -> list[str]:
-    """How many cannot exist and are left out, and why."""
+    """Return the number of designs that cannot exist and are left out, with the reasons."""
     if not found:
         return []
     number = sum(refusal.count for refusal in found)
@@ -317,7 +317,7 @@ def _draws(plan: Plan, found: Robustness) -> list[str]:
 
 
 def _set_besides(plan: Plan, case: WorstCase) -> Iterator[tuple[str, str]]:
-    """What the study sets of its device and the case leaves, as the command line takes it."""
+    """Return the settings of the study beside the case, as the command line takes them."""
     for setting in plan.device.settings:
         (key,) = NAMES.matches(setting.key)
         if key not in case.keys:

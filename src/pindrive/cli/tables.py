@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 WIDTH = 100
 """Columns where the output is no terminal."""
 HEAD, TAIL = 14, 6
-"""How many phases of a long motion are shown, from its start and from its end."""
+"""Numbers of phases of a long motion that are shown, from its start and from its end."""
 TRUSTED = 1e-8
 """Largest relative residual that a million events may leave; numbers that overflow leave more."""
 
@@ -59,12 +59,12 @@ def show(report: RenderableType) -> None:
 
 
 def whole_lines(lines: Iterable[str]) -> Iterator[Text]:
-    """Lines that the terminal may wrap, so that what is copied of them is whole."""
+    """Print lines that the terminal may wrap, so that copies stay whole."""
     return (Text(line, no_wrap=True, overflow="ignore") for line in lines)
 
 
 def device_report(device: DeviceFile) -> RenderableType:
-    """What a device file describes, and what follows from it."""
+    """Report a device file and the quantities derived from it."""
     drive = device.drive
     table = new_table("Device", "key", "symbol", ">value", "unit", "meaning")
     for key, value in device.values().items():
@@ -170,7 +170,7 @@ def _phases(motion: Motion) -> Table:
 
 
 def _numbers(motion: Motion) -> Table:
-    """The transient's numbers; those of an absent contact left out."""
+    """Return the transient's numbers, without an absent contact."""
     title = f"Transient, from the release to {duration(motion.transient.end_time)}"
     table = new_table(title, "symbol", ">value", "unit", "meaning")
     values = motion.numbers()
@@ -252,7 +252,7 @@ def _add_rows(table: Table, name: str, rows: Rows, key: str) -> None:
 
 
 def ending(motion: Motion) -> str:
-    """How the motion ends, in a sentence."""
+    """Return the ending of the motion in a sentence."""
     end, place = motion.ending, _POSITION.text(motion.ending.position)
     if end.kind == "resting":
         return f"At rest at x = {place} since {duration(motion.transient.rest_time)}."
@@ -279,14 +279,14 @@ def ending(motion: Motion) -> str:
 
 
 def trust(motion: Motion) -> str:
-    """How well the motion keeps the laws, checked without the solver."""
+    """Return the largest residual of the laws, checked without the solver."""
     worst = motion.certificate().worst
     doubt = "" if worst <= TRUSTED else " Do not trust this motion."
     return f"Laws checked without the solver: largest relative residual {worst:.1e}.{doubt}"
 
 
 def path_words(path: HandPath, axis: float) -> str:
-    """How long the hand moves, how fast, and how far off the drive axis (rad)."""
+    """Return duration and speed of the hand, and its largest angle to the drive axis (rad)."""
     largest, _ = path.angles(axis)
     speed = QUANTITIES["hand_speed"].text(path.peak_speed)
     return (
@@ -296,7 +296,7 @@ def path_words(path: HandPath, axis: float) -> str:
 
 
 def device_words(device: Device) -> list[str]:
-    """What follows from a device's numbers."""
+    """Return the quantities derived from a device's numbers."""
     length, force = QUANTITIES["displacement"], QUANTITIES["hold_force"]
     drag = f" Off, the plate drags it {length.text(device.drag())}." if device.drag() else ""
     if device.reach:
@@ -323,7 +323,7 @@ def device_words(device: Device) -> list[str]:
 
 
 def closing_words(magnet: Electromagnet) -> list[str]:
-    """When the gap under the poles closes and opens; nothing where it stays closed."""
+    """Return the closing and opening times of the gap; nothing if it stays closed."""
     if magnet.coil is None or magnet.coil.lift is None:
         return []
     closes, opens = (
@@ -341,7 +341,7 @@ def closing_words(magnet: Electromagnet) -> list[str]:
 
 
 def touch_words(touch: float | Profile | None) -> list[str]:
-    """How the finger presses over a scan, where that is given."""
+    """Return the touch force over a scan, if given."""
     force = QUANTITIES["touch"]
     if touch is None:
         return []
@@ -353,7 +353,7 @@ def touch_words(touch: float | Profile | None) -> list[str]:
 
 
 def meeting_words(device: Device, speed: float) -> list[str]:
-    """Whether pins and magnets can meet, or pins their slots' ends, by how far they go at most.
+    """Return the clearances of pins, magnets and slots at the largest displacement.
 
     Args:
         device: the device.

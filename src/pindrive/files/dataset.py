@@ -22,7 +22,7 @@ DATASET_JSON: Final = replace(JSON, library="xarray")
 def writers(
     title: str, columns: Sequence[str]
 ) -> dict[str, tuple[Kind, Callable[[xr.Dataset, Path], None]]]:
-    """How a dataset is written, by the suffix of a file.
+    """Writers of a dataset by the suffix of the file.
 
     Args:
         title: what the files hold.
@@ -36,14 +36,14 @@ def writers(
 
 
 def write_netcdf(dataset: xr.Dataset, path: Path, title: str) -> None:
-    """Write all of it; made in memory first, so that a full disk is refused as such."""
+    """Write the dataset; made in memory first, so that a full disk raises an error."""
     file = BytesIO()
     dataset.assign_attrs(_head(title)).to_netcdf(file, engine="h5netcdf")
     path.write_bytes(file.getvalue())
 
 
 def write_json(dataset: xr.Dataset, path: Path, title: str) -> None:
-    """Write all of it; null where a number does not exist, "Infinity" for an infinite one."""
+    """Write the dataset; null for a missing number, "Infinity" for an infinite one."""
     found = dataset.to_dict()
     variables = found["coords"] | found["data_vars"]
     document = {

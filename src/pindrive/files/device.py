@@ -61,7 +61,7 @@ class Setting(NamedTuple):
     value: object
     """As TOML has it."""
     place: str
-    """Where that is written, for messages."""
+    """Place of the file for messages."""
 
 
 class ConfigError(ValueError):
@@ -90,19 +90,19 @@ class DeviceFile:
     duration: float | None
     settling_band: float
     tables: Mapping[str, Any]
-    """What the file has, as text with units, with the values that were set otherwise."""
+    """Tables of the file, as text with units, with the values that were set otherwise."""
     settings: tuple[Setting, ...] = ()
     """The values that were set otherwise."""
     whole: Whole | None = None
 
     @property
     def by_ratio(self) -> bool:
-        """Whether the damping is given as a ratio, which then holds for any mass and stiffness."""
+        """True if the damping is given as a ratio, which then holds for any mass and stiffness."""
         return "damping_ratio" in self.tables["drive"]
 
     @property
     def derived(self) -> tuple[str, ...]:
-        """The keys whose values follow from those of others that the file gives instead."""
+        """Keys whose values follow from other keys of the file."""
         drive = self.drive
         contacts = {"plate": drive.plate, "finger": drive.finger}
         return (
@@ -134,7 +134,7 @@ class DeviceFile:
         return tuple(key for key in DRIVE if key in found)
 
     def __repr__(self) -> str:
-        """Which file, and what it describes, in a line."""
+        """Return the file and its content in a line."""
         pins = f", {counted(len(self.whole.array()), 'pin')}" if self.whole else ""
         name = f" {quoted(self.name)}" if self.name else ""
         return f"<DeviceFile {self.path}{name}: {self.drive.mass:g} kg{pins}>"
@@ -152,7 +152,7 @@ class DeviceFile:
 
     @property
     def reading(self) -> Reading:
-        """How a hand reads with it."""
+        """Reading hand of the device."""
         given = table_of(self._whole.values, "scan")
         del given["touch"]
         return Reading(**given)
@@ -164,7 +164,7 @@ class DeviceFile:
 
     @property
     def criteria(self) -> Criteria:
-        """What counts as felt."""
+        """Criteria of the evaluation."""
         return Criteria(**table_of(self._whole.values, "criteria"))
 
     @property
@@ -174,11 +174,11 @@ class DeviceFile:
 
     @property
     def recording_words(self) -> str:
-        """What the recording is that gives the mouse velocity, and its smoothing; empty: none."""
+        """Description of the recording of the mouse velocity, with smoothing; "" without one."""
         return recording_words(self.tables, self.path.parent)
 
     def with_whole(self) -> DeviceFile:
-        """The same with `whole`, also of a file without a table of it."""
+        """Return the file with `whole`, also for a file without that table."""
         return device_of(self.path, self.tables, whole=True)
 
     @property
@@ -195,7 +195,7 @@ class DeviceFile:
         return self.values_of_drive() | (self.whole.in_si() if self.whole else {})
 
     def values_of_drive(self) -> dict[str, float | Rows | None]:
-        """The same of the drive and its motion alone."""
+        """Return the values of the drive and its motion alone."""
         drive = self.drive
         contacts = {"plate": drive.plate, "finger": drive.finger}
         own = {"motion.duration": self.duration, "motion.settling_band": self.settling_band}
@@ -261,7 +261,7 @@ def device_of(
     whole: bool = False,
     problems: Iterable[str] = (),
 ) -> DeviceFile:
-    """The device that the tables `given` describe, with values set otherwise, one after the other.
+    """Return the device of the tables `given`, with values set otherwise in sequence.
 
     The rest, and what it raises, as for `load`; `problems` are what was found wrong before.
     """
@@ -322,7 +322,7 @@ def device_of(
 
 
 def read_tables(file: Path, template: str = "`pindrive init FILE` writes a device file") -> Any:
-    """What a TOML file says, as a dictionary; of an empty one `template` says what to do.
+    """Read a TOML file as a dictionary; for an empty one `template` tells the remedy.
 
     Raises:
         ConfigError: it cannot be read, is empty or no TOML.
@@ -381,7 +381,7 @@ def _with_all_tables(file: Path, given: Mapping[str, Any]) -> dict[str, Any]:
 def settings_of(
     overrides: Iterable[str] | Mapping[str, object],
 ) -> tuple[list[Setting], list[str]]:
-    """What "key=value" on the command line, or a mapping, sets, and what is wrong with it."""
+    """Return the settings of "key=value" texts, or of a mapping, and their errors."""
     if isinstance(overrides, Mapping):
         return [_setting(str(key), value) for key, value in overrides.items()], []
     if isinstance(overrides, str):
@@ -472,7 +472,7 @@ def _damping_problems(
 
 
 def _text_problems(given: Mapping[str, Any], place: Place) -> list[str]:
-    """What of [device] is no text."""
+    """Return the entries of [device] that are not text."""
     keys = {f"device.{name}": given.get(name, "") for name in ("name", "description")}
     return [
         refusal(key, "text in quotes", quoted(value), place(key))

@@ -46,7 +46,7 @@ AT_ONCE: Final = 1 << 16
 
 
 def events_path(path: Path) -> Path:
-    """Where the events beside a file of samples go: m.csv has them in m-events.csv."""
+    """Return the path of the events beside a file of samples: m-events.csv for m.csv."""
     return path.with_name(f"{path.stem}-events{path.suffix}")
 
 
@@ -70,7 +70,7 @@ def even_times(begin: float, end: float, rate: float | str, curves: int = 1) -> 
 
 
 def to_csv(motion: Motion, path: str | PathLike[str], rate: float | str) -> Path:
-    """What `Motion.to_csv` does; the path of the events."""
+    """Write a motion as `Motion.to_csv`; return the path of the events."""
     times = even_times(0.0, motion.duration, rate)
     return _with_events(
         Path(path),
@@ -92,7 +92,7 @@ def write_events(motion: Motion, path: Path) -> None:
 
 
 def scan_to_csv(scan: Scan, path: str | PathLike[str], rate: float | str) -> Path:
-    """What `Scan.to_csv` does; the path of the events."""
+    """Write a scan as `Scan.to_csv`; return the path of the events."""
     times = even_times(scan.path.begin, scan.path.end, rate, len(scan.pins))
     return _with_events(
         Path(path),
@@ -141,7 +141,7 @@ def _write_table(path: Path, head: Iterable[str], rows: Iterable[Iterable[Any]])
 
 
 def _rows(table: Sequence[NDArray[Any]]) -> Iterator[tuple[Any, ...]]:
-    """The rows of columns, of which only so many at once are Python's numbers."""
+    """Yield the rows of columns, with a limited number of Python numbers at a time."""
     for begin in range(0, len(table[0]), AT_ONCE):
         yield from zip(*(part[begin : begin + AT_ONCE].tolist() for part in table), strict=True)
 
@@ -152,7 +152,7 @@ def _with_events(
     write_samples: Callable[[Path], None],
     write_events: Callable[[Path], None],
 ) -> Path:
-    """Write a file of samples, and one of events beside it: both or neither; the latter's path."""
+    """Write samples and events, both files or neither; return the path of the events."""
     events = events_path(target)
     outputs = [Output(path, kind) for path, kind in zip((target, events), kinds, strict=True)]
     with writing(outputs) as parts:

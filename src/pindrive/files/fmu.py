@@ -30,7 +30,7 @@ from pindrive.quantities.results import SERIES
 from pindrive.quantities.table import QUANTITIES
 
 VERSIONS: Final = (2, 3)
-"""Of FMI."""
+"""Supported versions of FMI."""
 IDENTIFIER: Final = "pindrive"
 """The name of the library in the archive."""
 _PLATFORMS_2: Final = {
@@ -38,11 +38,11 @@ _PLATFORMS_2: Final = {
     "x86_64-windows": "win64",
     "x86_64-darwin": "darwin64",
 }
-"""What FMI 2 calls the platforms for which it has a name, by their names in FMI 3."""
+"""Platform names of FMI 2 by the platform names of FMI 3."""
 
 _TYPES_2: Final = {"Float": "Real", "Int": "Integer", "Boolean": "Boolean"}
 _TYPES_3: Final = {"Float": "Float64", "Int": "Int32", "Boolean": "Boolean"}
-"""What FMI 2 and 3 call the types of variables."""
+"""Type names of variables in FMI 2 and 3."""
 _OUTPUTS: Final = (
     *("position", "velocity", "acceleration", "plate_force", "finger_force"),
     *("stretch", "stretch_rate"),
@@ -68,9 +68,9 @@ _BASE: Final = {
     "K/W": {"K": 1, "kg": -1, "m": -2, "s": 3},
     "J/K": {"kg": 1, "m": 2, "s": -2, "K": -1},
 }
-"""The units of its variables by powers of those of the SI."""
+"""Units of the variables as powers of SI base units."""
 _RATES: Final = {"m/s": "m/s^2", "1": "1/s", "N": "N/s"}
-"""The units of the rates of inputs by those of the inputs."""
+"""Units of the rates of inputs by the units of the inputs."""
 
 
 ELSEWHERE: Final = {
@@ -103,7 +103,7 @@ class Variable:
     least: float = -inf
     largest: float = inf
     whole: bool = False
-    """Whether it is a whole number, which changes at events only."""
+    """True for a whole number, which changes at events only."""
 
     @property
     def type(self) -> str:
@@ -159,7 +159,7 @@ def _given(name: str, row: Quantity, value: float) -> Variable:
 
 
 def inputs_of(device: DeviceFile) -> tuple[str, ...]:
-    """The inputs that its unit has, without their rates: those of a release.
+    """Return the inputs of the unit, without their rates: the inputs of a release.
 
     The plate load is what the magnet makes of its command, where the file describes the magnet.
     """

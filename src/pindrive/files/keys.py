@@ -1,4 +1,4 @@
-"""The keys of device files: which one is meant, what is written for one, and a file of them all."""
+"""Keys of device files: spelling, defaults, and a template with all keys."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ STUDY_KEYS: Final = (
     *("base", "set", "page", "outputs", "zip", "chunk"),
     *("axes", "sample", "tolerances", "specification"),
 )
-"""What stands at the top of a study file beside the tables of a device and the name."""
+"""Top-level keys of a study file beside the tables of a device and the name."""
 KEYS: Final = ("device.name", "device.description", *NUMBERS)
 AROUND: Final = ("magnet", "control", "array", "scan", "criteria")
 ALONE: Final = ("device", "drive", "plate", "finger", "motion")
@@ -48,12 +48,12 @@ _WITH_TABLES: Final = Names("key", {n: _spellings(n) for n in (*TABLES, *KEYS)},
 
 
 def names_in_file(key: str) -> Names:
-    """What may stand in a device file where an unknown key does: tables too at the top."""
+    """Return the valid names at the place of an unknown key, with tables at the top."""
     return NAMES if "." in key else _WITH_TABLES
 
 
 def unknown_in_file(key: str) -> str:
-    """What to say of an unknown key of a device file."""
+    """Return the message for an unknown key of a device file."""
     if key == "plate.stiffness":
         return f"{key} cannot be given, the plate is rigid; skin gives way by finger.stiffness"
     return names_in_file(key).unknown(key)
@@ -84,12 +84,12 @@ def written(key: str, value: float) -> str | float:
 
 
 def has_part(key: str, scans: bool) -> bool:
-    """Whether a key of the device file has a part in scans, or else in releases."""
+    """Return True if a key of the device file affects scans, or otherwise releases."""
     return not key.startswith("motion.") if scans else key in DRIVE
 
 
 def variable(key: str) -> str:
-    """What a key of the device file is called in Python and in a NetCDF file."""
+    """Return the name of a key of the device file in Python and in a NetCDF file."""
     return NUMBERS[key].variable
 
 

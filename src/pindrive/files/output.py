@@ -38,7 +38,7 @@ class Kind:
     name: str
     holds: Callable[[Path], bool]
     costly: bool = False
-    """Whether one took long to make, and is replaced by `--force` only."""
+    """True for files that took long to compute; only `--force` replaces them."""
     library: str = ""
     """That of the extra "complete" which writes one."""
 
@@ -50,7 +50,7 @@ class Output:
     path: Path
     kind: Kind
     option: str = ""
-    """Where it was named, for messages."""
+    """Name of the option for messages."""
 
     def __str__(self) -> str:
         """As it was named."""
@@ -260,7 +260,7 @@ def _attribute(path: Path, name: str) -> str:
 
 
 def _tables(path: Path) -> dict[str, Any]:
-    """What a TOML file holds; nothing where it is none."""
+    """Return the tables of a TOML file; nothing for other files."""
     from tomllib import loads
 
     try:

@@ -19,14 +19,14 @@ from pindrive.quantities.table import QUANTITIES, default, duration
 
 SUFFIX: Final = ".csv"
 OVER_TIME: Final = ("profile", "steps")
-"""What rows over time make: linear between them, or constant until the next."""
+"""Interpolation of rows over time: linear, or constant until the next row."""
 _TIME: Final = QUANTITIES["profile.time"]
 SPEED: Final = "motion.mouse_velocity"
 """The input that a recording of the hand may give."""
 
 
 def is_file(key: str, value: object) -> bool:
-    """Whether a value of a device file names a CSV, where the key may change over time."""
+    """Return True if a value of a device file names a CSV and its key may change over time."""
     over_time = key in NUMBERS and NUMBERS[key].rows_of in OVER_TIME
     return over_time and isinstance(value, str) and value.strip().lower().endswith(SUFFIX)
 
@@ -34,7 +34,7 @@ def is_file(key: str, value: object) -> bool:
 def with_files_read(
     tables: Tables, folder: Path, place: Callable[..., str]
 ) -> tuple[dict[str, Any], list[str]]:
-    """The tables with the rows, SI, of each CSV that they name, and what is wrong with those.
+    """Return the tables with the rows, SI, of each named CSV, and the errors of the CSV files.
 
     Args:
         tables: of a device file; their values as TOML has them.
@@ -66,7 +66,7 @@ def files_named(tables: Tables, folder: Path) -> dict[str, Path]:
 
 
 def recording_words(tables: Tables, folder: Path) -> str:
-    """What the recording is that gives the mouse velocity, and its smoothing; empty: none does.
+    """Return the description of the recording of the mouse velocity; empty without one.
 
     The tables have been read without a problem.
     """
@@ -77,7 +77,7 @@ def recording_words(tables: Tables, folder: Path) -> str:
 
 
 def profile_words(file: Path) -> str:
-    """What the rows of a CSV are, for a person; empty for one that holds no input by its name.
+    """Return the description of the rows of a CSV; empty for a file without an input by name.
 
     Raises:
         ValueError: it cannot be read, or its rows are malformed; file and row are named.

@@ -56,13 +56,13 @@ from pindrive.quantities.table import QUANTITIES
 _GRID: Final = ("columns", "rows", "pitch")
 
 Place = Callable[..., str]
-"""Where keys were written: on the command line if one of them was, else in the file."""
+"""Place of keys: the command line if it contains a key, otherwise the file."""
 Value = float | Rows | None
-"""Of a key, SI; None where it is left out and no value holds."""
+"""Value of a key, SI; None for a missing key without a default."""
 
 
 class Problems(list[str]):
-    """What is wrong with a device file, a line each."""
+    """Errors of a device file, a line each."""
 
     def __init__(self, place: Place) -> None:
         super().__init__()
@@ -117,7 +117,7 @@ def read_values(
 
 
 def read_value(value: object, key: str, place: str) -> float | Rows:
-    """What TOML gave for a key, in SI: a number, or rows.
+    """Return the TOML value of a key in SI: a number, or rows.
 
     Raises:
         ValueError: it is malformed or out of the key's bounds.
@@ -208,7 +208,7 @@ def release_of(values: Mapping[str, Value]) -> Release:
 
 
 def contact_problems(values: Mapping[str, Value], place: Place) -> list[str]:
-    """What does not fit together within [plate] and [finger], as far as their values are known."""
+    """Return the contradictions within [plate] and [finger], as far as their values are known."""
     problems = Problems(place)
     for table in ("plate", "finger"):
         names = (*COEFFICIENTS, *COEFFICIENTS.values())
@@ -238,7 +238,7 @@ def contact_problems(values: Mapping[str, Value], place: Place) -> list[str]:
 
 
 def drive_problems(values: Mapping[str, Value], place: Place) -> list[str]:
-    """What does not fit together between the tables, each of which fits within itself."""
+    """Return the contradictions between the tables, which are consistent in themselves."""
     finger, stretch = contact_of(values, "finger"), values["motion.skin_stretch"]
     problems = Problems(place)
     stops = tuple(f"drive.{name}" for name in ("travel", "stop_stiffness", "stop_damping"))
@@ -298,7 +298,7 @@ class Whole:
         return found
 
     def problems(self, given: dict[str, Any], place: Place) -> list[str]:
-        """What does not fit together; `given` is the file's tables."""
+        """Return all contradictions; `given` is the file's tables."""
         values, problems = self.values, Problems(place)
         plate_keys = ("plate", "plate.curve", "plate.kinetic")
         problems.check(check_holds, contact_of(values, "plate"), keys=plate_keys)
@@ -340,7 +340,7 @@ def _check_no_grid(given: dict[str, Any]) -> None:
 
 
 def scaled_rows(rows: Rows | None, first: float) -> Rows | None:
-    """The rows of a curve in the same shape, so that its first value is `first`."""
+    """Return the points of a curve in proportion, so that the first value is `first`."""
     if rows is None or rows[0][1] == first or not rows[0][1]:
         return rows
     return tuple((place, value / rows[0][1] * first) for place, value in rows)
@@ -400,7 +400,7 @@ def _value(tables: Tables, key: str) -> float | None:
 
 
 def _given(tables: Tables, key: str) -> Value:
-    """What a file gives for a key, SI; None where it gives nothing, or what is malformed."""
+    """Return the value of a key in a file, SI; None for a missing or malformed one."""
     table, _, name = key.partition(".")
     if name not in tables[table]:
         return None

@@ -1,4 +1,4 @@
-"""Laws of friction compared on the same recordings, by Akaike's criterion."""
+"""Comparison of friction laws on equal recordings, by Akaike's criterion."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def _of_friction(key: str) -> bool:
 def _changed(
     law: str, found: Fit, contacts: list[str], friction: list[str]
 ) -> tuple[Drive | None, list[str]]:
-    """A drive of another law and what is free of it; None, and why it cannot be."""
+    """Return a drive of another law with its free parameters; None, and the reason, else."""
     drive = found.drive
     made: dict[str, Any] = {
         name: Contact(getattr(drive, name).kinetic) for name in ("plate", "finger")

@@ -44,7 +44,7 @@ def fitted_file(device: DeviceFile, found: Fit, target: Path) -> str:
 
 
 def _values(device: DeviceFile, found: Fit) -> dict[str, Any]:
-    """Every value that differs from those of the device file, as TOML has it."""
+    """Return every value that differs from the device file, as TOML."""
     drive, release = found.drive, found.releases[0]
     values: dict[str, Any] = {"drive.mass": drive.mass, "drive.stiffness": drive.stiffness}
     for name, contact in (("plate", drive.plate), ("finger", drive.finger)):
@@ -74,7 +74,7 @@ def _values(device: DeviceFile, found: Fit) -> dict[str, Any]:
 
 
 def _comment(estimate: Estimate) -> str:
-    """What an estimate is worth, in a line."""
+    """Return the quality of an estimate in a line."""
     unit, scale = estimate.parameter.scale
     low, high = (
         "open" if not isfinite(end) else significant(end * scale, 5) for end in estimate.interval

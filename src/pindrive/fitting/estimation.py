@@ -1,4 +1,4 @@
-"""Parameters of a drive from recordings of it, with what the recordings cannot tell."""
+"""Estimation of the parameters of a drive from recordings, with their identifiability."""
 
 from __future__ import annotations
 
@@ -201,7 +201,7 @@ class _Solved:
         return [None] * len(self._best.theta)
 
     def result(self, traced: Sequence[Profile | None]) -> Fit:
-        """All of it."""
+        """Return the whole result."""
         theta, model = self._best.theta, self._model
         covariance = self.rank.covariance
         errors = np.sqrt(np.diag(covariance))
@@ -256,7 +256,7 @@ def _weights(model: Model, noise: Array) -> Array:
 
 
 def _coarse(model: Model, weights: Array) -> Problem:
-    """The same of some forty samples of each recording."""
+    """Return the recordings reduced to some forty samples each."""
     strides = [max(1, len(recording.time) // 40) for recording in model.recordings]
     thin = Model(model.parameters, model.drive, model.releases, model.recordings, strides)
     found = [

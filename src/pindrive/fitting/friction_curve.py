@@ -1,4 +1,4 @@
-"""A friction curve from measured force against speed, with as many rows as the data carry."""
+"""Friction curve from measured force against speed, with a supported number of points."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class FrictionCurve(lazy.NotebookHtml):
     force: Array
 
     def __repr__(self) -> str:
-        """How many rows, from how many samples, in a line."""
+        """Return the number of points and of samples in a line."""
         count = counted(len(self.speed), "sample")
         rows = counted(len(self.rows), "row")
         return (
@@ -175,7 +175,7 @@ FEWEST: Final = 8
 
 
 def _are_alike(residuals: Array) -> bool:
-    """Whether neighbouring residuals correlate more than noise does."""
+    """Return True if neighbouring residuals correlate more than noise."""
     correlation = float(np.sum(residuals[1:] * residuals[:-1]) / np.sum(residuals**2))
     return len(residuals) >= 20 and correlation > HYSTERESIS
 
@@ -262,7 +262,7 @@ def _power(u: Array, f: Array, knots: Array) -> float:
 
 
 def _aicc(u: Array, f: Array, knots: Array) -> float:
-    """Of the forces, the inner knots and the noise."""
+    """Return the corrected Akaike criterion for forces, inner knots and noise."""
     n, k = len(u), len(knots) + KNOT * max(0, len(knots) - 2) + 1
     square = max(_power(u, f, knots) / n, (1e-12 * float(np.abs(f).max())) ** 2)
     return n * (log(2.0 * pi * square) + 1.0) + 2.0 * k + 2.0 * k * (k + 1) / max(n - k - 1, 1)

@@ -1,4 +1,4 @@
-"""What recordings can tell of parameters: by the rank of the exact derivatives, and by profiles."""
+"""Identifiability of parameters: rank of the exact derivatives, and profiles."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ TRIED: Final = 24
 
 
 class Identifiability(StrEnum):
-    """Whether recordings tell a parameter."""
+    """Degree to which recordings determine a parameter."""
 
     identifiable = "identifiable"
     practically_not = "practically not"
     """The profile is open: the noise, or the course of the motion, hides the parameter."""
     structurally_not = "structurally not"
-    """Some change of it and others leaves every sample as it is, without any noise."""
+    """Some change of the parameter and others leaves every sample unchanged, without any noise."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +43,7 @@ class Rank:
 
 
 def rank(problem: Problem, theta: Array, tried: Array, coarse: Problem) -> Rank:
-    """What the derivatives at `theta` and at some of the candidates tell.
+    """Return the rank of the derivatives at `theta` and at some of the candidates.
 
     A combination is hidden structurally where the derivatives have too low a rank at the optimum
     and at every candidate.
@@ -90,7 +90,7 @@ def untouched(coarse: Problem, tried: Array) -> list[int]:
 
 
 def _moves(coarse: Problem, chosen: Array, i: int) -> bool:
-    """Whether a parameter changes a sample between its bounds."""
+    """Return True if a parameter changes a sample between its bounds."""
     for theta in chosen:
         ends = np.tile(theta, (2, 1))
         ends[:, i] = coarse.lower[i], coarse.upper[i]
@@ -101,7 +101,7 @@ def _moves(coarse: Problem, chosen: Array, i: int) -> bool:
 
 
 def _sizes(problem: Problem, theta: Array) -> Array:
-    """How large each parameter is."""
+    """Return the size of each parameter."""
     sizes: Array = np.maximum(np.abs(theta), 1e-3 * (problem.upper - problem.lower))
     return sizes
 
@@ -114,7 +114,7 @@ def _rank(slopes: Array) -> int:
 
 
 def _supports(hidden: Array) -> list[list[int]]:
-    """Which parameters have a part in each hidden combination, in few parameters each."""
+    """Return the parameters of each hidden combination, few in each."""
     rows = np.array(hidden, copy=True)
     found = []
     for i in range(len(rows)):  # reduced by rows, so that a combination has no more than it needs

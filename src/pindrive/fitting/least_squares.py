@@ -20,12 +20,12 @@ BETTER: Final = 1e-2
 RANK: Final = 1e-9
 """A singular value so much smaller than the largest is zero, of columns of length one."""
 _FAR: Final = 1e3
-"""A sample that a motion does not reach is off by so many times its channel's extent."""
+"""Residual of a sample beyond the end of a motion, in extents of its channel."""
 
 
 @dataclass(frozen=True, slots=True)
 class Optimum:
-    """Where a refinement ended."""
+    """Result of a refinement."""
 
     theta: Array
     cost: float
@@ -34,12 +34,12 @@ class Optimum:
 
 
 class Model(Protocol):
-    """What is fitted, as far as it matters here: `pindrive.fitting.model.Model`."""
+    """Fitted model, as far as the solver needs it: `pindrive.fitting.model.Model`."""
 
     parameters: tuple[Any, ...]
     """Each with a `start` between `lower` and `upper`."""
     blocks: list[Any]
-    """Of samples, each with its `size`."""
+    """Blocks of samples, each with its `size`."""
     data: Array
 
     @property
@@ -47,10 +47,10 @@ class Model(Protocol):
         """The extent of each block."""
 
     def predict(self, theta: Array) -> Array:
-        """What the samples are, shape (n,)."""
+        """Return the samples, shape (n,)."""
 
     def linearise(self, theta: Array) -> tuple[Array, Array]:
-        """The same, and its derivatives, shape (n, k)."""
+        """Return the samples and their derivatives, shape (n, k)."""
 
 
 class Problem:
@@ -141,7 +141,7 @@ class Problem:
         return Optimum(best, cost, bool(found.status > 0) or self._flat(best, places))
 
     def _flat(self, theta: Array, places: NDArray[np.intp]) -> bool:
-        """Whether a Gauss-Newton step would change the cost by next to nothing."""
+        """Return True if a Gauss-Newton step would hardly change the cost."""
         inner = places[(theta > self.lower)[places] & (theta < self.upper)[places]]
         slopes = self.slopes(theta)[:, inner]
         part, *_ = np.linalg.lstsq(slopes, self.residuals(theta), rcond=RANK)

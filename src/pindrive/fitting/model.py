@@ -1,4 +1,4 @@
-"""What the recordings would be for given parameters, and the exact derivatives of that.
+"""Predicted recordings for given parameters, with exact derivatives.
 
 Before the release the pin moves on at its initial velocity: carried by the plate, or at rest. That
 matters where the time of the release is fitted.
@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Block:
-    """The samples of one channel of one recording, in the vector of all of them."""
+    """Samples of one channel of one recording, within the vector of all samples."""
 
     recording: int
     channel: str
@@ -33,7 +33,7 @@ class Block:
 
     @property
     def size(self) -> int:
-        """How many samples."""
+        """Number of samples."""
         return int(self.place.stop - self.place.start)
 
 
@@ -96,11 +96,11 @@ class Model:
         return self._times[r]
 
     def place(self, key: str, r: int) -> int | None:
-        """Where a parameter of the sensors of a recording stands; None where it is not free."""
+        """Return the place of a sensor parameter of a recording; None if it is not free."""
         return self._sensor[r].get(key)
 
     def offset(self, theta: Any, r: int, key: str = "time_offset") -> Any:
-        """What the sensors of a recording add: to the time, or to a channel."""
+        """Return the offset of the sensors of a recording: of the time, or of a channel."""
         i = self.place(key, r)
         return 0.0 if i is None else theta[i]
 

@@ -1,4 +1,4 @@
-"""What may be fitted: parameters by name, and what they make of a drive and its releases.
+"""Parameters of a fit, by name, and their effect on the drive and its releases.
 
 Static friction and friction curves keep their ratio to kinetic friction, and the skin's stretch to
 the largest that it can have, unless they are fitted themselves. Static friction below the kinetic
@@ -63,7 +63,7 @@ class Parameter:
     """One number that is fitted."""
 
     name: str
-    """As it is reported: "stiffness", with several recordings "displacement@1" of the second."""
+    """Reported name: "stiffness"; with several recordings "displacement@1" for the second."""
     key: str
     """Without the recording."""
     recording: int | None
@@ -71,14 +71,14 @@ class Parameter:
     unit: str
     """SI."""
     start: float
-    """Where the drive or the release has it."""
+    """Value of the drive or the release."""
     lower: float
     upper: float
     """From where to where it is searched."""
 
     @property
     def logarithmic(self) -> bool:
-        """Whether candidates are spread over its decades."""
+        """True if candidates are spread logarithmically."""
         return self.lower > 0.0 and self.upper > 3.0 * self.lower
 
     @property
@@ -88,7 +88,7 @@ class Parameter:
 
     @property
     def scale(self) -> tuple[str, float]:
-        """The unit in which a person reads it, and how many of it make one SI unit."""
+        """Display unit, and the number of display units in one SI unit."""
         return ("", 1.0) if self.unit == "1" else DISPLAY.get(self.unit, (self.unit, 1.0))
 
 
@@ -99,7 +99,7 @@ def parameters(
     releases: Sequence[Release],
     recordings: Sequence[Recording],
 ) -> tuple[Parameter, ...]:
-    """The parameters that are named in `free`, those of a recording once for each of them.
+    """Return the parameters named in `free`, sensor parameters once per recording.
 
     Raises:
         ValueError: a name is unknown or given twice, or the drive or the release does not have it;
@@ -242,7 +242,7 @@ def _searched(
 
 
 def _size(unit: str, drive: Drive, recordings: Sequence[Recording]) -> float:
-    """How large a parameter is that has no size of its own, by what was recorded."""
+    """Return the size of a parameter without a size of its own, from the recordings."""
     omega = drive.natural_frequency
     per_length = {
         "position": 1.0,

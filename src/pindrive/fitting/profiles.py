@@ -21,7 +21,7 @@ MOST: Final = 60
 
 @dataclass(frozen=True, slots=True)
 class Profile:
-    """The least cost over the other parameters, at values of one.
+    """Least cost over all other parameters, at values of one parameter.
 
     Attributes:
         values: of the parameter, SI, increasing, shape (n,).
@@ -82,7 +82,7 @@ class _Side:
         self._near = {float(best.theta[i]): best.theta}
 
     def follow(self) -> float:
-        """Where the profile crosses the threshold; infinite if it does not before the bound."""
+        """Return the value at which the profile crosses the threshold; infinite if not crossed."""
         start = float(self._best.theta[self._i])
         at, root = start, 0.0  # the square root of the excess, which is linear near the optimum
         step = self._sigma * self._target / POINTS

@@ -23,7 +23,7 @@ from pindrive.quantities.value import equal_by_value
 __all__ = ["Recording", "read_recording"]
 
 INPUTS: Final = ("mouse_velocity", "plate_load")
-"""What a recording may hold of the inputs of its release."""
+"""Inputs of a release that a recording may contain."""
 EXAMPLE: Final = f"{SERIES['time'].heading}, {CHANNELS['position'].heading}"
 FEWEST: Final = 8
 """Samples in a recording."""
@@ -34,7 +34,7 @@ INPUT_TOLERANCE: Final = 1e-3
 @equal_by_value
 @dataclass(frozen=True, eq=False, init=False)
 class Recording:
-    """Samples of one release, and what is known of it.
+    """Samples of one release, with its known inputs.
 
     Position and velocity are those of the pin in the housing at the sample times. Acceleration and
     force are means over one sample interval, as a sensor delivers them that filters before it
@@ -136,7 +136,7 @@ class Recording:
         return self.with_changes(time=self.time[inside], channels=channels)
 
     def with_changes(self, **changes: Any) -> Recording:
-        """The same recording with some of its attributes replaced, unchecked."""
+        """Return the recording with some attributes replaced, unchecked."""
         made = object.__new__(Recording)
         for name in self.__dataclass_fields__:
             object.__setattr__(made, name, changes.get(name, getattr(self, name)))

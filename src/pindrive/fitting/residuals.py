@@ -1,4 +1,4 @@
-"""What a fit leaves over: its size, and whether it is noise or has structure."""
+"""Residuals of a fit: size, and test for structure."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ UNLIKELY: Final = 1e-3
 
 @dataclass(frozen=True, slots=True)
 class Residuals:
-    """What is left of one channel of one recording.
+    """Residuals of one channel of one recording.
 
     Attributes:
         recording: its place among the recordings.
@@ -47,17 +47,17 @@ class Residuals:
 
     @property
     def structured(self) -> bool:
-        """Whether they are no white noise: the drive does something that the model does not."""
+        """True if the residuals are not white noise: the drive does more than the model."""
         return min(self.ljung_box, self.runs) < UNLIKELY or self.excessive
 
     @property
     def excessive(self) -> bool:
-        """Whether they are larger than the noise that was given."""
+        """True if the residuals exceed the given noise."""
         return self.known and bool(stats.chi2.sf(self.reduced * self.count, self.count) < UNLIKELY)
 
     @property
     def widening(self) -> float:
-        """By how much their correlation makes intervals too narrow, of a first-order process."""
+        """Factor by which correlated residuals widen the intervals, for a first-order process."""
         near = min(max(self.correlation, 0.0), 0.999)
         return sqrt((1.0 + near) / (1.0 - near))
 

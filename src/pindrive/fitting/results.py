@@ -1,4 +1,4 @@
-"""What a fit returns: estimates with their intervals, residuals, and the fitted drive."""
+"""Results of a fit: estimates with intervals, residuals, and the fitted drive."""
 
 from __future__ import annotations
 
@@ -61,12 +61,12 @@ class Estimate:
 
     @property
     def name(self) -> str:
-        """Of the parameter."""
+        """Name of the parameter."""
         return self.parameter.name
 
     @property
     def explanation(self) -> str:
-        """What to do where the recordings do not tell it; empty where they do."""
+        """Remedy for an undetermined parameter; empty for a determined one."""
         match self.identifiability:
             case Identifiability.identifiable:
                 return ""
@@ -88,7 +88,7 @@ class Estimate:
 @equal_by_value
 @dataclass(frozen=True, eq=False, repr=False)
 class Fit(lazy.NotebookHtml):
-    """What `fit` found.
+    """Result of `fit`.
 
     Attributes:
         model: the recordings as functions of the parameters.
@@ -120,7 +120,7 @@ class Fit(lazy.NotebookHtml):
         raise KeyError(name)
 
     def __repr__(self) -> str:
-        """How many parameters of how many samples, and which are not told, in a line."""
+        """Return the counts of parameters and samples, and undetermined parameters, in a line."""
         count = counted(len(self.model.data), "sample")
         unknown = [e.name for e in self.estimates if e.explanation]
         rest = f", not identifiable: {', '.join(unknown)}" if unknown else ""
@@ -134,7 +134,7 @@ class Fit(lazy.NotebookHtml):
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
-        """What is doubtful about it, a line each."""
+        """Doubts about the fit, a line each."""
         found = []
         if not self.converged:
             found.append("the search did not converge; give narrower bounds, or fewer parameters")
@@ -162,7 +162,7 @@ class Fit(lazy.NotebookHtml):
 
     @property
     def recordings(self) -> tuple[Recording, ...]:
-        """What was fitted to."""
+        """Fitted recordings."""
         return self.model.recordings
 
     @cached_property
@@ -203,7 +203,7 @@ class Fit(lazy.NotebookHtml):
 
     @property
     def log_likelihood(self) -> float:
-        """Of all samples, with normal noise."""
+        """Log-likelihood of all samples, with normal noise."""
         total = 0.0
         for left in self.residuals:
             square = left.noise**2
@@ -229,7 +229,7 @@ class Fit(lazy.NotebookHtml):
         return plot_fit(self)
 
     def to_dataset(self) -> xr.Dataset:
-        """All of it as data.
+        """Return the whole result as data.
 
         Returns:
             Over `parameter`: `value`, `standard_error`, `lower`, `upper` in the SI units of the
@@ -291,7 +291,7 @@ class Fit(lazy.NotebookHtml):
 @equal_by_value
 @dataclass(frozen=True, eq=False, repr=False)
 class ModelComparison(lazy.NotebookHtml):
-    """Fits of several laws of friction to the same recordings.
+    """Fits of several friction laws to equal recordings.
 
     Attributes:
         fits: by the law: "Coulomb", "static friction", "friction curve", "compliant skin".
@@ -320,7 +320,7 @@ class ModelComparison(lazy.NotebookHtml):
 
     @property
     def weights(self) -> dict[str, float]:
-        """Akaike weights: how likely each law is the best of these."""
+        """Akaike weights: probability of each law to be the best among the compared laws."""
         parts = {name: exp(-0.5 * value) for name, value in self.excess.items()}
         total = sum(parts.values())
         return {name: part / total for name, part in parts.items()}

@@ -30,13 +30,13 @@ _OTHER: Final = (
     *("travel", "stop_stiffness", "stop_damping"),
 )
 _PLAIN: Final = tuple(name for name in PLACES if name not in _OTHER)
-"""What `simulate_batch` can vary."""
+"""Parameters that `simulate_batch` can vary."""
 ROUGH: Final = 250
 """Samples of each recording with which candidates are refined."""
 REFINED: Final = 16
 """Candidates that are refined on them."""
 BEGINNING: Final = 0.35
-"""The part of a recording with which a search begins, beside one with all of it."""
+"""First part of a recording with which a search begins, beside one with the whole recording."""
 STEPS: Final = 10
 """Parts of the range of a parameter without a derivative."""
 SCANNED: Final = 40
@@ -44,7 +44,7 @@ SCANNED: Final = 40
 OF_EACH: Final = 2
 """Candidates of each part."""
 FINISHED: Final = 3
-"""Of those, how many are refined on all samples."""
+"""Number of candidates that are refined on all samples."""
 FEW: Final = 25
 """The most evaluations of the refinement of a candidate."""
 ROUNDS: Final = 10
@@ -52,7 +52,7 @@ ROUNDS: Final = 10
 DRAWN: Final = 60
 """Points around an optimum."""
 SIZES: Final = (0.5, 2.0, 8.0)
-"""How far they lie, in standard errors."""
+"""Distances of the neighbours, in standard errors."""
 APART: Final = 0.02
 """Two candidates this part of their range apart in every parameter are one."""
 
@@ -99,7 +99,7 @@ def _root(covariance: Array) -> Array:
 
 
 def search(model: Model, weights: Array, seed: int) -> tuple[Optimum, Array]:
-    """The best optimum from the best of many candidates, and those candidates, shape (n, k)."""
+    """Return the best optimum of the best of many candidates, and all candidates, shape (n, k)."""
     counts = [len(recording.time) for recording in model.recordings]
     strides = [max(1, n // ROUGH) for n in counts]
     looks = [max(1, n // LOOKS) for n in counts]
@@ -157,7 +157,7 @@ def _stepped(problem: Problem, theta: Array, early: Problem) -> Array:
 
 
 def _beginning(model: Model) -> Array:
-    """One for samples in the first part of their recording, zero for the others."""
+    """Return one for samples in the first part of their recording, zero elsewhere."""
     parts = []
     for block in model.blocks:
         times = model.times(block.recording)
@@ -167,7 +167,7 @@ def _beginning(model: Model) -> Array:
 
 
 def _thinned(model: Model, other: Model, weights: Array) -> Array:
-    """The weights of the blocks of another model of the same recordings."""
+    """Return the weights of the blocks of another model with equal recordings."""
     return np.concatenate(
         [
             np.full(thin.size, weights[block.place.start])
@@ -177,7 +177,7 @@ def _thinned(model: Model, other: Model, weights: Array) -> Array:
 
 
 def _distinct(tried: Array, problem: Problem) -> list[Array]:
-    """The best candidates, no two of them in one place."""
+    """Return the best candidates at distinct places."""
     extent = problem.upper - problem.lower
     found: list[Array] = []
     for theta in tried[: 20 * REFINED]:
@@ -189,7 +189,7 @@ def _distinct(tried: Array, problem: Problem) -> list[Array]:
 
 
 def _apart(ends: list[Optimum], problem: Problem) -> list[Optimum]:
-    """The best ends, those that are alike once."""
+    """Return the best distinct ends."""
     found: list[Optimum] = []
     for end in ends:
         if all(abs(end.cost - other.cost) > 1e-3 * other.cost for other in found):
@@ -229,7 +229,7 @@ def _candidates(model: Model, weights: Array, seed: int) -> Array:
 
 
 def _plain(model: Model) -> bool:
-    """Whether `simulate_batch` can follow all of it."""
+    """Return True if `simulate_batch` can simulate all parameters."""
     numbers = [
         model.assembly.numbers([p.start for p in model.parameters], r)
         for r in range(len(model.releases))
@@ -282,7 +282,7 @@ def _batched_costs(model: Model, weights: Array, theta: Array) -> Array:
 def _cost(
     model: Model, place: slice, weights: Array, computed: Array, key: str, r: int, theta: Array
 ) -> Array:
-    """Weighted squares of a block for each candidate; a free offset of it is set to its best."""
+    """Return the weighted squares of a block for each candidate, at its optimal free offset."""
     off = model.data[place] - computed
     i = model.place(key, r)
     if i is not None:

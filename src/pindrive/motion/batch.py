@@ -187,7 +187,7 @@ def batched(
     outputs: Sequence[str] | None = None,
     threads: int | None = None,
 ) -> xr.Dataset:
-    """What `simulate_batch` does, without its warnings; None is an argument that is not varied."""
+    """Simulate a batch without warnings; None marks an argument that is not varied."""
     return _followed(drive, release, varied, energy, outputs, threads)[0]
 
 
@@ -258,7 +258,7 @@ def _named(varied: Mapping[str, Broadcastable | None]) -> dict[str, Broadcastabl
 def _constants(
     drive: Drive, release: Release, varied: Mapping[str, Broadcastable | None]
 ) -> dict[str, Broadcastable]:
-    """What drive and release have of the arguments that are not varied, but what is left out."""
+    """Return the constant arguments from drive and release, without missing ones."""
     check_fits(drive, release)
     plate, finger = drive.plate, drive.finger
     for name, contact in (("plate", plate), ("finger", finger)):
@@ -325,7 +325,7 @@ def _friction(drive: Drive, varied: Collection[str]) -> dict[str, float | None]:
 def _stops(
     given: Mapping[str, NDArray[np.float64]], shape: tuple[int, ...]
 ) -> list[NDArray[np.float64]]:
-    """Travel, stiffness and damping of the end stops: one value each, or one of each point.
+    """Return travel, stiffness and damping of the end stops: one value each, or one for each point.
 
     NaN where one is refused.
 
@@ -352,7 +352,7 @@ def _damping(given: Mapping[str, NDArray[np.float64]]) -> dict[str, NDArray[np.f
 
 
 def _forces(given: Mapping[str, NDArray[np.float64]]) -> dict[str, NDArray[np.float64]]:
-    """The friction forces that coefficients amount to; NaN where one of their parts is refused."""
+    """Return the friction forces of the coefficients; NaN if a part is rejected."""
 
     def value(name: str) -> NDArray[np.float64]:
         return _allowed(name, given[name.replace(".", "_")])
@@ -477,7 +477,7 @@ def _allowed(name: str, values: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _within(bounds: Bounds, values: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Which of the values the bounds hold; NaN is never one."""
+    """Return True for the values within the bounds; NaN never is."""
     above = values >= bounds.lower if bounds.lower_closed else values > bounds.lower
     below = values <= bounds.upper if bounds.upper_closed else values < bounds.upper
     return (above & below) | np.isin(values, bounds.also) if bounds.also else above & below
@@ -487,7 +487,7 @@ def _within(bounds: Bounds, values: NDArray[np.float64]) -> NDArray[np.bool_]:
 
 
 def _attributes(name: str) -> dict[str, Any]:
-    """What a variable of the dataset says of itself."""
+    """Return the attributes of a variable of the dataset."""
     if name in OUTCOMES:
         return outcome_attributes(name)
     named = "transient.settled" if name == _SETTLED else name

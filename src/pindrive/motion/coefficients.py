@@ -14,7 +14,7 @@ from pindrive.quantities.table import QUANTITIES
 KINETIC: Final = (0.15, 0.30)
 """Steel on steel, handbook tables."""
 STATIC: Final = (0.15, 0.78)
-"""The same at rest: up to 0.78 where both are clean."""
+"""Static friction coefficients of handbooks: up to 0.78 for clean surfaces."""
 _SLACK: Final = 1e-9
 """So much beyond a limit is rounding."""
 
@@ -28,13 +28,13 @@ class Coefficients:
     normal_force: float
     """That force, N."""
     preloaded: bool
-    """Whether it is more than the weight."""
+    """True if the normal force exceeds the weight."""
     given: bool
-    """Whether the friction was given so, not as a force."""
+    """True if the friction was given by coefficients, not by forces."""
 
     @classmethod
     def of(cls, drive: Drive) -> Coefficients:
-        """Those of a drive's plate, with the magnet off."""
+        """Return the coefficients of the plate of a drive, with the magnet off."""
         plate, force = drive.plate, drive.normal_force
         given = plate.coefficient is not None
         kinetic, static = plate.kinetic / force, plate.static_friction / force
@@ -55,7 +55,7 @@ class Coefficients:
 
     @property
     def doubt(self) -> str | None:
-        """What handbooks say to them; None where they agree, or there is no friction."""
+        """Return the contradiction to handbooks; None without one, or without friction."""
         if not self.static:
             return None
         for name, value, range_ in (
@@ -75,5 +75,5 @@ class Coefficients:
 
 
 def within(value: float, range_: tuple[float, float]) -> bool:
-    """Whether a value lies in a range, up to rounding."""
+    """Return True if a value lies in a range within rounding."""
     return range_[0] * (1.0 - _SLACK) <= value <= range_[1] * (1.0 + _SLACK)

@@ -52,7 +52,7 @@ PLACES: Final[dict[str, tuple[int, ...]]] = {
     "stop_stiffness": (13, 1),
     "stop_damping": (13, 2),
 }
-"""Where each number, or the rows of an input, stands among them."""
+"""Places of each number, or of the breakpoints of an input, in the array of the core."""
 
 
 ROWS: Final[dict[str, tuple[int, ...]]] = {
@@ -64,11 +64,11 @@ ROWS: Final[dict[str, tuple[int, ...]]] = {
     "across_velocity": (11,),
     "finger_load": (12,),
 }
-"""Where all rows of a table stand."""
+"""Places of all breakpoints of a table."""
 
 
 def entry(numbers: Any, place: tuple[int, ...]) -> Any:
-    """What stands at a place among the core's numbers."""
+    """Return the entry at a place of the core's array."""
     for i in place:
         numbers = numbers[i]
     return numbers

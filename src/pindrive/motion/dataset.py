@@ -17,7 +17,7 @@ from pindrive.quantities.table import QUANTITIES
 
 
 def columns(motion: Motion, t: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
-    """What the motion does at the times t (s, shape (n,)), by the names of `SERIES`.
+    """Return the state of the motion at the times t (s, shape (n,)), by the names of `SERIES`.
 
     Right-hand limits, SI; what the motion does not have left out.
     """

@@ -91,7 +91,7 @@ class Contact:
         )
 
     def pressed_by(self, normal_force: float) -> Contact:
-        """The same, given by coefficients, with the friction forces under a normal force (N).
+        """Return the contact with the friction forces of its coefficients under a normal force (N).
 
         Raises:
             ValueError: a force is out of its range.
@@ -115,14 +115,14 @@ class Contact:
 
     @property
     def frictionless(self) -> bool:
-        """Whether the contact carries no force at all."""
+        """True if the contact carries no force."""
         return self.static_friction == 0.0 and (
             self.curve is None or not any(force for _, force in self.curve)
         )
 
     @property
     def curved(self) -> bool:
-        """Whether friction depends on the sliding speed."""
+        """True if friction depends on the sliding speed."""
         return self.curve is not None and len(self.curve) > 1
 
     def largest(self, speed: float) -> float:
@@ -138,7 +138,7 @@ class Contact:
 
     @property
     def rigid(self) -> bool:
-        """Whether the surface gives way by sliding alone."""
+        """True if the surface does not stretch."""
         return isinf(self.stiffness)
 
 
@@ -265,12 +265,12 @@ class Drive:
 
     @property
     def normal_force(self) -> float:
-        """What presses the body on the plate without any pull, N: weight and preload."""
+        """Normal force on the plate without magnetic pull, N: weight and preload."""
         return float(normal_force("plate", partial(getattr, self)))
 
     @property
     def by_forces(self) -> Drive:
-        """The same, its friction given by forces alone, which then stay as they are."""
+        """Return the drive with friction given by forces alone, which then remain fixed."""
         plate, finger = (
             Contact(c.kinetic, c.static, c.curve, c.stiffness) for c in (self.plate, self.finger)
         )
@@ -278,7 +278,7 @@ class Drive:
 
     @property
     def rigid_travel(self) -> float | None:
-        """How far the pin goes at most, either way, m; None without end stops that are rigid."""
+        """Largest displacement of the pin in either direction, m; None without rigid end stops."""
         return self.travel if self.stop_stiffness is None else None
 
     @property
@@ -305,7 +305,7 @@ class Drive:
 
 
 def check_touch(by_coefficient: bool, touch_force: float | None) -> None:
-    """Refuse a coefficient of the finger without a touch force (N), or that without the other."""
+    """Reject a finger coefficient without a touch force (N), and the reverse."""
     if by_coefficient and touch_force is None:
         required = "given where a coefficient gives the finger's friction"
         raise ValueError(refusal("touch_force", required, "none"))
@@ -446,4 +446,4 @@ def _checked_curve(
 
 
 SLOPES: Final = {"curve": "curve.slope", "coefficient_curve": "curve.coefficient_slope"}
-"""What the slopes between the rows of a curve are."""
+"""Slopes between the points of a friction curve."""

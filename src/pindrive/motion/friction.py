@@ -15,7 +15,7 @@ PRESSED_BY: Final[dict[str, dict[str, float]]] = {
     "plate": {"mass": GRAVITY, "preload": 1.0},
     "finger": {"touch_force": 1.0},
 }
-"""What presses on each contact while the magnet is off: quantities, and how much each one does."""
+"""Quantities of the normal force on each contact while the magnet is off, with their factors."""
 COEFFICIENTS: Final = {
     "kinetic": "coefficient",
     "static": "static_coefficient",
@@ -27,11 +27,11 @@ COEFFICIENT_OF: Final = {
     for contact in PRESSED_BY
     for force, coefficient in COEFFICIENTS.items()
 }
-"""The same by the names of the table of quantities."""
+"""Friction coefficients by the names of the forces in the table of quantities."""
 
 
 def normal_force(contact: str, value: Callable[[str], Any]) -> Any:
-    """What presses on a contact while the magnet is off, N.
+    """Return the normal force on a contact while the magnet is off, N.
 
     Args:
         contact: "plate" or "finger".

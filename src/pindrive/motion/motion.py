@@ -53,7 +53,7 @@ _QUANTITIES: Final = ("position", "velocity", "acceleration")
 
 
 class Motion(lazy.NotebookHtml):
-    """What a pin does after its release, exactly: made by `simulate`.
+    """Exact motion of a pin after its release, made by `simulate`.
 
     Attributes:
         drive: the drive that was simulated.
@@ -85,14 +85,14 @@ class Motion(lazy.NotebookHtml):
         return Motion, (self.drive, self.release, duration, self.settling_band)
 
     def __eq__(self, other: object) -> bool:
-        """Whether the same was simulated."""
+        """Return True if drive, release and duration are equal."""
         return type(self) is type(other) and self.__reduce__() == other.__reduce__()
 
     def __hash__(self) -> int:
         return hash(self.__reduce__())
 
     def __repr__(self) -> str:
-        """How it ends, and after how long, in a line."""
+        """Return the ending and its time in a line."""
         return (
             f"<Motion of {self.duration:.6g} s, {counted(len(self.events), 'event')}, "
             f"{self.ending.kind}, settling time {self.transient.settling_time:.6g} s, "
@@ -164,11 +164,11 @@ class Motion(lazy.NotebookHtml):
     @overload
     def stretch_rate(self, t: ArrayLike, side: Side = ...) -> NDArray[np.float64]: ...
     def stretch_rate(self, t: ArrayLike, side: Side = "right") -> float | NDArray[np.float64]:
-        """How fast the skin of a compliant finger stretches, m/s."""
+        """Return the stretch rate of the skin of a compliant finger, m/s."""
         return self._evaluate(self._core.stretch_rate, t, side)
 
     def columns(self, t: ArrayLike) -> dict[str, NDArray[np.float64]]:
-        """All of these at the times t (s, shape (n,)) at once, right-hand limits, by their names.
+        """Return all quantities at the times t (s, shape (n,)), right-hand limits, by name.
 
         The forces are "plate_force" and "finger_force", with end stops "stop_force"; of a rigid
         finger there is no stretch.
@@ -211,7 +211,7 @@ class Motion(lazy.NotebookHtml):
 
     @cached_property
     def events(self) -> tuple[Event, ...]:
-        """Every change at a contact, in order, the plate's first; of a cycle, one round of it."""
+        """Changes at a contact in order, the plate's first; of a cycle, one period."""
         return events_of(self._table, lambda t: (self.position(t), self.velocity(t)))
 
     def events_between(self, begin: float, end: float) -> tuple[Event, ...]:
@@ -290,17 +290,17 @@ class Motion(lazy.NotebookHtml):
 
     @property
     def segment_count(self) -> int:
-        """How many segments there are, without making them."""
+        """Number of segments; does not create them."""
         return self._core.segment_count
 
     @cached_property
     def segments(self) -> tuple[Segment, ...]:
-        """The modes in order, each one closed form; of a stick-slip cycle, one round of it."""
+        """Modes in order, each one closed form; of a stick-slip cycle, one period."""
         return segments_of(self._table)
 
     @cached_property
     def acceleration_bounds(self) -> NDArray[np.float64]:
-        """Of each segment without a closed form, what |x''| stays below, m/s², shape (segments,).
+        """Bounds of |x''| of the segments without a closed form, m/s², shape (segments,).
 
         NaN of one in closed form, whose swing says so.
         """
@@ -308,14 +308,14 @@ class Motion(lazy.NotebookHtml):
 
     @property
     def status(self) -> Status:
-        """Whether the motion was followed to its end; `Status.explanation` says why not."""
+        """Status of the simulation: complete, or the reason for its end (`Status.explanation`)."""
         return Status(self._core.status)
 
     # ---- the numbers -----------------------------------------------------------------------------
 
     @cached_property
     def _numbers(self) -> dict[str, float]:
-        """Of the transient and the ending, by their names in the table of quantities."""
+        """Numbers of the transient and the ending, by their names in the table of quantities."""
         numbers = self._core.transient(self.duration, self.settling_band)
         counts = ("transient.plate.reversals", "transient.finger.reversals")
         return {k: int(n) if k in counts else n for k, n in numbers.items()}
@@ -330,7 +330,7 @@ class Motion(lazy.NotebookHtml):
 
     @cached_property
     def ending(self) -> Ending:
-        """How the motion ends."""
+        """Ending of the motion."""
         numbers = part(self._numbers, "ending.")
         plate, finger = (Afterwards(**part(numbers, f"{name}.")) for name in ("plate", "finger"))
         own = {name: number for name, number in numbers.items() if "." not in name}
@@ -413,7 +413,7 @@ class Motion(lazy.NotebookHtml):
         return to_csv(self, path, rate)
 
     def inputs(self) -> dict[str, float | tuple[tuple[float, float], ...]]:
-        """What was simulated, SI, by the names of the table of quantities.
+        """Simulated inputs, SI, by the names of the table of quantities.
 
         A curve or an input that changes is its rows: (speed, force) or (time, value).
         """

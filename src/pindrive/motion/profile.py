@@ -67,7 +67,7 @@ class Profile:
 
     @property
     def changes(self) -> bool:
-        """Whether it takes more than one value."""
+        """True if the profile takes more than one value."""
         return any(value != self.values[0] for value in self.values)
 
     @property
@@ -85,7 +85,7 @@ class Profile:
     @overload
     def __call__(self, t: ArrayLike) -> NDArray[np.float64]: ...
     def __call__(self, t: ArrayLike) -> float | NDArray[np.float64]:
-        """The value at time t (s): a float for a float, an array of the same shape for an array.
+        """Return the value at time t (s): a float for a float, else an array of equal shape.
 
         At a step it is the value after it.
         """
@@ -108,7 +108,7 @@ def _listed(values: Iterable[float | str]) -> list[Any]:
 
 
 def _in_si(values: list[Any]) -> tuple[str, list[Any]]:
-    """The SI unit of values of which some are text, empty where none is, and all of them in SI."""
+    """Return the SI unit of texts among values, empty for numbers alone, and all values in SI."""
     if str not in set(map(type, values)):
         return "", values
     over_time = [quantity for quantity in _TABLE.rows.values() if quantity.rows_of == "profile"]

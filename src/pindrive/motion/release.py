@@ -18,10 +18,10 @@ from pindrive.quantities.table import QUANTITIES, check, default
 from pindrive.quantities.value import concise
 
 INPUTS: Final = ("mouse_velocity", "plate_load", "force", "across_velocity", "finger_load")
-"""What a release has over time: a number or a `Profile` each."""
+"""Inputs of a release over time: a number or a `Profile` each."""
 
 CONTINUOUS: Final = ("mouse_velocity", "across_velocity")
-"""Those of them that may not have steps."""
+"""Inputs that may not have steps."""
 
 
 @concise
@@ -104,12 +104,12 @@ class Release:
 
 
 def initial(given: float | Profile) -> float:
-    """What an input is at t = 0."""
+    """Return an input at t = 0."""
     return given(0.0) if isinstance(given, Profile) else given
 
 
 def input_of(name: str, given: float | str | Profile) -> float | Profile:
-    """A constant or a profile, each value of it checked."""
+    """Return a constant or a profile, with each value checked."""
     if not isinstance(given, Profile):
         return check(name, given)
     quantity = QUANTITIES[name]

@@ -53,7 +53,8 @@ class Event:
     time: float
     """s"""
     contact: Cause
-    """Where; `both` when plate and finger, at one velocity, do the same; `stop`: an end stop."""
+    """Contact of the event; `both` if plate and finger change alike at one velocity; `stop`: an end
+    stop."""
     kind: EventKind
     """`stick`: sliding stopped and the contact holds; `slip`: it begins to slide; `reverse`: the
     sliding velocity changes sign; at a `stop`: the pin meets it, `stop`, or leaves it, `leave`."""
@@ -78,7 +79,7 @@ class Segment:
     """Sign of the sliding velocity, 0 while stuck, 2 while the plate slides across too, None for a
     frictionless contact."""
     finger: int | None
-    """The same of the finger; 0 also while compliant skin grips."""
+    """Friction of the finger, N; 0 also while compliant skin sticks."""
 
 
 class Extrema(NamedTuple):
@@ -91,7 +92,7 @@ class Extrema(NamedTuple):
 
 
 class Crossings(NamedTuple):
-    """Where a quantity of a motion crosses a level, in order."""
+    """Crossings of a level by a quantity of a motion, in order."""
 
     time: NDArray[np.float64]
     """s, shape (n,)."""
@@ -121,7 +122,7 @@ def events_of(table: Table, state_at: Callable[[float], tuple[float, float]]) ->
 
 
 def events_at(time: float, kinds: tuple[int, int, int], state: tuple[float, float]) -> list[Event]:
-    """What happens at the end of a segment, the plate's first.
+    """Return the events at the end of a segment, the plate's first.
 
     Args:
         time: s.
@@ -242,7 +243,7 @@ class Transient:
 
     @property
     def settled(self) -> bool:
-        """Whether the motion settled within its duration."""
+        """True if the motion settled within its duration."""
         return not isnan(self.settling_time)
 
 
@@ -250,10 +251,10 @@ class Transient:
 @concise
 @dataclass(frozen=True, slots=True)
 class Ending:
-    """How a motion ends."""
+    """Ending of a motion."""
 
     end: End
-    """Which of all endings it is; `kind` and `cycle` follow from it."""
+    """Kind of the ending; `kind` and `cycle` follow from it."""
     position: float
     """Resting place, or centre of the final oscillation, m."""
     steady_since: float
@@ -285,7 +286,7 @@ class Ending:
 
     @property
     def cycle(self) -> Cycle | None:
-        """Of a steady oscillation, which it is.
+        """Kind of a steady oscillation.
 
         `free` of any event, `grazing` the plate's velocity once a period, `stick-slip`, or a `limit
         cycle` that falling friction sustains without a carried phase.
@@ -297,7 +298,7 @@ class Ending:
 @concise
 @dataclass(frozen=True, slots=True)
 class Ledger:
-    """Where the energy came from and where it went, J.
+    """Energy ledger: sources and sinks, J.
 
     The damper's share is integrated, not inferred: the terms add up only if the motion is right.
     `pindrive.quantities.QUANTITIES` says what each is, under "energy." and its name.

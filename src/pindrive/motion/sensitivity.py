@@ -28,12 +28,12 @@ from pindrive.quantities.table import QUANTITIES
 __all__ = ["Sensitivity"]
 
 _STEP = 2.0**-26
-"""How far, as a part of a parameter, its neighbours lie that show whether a derivative exists."""
+"""Relative distance of the neighbours that show if a derivative exists."""
 _KINK = 1e-3
 """A number whose change to a neighbour is off its derivative by this part jumps or bends there."""
 
 Place = tuple[int, ...]
-"""Where a number stands among the core's numbers (`CoreNumbers`)."""
+"""Place of a number among the core's numbers (`CoreNumbers`)."""
 
 _PLACES: dict[str, Place] = {name.replace(".", "_"): place for name, place in PLACES.items()}
 _COEFFICIENTS = (
@@ -80,11 +80,11 @@ class Sensitivity(lazy.NotebookHtml):
 
     @property
     def sizes(self) -> tuple[float, ...]:
-        """How large each parameter is, SI; of one that is zero, how large its like are."""
+        """Size of each parameter, SI; of a zero parameter, the size of comparable ones."""
         return tuple(derivative.size for derivative in self._derivatives)
 
     def plot(self) -> mpl_figure.Figure:
-        """How far a part of each parameter moves the pin, over time, as a figure."""
+        """Plot the change of the pin's position with each parameter, over time."""
         from pindrive.plot.sensitivity import plot_motion_sensitivity
 
         return plot_motion_sensitivity(self)
@@ -143,7 +143,7 @@ class Sensitivity(lazy.NotebookHtml):
 
     @cached_property
     def event_times(self) -> NDArray[np.float64]:
-        """∂t/∂p of each of the motion's events, shape (parameters, events)."""
+        """∂t/∂p of the events of the motion, shape (parameters, events)."""
         table = _core.simulate(*self._motion.core_numbers).segments()
         plate, finger = table["plate_event"], table["finger_event"]
         # As `Motion.events` lists them: two at one instant are one if they are alike.
@@ -254,7 +254,7 @@ _KNOWN_AT = {
         "first_reversal_time": "first_reversal_time",
     }.items()
 }
-"""The time from which a number no longer depends on the motion; of the others, its duration."""
+"""Time from which a number no longer depends on the motion; of all other numbers, its duration."""
 
 
 def _numbers(
@@ -270,7 +270,7 @@ def _numbers(
 
 
 def _direction(motion: pindrive.Motion, given: str) -> tuple[CoreNumbers, float]:
-    """How the core's numbers change with a parameter, and the size of the parameter."""
+    """Return the derivative of the core's numbers by a parameter, and the size of the parameter."""
     numbers = motion.core_numbers
     if (name := _key_as_name(given)) in _COEFFICIENTS:
         return _along_friction(motion, name)
@@ -292,7 +292,7 @@ def _direction(motion: pindrive.Motion, given: str) -> tuple[CoreNumbers, float]
 
 
 def _along_friction(motion: pindrive.Motion, name: str) -> tuple[CoreNumbers, float]:
-    """The same of a coefficient, or of what presses on a contact given by one."""
+    """Return the derivative by a coefficient, or by the normal force on a coefficient."""
     slopes = _friction_slopes(motion.drive, name)
     table, _, part = name.partition("_")
     owner = getattr(motion.drive, table) if part in COEFFICIENTS.values() else motion.drive
@@ -307,7 +307,7 @@ def _along_friction(motion: pindrive.Motion, name: str) -> tuple[CoreNumbers, fl
 
 
 def _friction_slopes(drive: Drive, name: str) -> dict[Place, float]:
-    """How friction forces given by coefficients change with a parameter: (μ N)' = μ' N + μ N'."""
+    """Return the derivative of friction forces given by coefficients: (μ N)' = μ' N + μ N'."""
     found: dict[Place, float] = {}
     for i, table in ((3, "plate"), (4, "finger")):
         contact = getattr(drive, table)
@@ -345,7 +345,7 @@ def _unit(given: str) -> str:
 
 
 def _places(numbers: CoreNumbers, given: str) -> list[Place]:
-    """Where the numbers stand that a parameter is."""
+    """Return the places of the numbers of a parameter."""
     name = _key_as_name(given)
     if row := _ROW.fullmatch(name):
         table, index, column = (group for group in row.groups() if group)
@@ -372,7 +372,7 @@ def _places(numbers: CoreNumbers, given: str) -> list[Place]:
 
 
 def _start_slope(rows: Rows, along: Rows) -> float:
-    """How the plate's velocity at t = 0 changes along a direction of its rows."""
+    """Return the derivative of the plate's velocity at t = 0 in a direction of its breakpoints."""
     times, values = np.transpose(rows)
     d_times, d_values = np.transpose(along)
     i = int(np.searchsorted(times, 0.0, side="right"))
@@ -401,7 +401,7 @@ def _natural_size(motion: pindrive.Motion, place: Place) -> float:
 
 
 def _in_range(numbers: CoreNumbers) -> bool:
-    """Whether the core can compute a motion; damping may be negative there."""
+    """Return True if the core can compute a motion; damping may be negative there."""
 
     def increase(rows: Rows) -> bool:
         return all(a[0] < b[0] for a, b in pairwise(rows))
@@ -443,7 +443,7 @@ def _replaced(numbers: Any, place: Place, value: float) -> Any:
 
 
 def _mapped(f: Callable[..., float], *numbers: Any) -> Any:
-    """The values of f at the corresponding numbers of several, nested like each of them."""
+    """Return the values of f at the corresponding numbers of several containers, nested alike."""
     if isinstance(numbers[0], (tuple, list)):
         return tuple(_mapped(f, *parts) for parts in zip(*numbers, strict=True))
     return f(*numbers)

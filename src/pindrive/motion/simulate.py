@@ -24,7 +24,7 @@ _GLANCE = (
     *(_SEEN[name].upper for name in ("mouse_velocity", "plate_load", "displacement", "velocity")),
     *(_SEEN["duration"].lower, _SEEN["duration"].upper),
 )
-"""What any device has, in the order of `_plausible`."""
+"""Plausible ranges of any device, in the order of `_plausible`."""
 
 
 def simulate(
@@ -79,7 +79,7 @@ def simulated(
     duration: float | str | None = None,
     settling_band: float | str = _core.settling_band,
 ) -> Motion:
-    """What `simulate` does, without its warnings: for numbers that no person has written."""
+    """Simulate without warnings: for numbers that no person has written."""
     check_fits(drive, release)
     end = None if duration is None else check("duration", duration)
     if end is not None:
@@ -107,7 +107,7 @@ def check_phase(duration: float, natural_frequency: float) -> None:
 
 
 def _plausible(numbers: CoreNumbers) -> bool:
-    """Whether `warn_of` has nothing to say, quickly: a motion takes microseconds."""
+    """Return True if `warn_of` has nothing to report, quickly: a motion takes microseconds."""
     mass, stiffness, damping, plate, finger, v_plate, load, x, v, *_ = numbers
     *_, force, across, finger_load, stops, duration = numbers
     m0, m1, k0, k1, b1, plate1, finger1, skin0, skin1, speed1, load1, x1, v1, t0, t1 = _GLANCE

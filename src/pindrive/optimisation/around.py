@@ -1,4 +1,4 @@
-"""What lies around a design: maps of the feasible region, other parts, ends of ranges."""
+"""Neighbourhood of a design: maps of the feasible region, other parts, ends of ranges."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def maps(space: DesignSpace, point: Array, resolution: int) -> tuple[Map, ...]:
 
 
 def _parts(variable: Variable, resolution: int, chosen: float) -> Array:
-    """Places over a variable; the nearest to the design is its own: its cell is true of it."""
+    """Return the map's values of a variable; the design replaces the nearest one."""
     if not variable.choices:
         parts = np.linspace(0.0, 1.0, resolution)
         parts[np.abs(parts - chosen).argmin()] = chosen

@@ -39,11 +39,11 @@ class Catalogue:
 
     @property
     def priced(self) -> bool:
-        """Whether it has prices."""
+        """True if the catalogue has prices."""
         return not np.isnan(self.prices[0])
 
     def nearest(self, chosen: int, count: int) -> list[int]:
-        """The parts whose values are nearest to those of one, in their ratio, the nearest first."""
+        """Return the parts in order of the ratio of their values to a given part."""
         table = np.array([*self.values.values()])
         scale = np.maximum(np.abs(table[:, [chosen]]), 1e-300)
         with np.errstate(divide="ignore"):

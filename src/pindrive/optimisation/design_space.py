@@ -1,4 +1,4 @@
-"""What designs are worth: their numbers under all conditions, and the worst of these."""
+"""Design space: numbers of designs under all conditions, and the worst values."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ PORTION: Final = 4
 SENT: Final = 1 << 14
 """Motions that a worker elsewhere takes at a time."""
 GUESSED: Final = 2
-"""A speed is guessed once so many devices for each variable have been scanned."""
+"""Number of scanned devices per variable from which on a speed is first estimated by the model."""
 SHORTER: Final = 0.02
-"""A speed that is confirmed may be less by that part of it than what it was taken for."""
+"""Relative shortfall of a confirmed speed below its estimate that is accepted."""
 FAR: Final = 1e3
 """The most that a constraint counts in a violation, and what a missing number adds to it."""
 MOST_CONDITIONS: Final = 32
@@ -72,11 +72,11 @@ class DesignSpace:
     crew: Cluster | None = None
     """Workers elsewhere, which take scans, and motions by the ten thousand; None: none are."""
     price: float = 0.0
-    """Of parts that are no variables."""
+    """Price of the fixed parts."""
     count: Count = field(default_factory=Count)
     scanned: Scanned = field(default_factory=Scanned)
     coarse: bool = False
-    """Whether hand speeds are found roughly, as for a map."""
+    """True if hand speeds are computed roughly, as for a map."""
     tell: Callable[[], None] = lambda: None
 
     @cached_property
@@ -90,19 +90,19 @@ class DesignSpace:
 
     @cached_property
     def scales(self) -> Array:
-        """What an excess over each constraint is measured in: its limit, or a unit for display."""
+        """Scale of each violation: the limit, or a display unit."""
         sizes = [abs(d.limit) or 1.0 / NUMBERS[d.name].display_scale for d in self.constraints]
         return np.array(sizes, np.float64)
 
     @property
     def slow(self) -> bool:
-        """Whether its motions are followed one by one."""
+        """True if motions are simulated one by one."""
         swept = {key: 0 for v in (*self.variables, *self.conditions) for key in v.axes}
         return self.plan.page is None and is_slow(self.plan.device, swept)
 
     @property
     def scans(self) -> bool:
-        """Whether it scans a page."""
+        """True if a page is scanned."""
         return self.plan.page is not None
 
     # ---- points ----------------------------------------------------------------------------------
@@ -131,7 +131,7 @@ class DesignSpace:
     # ---- numbers ---------------------------------------------------------------------------------
 
     def numbers(self, points: Array, cases: Array | None = None) -> dict[str, Array]:
-        """The numbers of points at cases, SI, each of shape (n, c); NaN where there is none.
+        """Return the numbers of points at cases, SI, all of shape (n, c); NaN if missing.
 
         Args:
             points: shape (n, variables).
@@ -304,7 +304,7 @@ class DesignSpace:
     def excess(
         self, numbers: Mapping[str, Array], most: Mapping[str, Array] | None = None
     ) -> Array:
-        """How far each constraint is exceeded at each case, SI, shape (constraints, n, c), at best.
+        """Return the excess over each constraint at each case, SI, (constraints, n, c), at best.
 
         Args:
             numbers: each (n, c).
@@ -350,7 +350,7 @@ def _evaluate(plan: Plan, portion: tuple[dict[str, Array], int, tuple[str, ...]]
 
 
 def first_cases(conditions: tuple[Variable, ...]) -> Array:
-    """The conditions with which a search begins: ends and middles of all, or as many as fit."""
+    """Return the first conditions of a search: ends and middles, up to the budget."""
     if not conditions:
         return np.zeros((1, 0))
     nodes = []
@@ -368,7 +368,7 @@ def first_cases(conditions: tuple[Variable, ...]) -> Array:
 
 
 def spread_cases(conditions: tuple[Variable, ...], count: int, seed: int) -> Array:
-    """Conditions spread over all, a power of two of them; one where there are none."""
+    """Return conditions spread over all ranges, a power of two; one without conditions."""
     if not conditions:
         return np.zeros((1, 0))
     unit: Array = qmc.Sobol(len(conditions), scramble=True, rng=seed).random(count)

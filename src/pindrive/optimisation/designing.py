@@ -43,7 +43,7 @@ GAIN: Final = 0.05
 ROUNDS: Final = 6
 """Searches, each with the worst conditions of the design that the one before found."""
 WORSE: Final = 1e-3
-"""Of a goal or a limit, a part of it: a condition that is worse by less is no other."""
+"""Smallest relative change of a goal or a limit that makes a condition worse."""
 
 
 def optimise(
@@ -149,7 +149,7 @@ class _Optimisation:
         self.progress(self.done, self.total)
 
     def run(self) -> Design:
-        """All of it."""
+        """Return the whole result."""
         found, chosen = self._with_worst_conditions(self._screened())
         point, device, excess = self._as_built(found, chosen)
         if self.problem.least_yield:
@@ -318,7 +318,7 @@ class _Optimisation:
         return self._searched(self.space, again, max(1, self.effort.generations // 2))
 
     def _worse_cases(self, point: Array, attempt: int) -> Array:
-        """Conditions at which the design is worse than at those of the space, in what matters."""
+        """Return conditions that are worse for the design than the present ones."""
         space = self.space
         if not space.conditions:
             return np.empty((0, 0))
@@ -368,7 +368,7 @@ class _Optimisation:
         return limits, None
 
     def _no_worse(self, goals: Array) -> tuple[Constraint, ...]:
-        """The first goal better by `GAIN`, the others as they are."""
+        """Return the constraints of a first goal better by `GAIN`, all other goals unchanged."""
         wanted = [goals[0] - GAIN * abs(goals[0]), *goals[1:]]
         return tuple(
             Constraint(goal.name, not goal.maximise, float(-value if goal.maximise else value))
@@ -407,7 +407,7 @@ class _Optimisation:
         return goals, required
 
     def _values(self, point: Array) -> dict[str, float]:
-        """The value of every key of a design, SI, and of those that follow them."""
+        """Return the value of every key of a design, SI, with the linked keys."""
         found: dict[str, Array] = {}
         for variable, part in zip(self.space.variables, point, strict=True):
             found |= variable.columns(np.asarray(part))

@@ -1,4 +1,4 @@
-"""How much is tried for a design, by the kind of its design problem, and how much was."""
+"""Size of a search, by the kind of the design problem, and counts of its simulations."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Final
 
 @dataclass(frozen=True, slots=True)
 class Effort:
-    """How much is tried.
+    """Size of a search.
 
     Attributes:
         motions: or scans, of the screening.
@@ -30,15 +30,15 @@ class Effort:
 
 
 BATCHED: Final = Effort(1 << 20, 128, 400, 1024, 41, 20_000)
-"""Of what `simulate_batch` follows."""
+"""Size of a search with motions of `simulate_batch`."""
 SINGLE: Final = Effort(1 << 11, 24, 60, 64, 9, 500, 12)
-"""Of motions that are followed one by one."""
+"""Size of a search with motions that are simulated one by one."""
 SCANNED: Final = Effort(16, 12, 24, 8, 5, 100, 3)
-"""Of scans."""
+"""Size of a search with scans."""
 
 
 def usual_effort(*, scans: bool, slow: bool) -> Effort:
-    """What a design problem needs.
+    """Return the usual size of the search for a design problem.
 
     Args:
         scans: whether its designs are scanned.
@@ -49,7 +49,7 @@ def usual_effort(*, scans: bool, slow: bool) -> Effort:
 
 @dataclass
 class Count:
-    """How much was simulated.
+    """Number of simulations.
 
     Attributes:
         motions: releases.

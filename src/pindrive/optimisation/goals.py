@@ -55,7 +55,7 @@ class Goal:
 @concise
 @dataclass(frozen=True, slots=True)
 class Variable:
-    """What may be chosen, or what may occur: one key over a range, or keys with rows of values.
+    """Variable or condition: one key over a range, or keys with rows of values.
 
     Attributes:
         name: the first of its keys, or that of its catalogue.
@@ -103,7 +103,7 @@ class Asked(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DesignProblem:
-    """What is wanted of a design.
+    """Design problem.
 
     Attributes:
         plan: the device, what follows what, and the page; its axes are variables and conditions.
@@ -134,6 +134,6 @@ class DesignProblem:
         return (*self.plan.inputs, *(catalogue.path for catalogue in self.catalogues))
 
     def __repr__(self) -> str:
-        """What varies and what is best, in a line."""
+        """Return the variables and goals in a line."""
         what = ", ".join(variable.name for variable in self.variables)
         return f"<DesignProblem {' and '.join(goal.text() for goal in self.goals)} over {what}>"

@@ -1,4 +1,4 @@
-"""Kriging: what a number is at points between those at which it is known, and how surely.
+"""Kriging: interpolation of a number between known points, with its standard deviation.
 
 A Gaussian process with a constant mean, Matérn's correlation 5/2 with a length for each variable,
 and a nugget for what jumps; all by maximum likelihood, as in Jones, Schonlau and Welch 1998.
@@ -16,7 +16,7 @@ from pindrive.lazy import linalg, optimize
 
 Array = NDArray[np.float64]
 LENGTHS: Final = (0.05, 20.0)
-"""Of correlation, in unit cubes."""
+"""Correlation lengths, in unit cubes."""
 NUGGET: Final = (1e-6, 0.1)
 """Part of the variance."""
 STARTS: Final = (0.3, 1.5)

@@ -24,7 +24,7 @@ from pindrive.study.design import Plan, device_at
 FINE: Final = 1e-2
 """Part of a speed to which it is found, unless it is confirmed."""
 COARSE: Final = 5e-2
-"""The same, of a device that is slower than it must be."""
+"""Coarse precision for a device that is slower than required."""
 STEP: Final = 1.05
 """Ratio of the first two speeds of a bracket; that of the next is its square."""
 SLOWEST: Final[float] = default("speed.slowest")
@@ -73,7 +73,7 @@ class Climb:
     trials: dict[float, bool] = field(default_factory=dict)
 
     def distinct(self, speed: float) -> bool:
-        """Whether the lines are, by a trial or from one that has been made."""
+        """Return True if the lines are distinct, by a new trial or an earlier one."""
         if speed not in self.trials:
             trial = two_lines(self.device, self.pitch, 0.5 * self.pitch, speed, self.criteria)
             distinct = trial.distinct(default("speed.part"), self.criteria.direction)

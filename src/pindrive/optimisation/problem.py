@@ -214,7 +214,7 @@ def _catalogues(
 
 
 def _as_axes(catalogues: Iterable[Catalogue]) -> tuple[dict[str, Any], list[list[str]]]:
-    """The keys of catalogues as axes of lists, and those that go together."""
+    """Return the keys of catalogues as axes of lists, and the zipped keys."""
     axes: dict[str, Any] = {}
     groups = []
     for catalogue in catalogues:
@@ -320,7 +320,7 @@ def _side(constraint: Constraint) -> str:
 
 
 def _no_ranges(plan: Plan, conditions: set[str], place: str) -> Iterable[str]:
-    """Of axes without ends, and of counts without steps."""
+    """Return the errors of axes without ends, and of counts without steps."""
     for dimension in plan.dimensions:
         for key, axis in dimension.axes.items():
             table = "conditions" if key in conditions else "axes"

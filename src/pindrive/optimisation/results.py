@@ -1,4 +1,4 @@
-"""What `optimise` returns: the design, what limits it, the front, and maps around it."""
+"""Results of `optimise`: the design, its binding constraints, the front, and maps."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ class ConstraintResult:
 
     @property
     def binds(self) -> bool:
-        """Whether the goal could be better were this limit another."""
+        """True if another limit would improve the goal."""
         return isfinite(self.relaxed) and self.relaxed != self.constraint.limit
 
 
@@ -155,7 +155,7 @@ class Map:
 @equal_by_value
 @dataclass(frozen=True, eq=False, repr=False)
 class Design(lazy.NotebookHtml):
-    """What `optimise` found.
+    """Result of `optimise`.
 
     Attributes:
         problem: what was wanted.
@@ -242,7 +242,7 @@ class Design(lazy.NotebookHtml):
         return plot_design(self)
 
     def to_dataset(self) -> xr.Dataset:
-        """All of it as data.
+        """Return the whole result as data.
 
         Returns:
             The varied keys and the goals of the design, SI; over `limit` the value, the excess and

@@ -22,15 +22,15 @@ Array = NDArray[np.float64]
 TRUSTS: Final = (-1.0, 0.0, 1.0, 2.0)
 """Standard deviations by which a candidate of each round may be better than is expected."""
 MEMBERS: Final = 32
-"""Of the search on the model, with its generations and its patience."""
+"""Population of the search on the model, with its generations and its patience."""
 GENERATIONS: Final = 30
 PATIENCE: Final = 8
 SPREAD: Final = 128
-"""Points anywhere with which that search begins, beside those that are known."""
+"""Random points at the begin of that search, beside the known points."""
 CLOSE: Final = 2e-3
 """Two points less apart than that are one."""
 BESIDE: Final = 0.05
-"""How far beside the best a point is taken where the model gives none that is new."""
+"""Distance from the best of a point that replaces a known proposal of the model."""
 PROGRESS: Final = 1e-3
 """Part of a goal by which it must get better."""
 
@@ -69,7 +69,7 @@ def search_scans(
 
 
 def _candidates(space: DesignSpace, rng: np.random.Generator) -> Array:
-    """What is scanned next, a point for each of `TRUSTS`."""
+    """Return the next points to scan, a point per trust in `TRUSTS`."""
     known = space.known().points
     keys = known.shape[1]
     anywhere = qmc.Sobol(keys, rng=rng).random(SPREAD)
@@ -92,7 +92,7 @@ def _candidates(space: DesignSpace, rng: np.random.Generator) -> Array:
 def _newest(
     space: DesignSpace, result: Population, taken: Array, rng: np.random.Generator
 ) -> Array:
-    """Of the best points the one that is farthest from all that are taken."""
+    """Return the best point that is farthest from all chosen points."""
     meets = result.violation <= 0.0
     best = result[meets] if meets.any() else result[np.zeros(1, np.int64)]
     points = space.snapped(best.points[non_dominated(best.goals)])

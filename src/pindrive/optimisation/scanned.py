@@ -1,4 +1,4 @@
-"""What has been scanned, so that no device is scanned twice, and what may be expected between."""
+"""Scanned devices, so that no device is scanned twice, and the model between them."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Scanned:
 
     @property
     def count(self) -> int:
-        """Of places."""
+        """Number of places."""
         return len(self._inputs)
 
     @property
@@ -35,7 +35,7 @@ class Scanned:
         return np.array(self._inputs)
 
     def missing(self, inputs: Array) -> NDArray[np.int64]:
-        """Which of places (m, k) are not known; of equal ones the first."""
+        """Return True for unknown places (m, k); for equal ones only the first."""
         found: dict[bytes, int] = {}
         for i, place in enumerate(inputs):
             if place.tobytes() not in self._places:
@@ -43,12 +43,12 @@ class Scanned:
         return np.array([*found.values()], np.int64)
 
     def unconfirmed(self, inputs: Array) -> NDArray[np.int64]:
-        """Which of places (m, k) have numbers that `keep` was not told to be confirmed."""
+        """Return True for places (m, k) with numbers that are not confirmed."""
         each = [place.tobytes() not in self._confirmed for place in inputs]
         return np.flatnonzero(each)
 
     def keep(self, inputs: Array, numbers: Mapping[str, Array], *, confirmed: bool = False) -> None:
-        """Numbers (m,) of places (m, k); those of a place that is known are replaced."""
+        """Store the numbers (m,) of places (m, k); replaces known numbers."""
         if confirmed:
             self._confirmed |= {place.tobytes() for place in inputs}
         for i, place in enumerate(inputs):

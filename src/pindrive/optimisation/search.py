@@ -22,7 +22,7 @@ the unit cube."""
 BEST: Final = 0.15
 """Part of the population that children are drawn to."""
 PROGRESS: Final = 1e-5
-"""Of the goal, a part of it."""
+"""Relative improvement of the goal that counts as progress."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +40,7 @@ class Population:
     violation: Array
 
     def __getitem__(self, which: NDArray[np.int64] | NDArray[np.bool_]) -> Population:
-        """Some of them."""
+        """Return some members."""
         return Population(self.points[which], self.goals[which], self.violation[which])
 
     def __add__(self, other: Population) -> Population:
@@ -52,7 +52,7 @@ class Population:
         )
 
     def best(self, count: int) -> Population:
-        """So many of the best: fronts of those that meet the limits, then the nearest others."""
+        """Return the best members: feasible fronts first, then by violation."""
         meets = self.violation <= 0.0
         order = [*np.flatnonzero(meets)[_ranked(self.goals[meets], count)]]
         if len(order) < count:
@@ -124,7 +124,7 @@ def _children(points: Array, elite: int, rng: np.random.Generator) -> Array:
 
 
 def gained(before: Population, now: Population, progress: float = PROGRESS) -> bool:
-    """Whether the best, or with several goals the least of any, got better by a part of it."""
+    """Return True if the best goal, or the least of several, improved by a fraction."""
     if before.violation[0] > 0.0 or now.violation[0] > 0.0:
         return bool(now.violation[0] < before.violation[0] * (1.0 - progress))
     old, new = (p.goals[p.violation <= 0.0] for p in (before, now))
@@ -136,7 +136,7 @@ def gained(before: Population, now: Population, progress: float = PROGRESS) -> b
 
 
 def _volume(goals: Array, reference: Array) -> float:
-    """How much a front covers, by fixed directions: the mean reach from the reference's worst."""
+    """Return the volume below a front, by fixed directions: mean reach from the worst."""
     low, high = reference.min(axis=0), reference.max(axis=0)
     span = np.where(high > low, high - low, 1.0)
     scaled = np.clip((high - goals) / span, 0.0, None)
@@ -145,7 +145,7 @@ def _volume(goals: Array, reference: Array) -> float:
 
 
 def _directions(goals: int, count: int) -> Array:
-    """Weights spread over those that add up to 1, none of them 0."""
+    """Return positive weights spread over the simplex."""
     rng = np.random.default_rng(0)
     ways = np.maximum(rng.dirichlet(np.ones(goals), count), 1e-3)
     ways[:goals] = np.maximum(np.eye(goals), 1e-3)
@@ -154,7 +154,7 @@ def _directions(goals: int, count: int) -> Array:
 
 
 def non_dominated(goals: Array) -> NDArray[np.bool_]:
-    """Which of points (n, g) no other is at least equal to in all goals and better than in one."""
+    """Return True for points (n, g) that no point dominates."""
     kept = np.zeros(len(goals), np.bool_)
     order = np.lexsort(goals.T[::-1])
     front = np.empty((0, goals.shape[1]))
@@ -181,7 +181,7 @@ def _ranked(goals: Array, count: int) -> NDArray[np.int64]:
 
 
 def _spread(goals: Array, count: int) -> NDArray[np.int64]:
-    """Some of many points near their front: for each direction those that reach farthest."""
+    """Return some of many points near their front: the farthest in each direction."""
     low = goals.min(axis=0)
     span = np.maximum(np.quantile(goals, 0.9, axis=0) - low, 1e-300)
     scaled = ((goals - low) / span).astype(np.float32)

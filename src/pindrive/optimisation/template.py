@@ -1,4 +1,4 @@
-"""How a problem file is written: a device, what may vary, what is required, and what is best."""
+"""Template of a problem file: device, variables, constraints and goals."""
 
 from __future__ import annotations
 

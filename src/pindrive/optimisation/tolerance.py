@@ -1,4 +1,4 @@
-"""Which part of the designs that are built within the tolerances meets all constraints."""
+"""Yield of designs within the tolerances."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def excess_as_built(
     draws: int,
     seed: int,
 ) -> Array:
-    """How far devices that are built within the tolerances exceed each constraint, at worst.
+    """Return the excess of toleranced devices over each constraint, at worst.
 
     A tolerance in per cent is one of the design's own value. Every device that is drawn is followed
     at all conditions of the space.
@@ -70,7 +70,7 @@ def share_of(excess: Array) -> Share:
 
 
 def reserves(excess: Array, own: Array, part: float) -> Array:
-    """By how much each limit must be tightened for a part of the devices to meet it.
+    """Return the tightening of each limit that lets a fraction of the devices meet it.
 
     Args:
         excess: of devices, shape (constraints, draws).

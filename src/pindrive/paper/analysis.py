@@ -1,4 +1,4 @@
-"""What the closed-form analysis says, drawn: phase and amplitude, reversal, steady state, slips."""
+"""Figures of the closed-form analysis: phase and amplitude, reversal, steady state, slips."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _BOUNDS: Final[dict[str, tuple[Any, str]]] = {
 }
 """The variables of the first reversal's angle: their dashes and what they are."""
 _WIDTHS: Final = (0.6, 1.1, 1.8)
-"""Of their curves for each damping ratio, points, for print in grey."""
+"""Widths of the curves for each damping ratio, points, for grey print."""
 POINTS: Final = 201
 
 
@@ -132,7 +132,7 @@ def _draw_phase_and_amplitude(data: xr.Dataset) -> Figure:
 
 
 def first_reversal() -> Exhibit:
-    """When the pin first reaches the plate's velocity, and which drives never do."""
+    """Return the time at which the pin first reaches the plate's velocity, and the exceptions."""
     ratios = np.array([0.0, 0.04, 0.16])
     speed = np.linspace(0.005, 2.0, POINTS)
     r = release(ratios[:, None], speed, 0.2, 1.2)  # d = 1
@@ -232,7 +232,7 @@ def _draw_first_reversal(data: xr.Dataset) -> Figure:
 
 
 def steady_and_rest() -> Exhibit:
-    """How long the undamped pin takes to its steady oscillation, and to rest on the finger."""
+    """Return the times of the undamped pin to its steady oscillation and to rest on the finger."""
     places = np.linspace(0.0, 12.0, 601)  # x_0 / x_d
     speeds = np.array([1.0, 3.0, 10.0])  # v_p / ω_0 x_d
     r = release(0.0, speeds[:, None], 1.0, places)
@@ -324,7 +324,7 @@ SLIPS: Final = {
 
 
 def printed_forms() -> Exhibit:
-    """How far the printed extremes are off, over the damping ratio."""
+    """Return the errors of the printed extremes over the damping ratio."""
     ratios = np.linspace(0.0, 0.97, 195)
     speeds = np.linspace(0.0, 3.0, 61)
     r = release(ratios, speeds[:, None], 0.1)

@@ -39,7 +39,8 @@ DRIVE: Final = Drive(
 )
 """Static = kinetic friction, as in (1)."""
 FINGER_COEFFICIENT: Final = 0.5
-"""Of the finger's friction, by which the touch force follows from the assumed force."""
+"""Friction coefficient of the finger; it determines the touch force of the assumed friction force.
+"""
 TOUCH_FORCE: Final = VALUES["finger.kinetic"] / FINGER_COEFFICIENT
 """N: the paper's system load."""
 PRESSED: Final = Drive(
@@ -50,7 +51,7 @@ PRESSED: Final = Drive(
     finger=Contact(coefficient=FINGER_COEFFICIENT),
     touch_force=TOUCH_FORCE,
 )
-"""The same drive, whose friction follows the weight and the touch force."""
+"""The drive with friction that follows the weight and the touch force."""
 HOLD: Final = 12.0
 """The magnet's pull while it holds, as a factor on the plate's friction."""
 RELEASE: Final = Release(VALUES["mouse_velocity"], VALUES["displacement"])
@@ -70,7 +71,7 @@ SOURCES: Final = tuple(
 
 
 def stated(*leave_out: str) -> str:
-    """The assumed parameters in a line, but those left out."""
+    """Return the assumed parameters in a line, without the left out ones."""
     return ", ".join(
         f"{QUANTITIES[name].symbol} = {QUANTITIES[name].written(value)}"
         for name, value in VALUES.items()

@@ -16,7 +16,7 @@ from pindrive.paper.population import TINY, Claim, Facts, finger_friction, motio
 
 
 def steady_state() -> Iterator[Claim]:
-    """Of vibrations without damping, the last paragraph of the results."""
+    """Claims on vibrations without damping, the last paragraph of the results."""
     place = "Simulation"
     r = population.undamped()
     count, period = len(r.mass), 2 * np.pi / formulas.natural_frequency(r)

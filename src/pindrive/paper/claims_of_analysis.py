@@ -1,4 +1,4 @@
-"""The sentences that no simulation decides, and those of the mathematical analysis."""
+"""Claims beyond simulation, and claims of the mathematical analysis."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _PLACE = "Mathematical analysis"
 
 
 def has_closed_form(r: Releases) -> Truth:
-    """Whether one of the two elementary expressions of t_1 solves (21), of each release.
+    """Return True for releases with a t_1 that an elementary expression of (21) solves.
 
     They are π + 2φ_0 for ωt_1, which is exact without damping, and (26) of the limit case.
     """
@@ -77,7 +77,7 @@ def of_the_analysis(facts: Facts) -> Iterator[Claim]:
 
 
 def _change_of_direction(r: Releases, t_1: Array) -> Claim:
-    """What is said to happen at t_1; `r` are the releases that reach v_p then."""
+    """Return the claims on t_1; `r` are the releases that reach v_p then."""
     passes, keeps = np.zeros(t_1.size, dtype=bool), np.zeros(t_1.size, dtype=bool)
     for i in range(t_1.size):
         motion = population.motion_of(r, i)
@@ -101,7 +101,7 @@ def _change_of_direction(r: Releases, t_1: Array) -> Claim:
 
 
 def _first_reversal(damped: Releases, t_1: Array) -> Iterator[Claim]:
-    """What is said of t_1; `damped` are the releases that reach v_p again, at `t_1`."""
+    """Return the claims on t_1; `damped` are the releases that reach v_p again, at `t_1`."""
     undamped = damped.replace(damping=0.0)
     beyond = undamped.displacement > formulas.friction_offset(undamped)
     undamped = undamped.take(beyond & (undamped.mouse_velocity > 0.0))
@@ -159,7 +159,7 @@ def _first_reversal(damped: Releases, t_1: Array) -> Iterator[Claim]:
 
 
 def whole_motion(facts: Facts) -> Truth:
-    """Whether elementary expressions give the whole motion, of each release."""
+    """Return True for releases whose whole motion has elementary expressions."""
     r = facts.r
     reaches = np.isfinite(facts.number("first_reversal_time"))
     one_piece = r.take(~reaches)

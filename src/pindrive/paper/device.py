@@ -25,7 +25,7 @@ PARTS: Final = {
     "fingertip": (5.15, 5.6),
     "control block": (8.0, 3.35),
 }
-"""Where each part is named; the first five have the paper's numbers 1 to 5."""
+"""Places of the labels of the parts; the first five have the paper's numbers 1 to 5."""
 
 SYMBOLS: Final = (
     ("$x$", "deflection of the pin from the spring's rest, in the mouse", "m", "$x$"),

@@ -29,15 +29,15 @@ class Row(NamedTuple):
     right: str
     """TeX; empty where it is right as printed."""
     against: str
-    """What is compared, as a part of what."""
+    """Compared quantity and its unit."""
     off_printed: float
     """Largest deviation of the printed form; NaN where its units do not agree."""
     off_right: float
-    """Of the right form; the same where it is right as printed."""
+    """Error of the corrected form; equals the printed one if that is right."""
     off_lightly_damped: float
     """That of the printed form where ζ is at most the paper's largest damping factor."""
     good: str
-    """Where the printed form is off by at most `GOOD`; empty where it is right."""
+    """Releases for which the printed form deviates by at most `GOOD`; empty if it is right."""
 
 
 def _worst(deviation: Array) -> float:
@@ -51,7 +51,7 @@ def damping_ratio(r: Releases) -> Array:
 
 
 def where_good(deviation: Array, r: Releases) -> str:
-    """Of which releases each deviation (NaN: none to compare) is at most `GOOD`, in words."""
+    """Return the releases with a deviation (NaN: not compared) of at most `GOOD`, in words."""
     compared = np.isfinite(deviation)
     good = np.abs(deviation[compared]) <= GOOD
     ratio = damping_ratio(r)[compared]

@@ -19,7 +19,7 @@ from pindrive.lazy import stats, xr
 from pindrive.plot.style import STYLE, new_figure
 
 WIDTH: Final = 180.0
-"""Of every figure, mm."""
+"""Width of every figure, mm."""
 DPI: Final = 160
 
 
@@ -28,15 +28,15 @@ class Exhibit:
     """A figure with everything that belongs to it."""
 
     name: str
-    """Of its files, without ending."""
+    """Name of the files, without suffix."""
     title: str
     caption: str
-    """What is drawn, and every parameter that was assumed."""
+    """Content of the figure, with every assumed parameter."""
     data: xr.Dataset
     """All that the picture shows, SI or dimensionless, with units."""
     draw: Callable[[xr.Dataset], Figure]
     readings: tuple[str, ...] = ()
-    """What is seen in it; every number and trend in these sentences is computed."""
+    """Observations; every number and trend in these sentences is computed."""
     table: tuple[tuple[str, ...], ...] = ()
     """Headings and rows that belong to it, as Markdown with TeX between dollars."""
 
@@ -70,7 +70,7 @@ class Exhibit:
 
 
 def summary(data: xr.Dataset) -> dict[str, list[float]]:
-    """Of each variable: how many values and how many of them are finite, least, mean, greatest."""
+    """Return for each variable the counts of values and finite values, minimum, mean, maximum."""
     found = {}
     for name, variable in sorted(data.variables.items(), key=lambda item: str(item[0])):
         if variable.dtype.kind in "biuf":
@@ -88,7 +88,7 @@ def page(height: float) -> Figure:
 
 
 def trend(values: ArrayLike) -> str:
-    """How values go along their axis: throughout, on the whole (rank correlation), or neither."""
+    """Return the trend of values along their axis: strict, overall (rank correlation), or none."""
     y = np.asarray(values, dtype=np.float64)
     steps = np.diff(y)
     if (steps >= 0.0).all():
@@ -110,7 +110,7 @@ def listed(words: list[str]) -> str:
 
 
 def by_case(found: dict[str, str]) -> str:
-    """What is found in each case, the same said once: "rises at 1 and 2, falls at 3"."""
+    """Return the results of all cases, equal ones merged: "rises at 1 and 2, falls at 3"."""
     cases: dict[str, list[str]] = {}
     for case, words in found.items():
         cases.setdefault(words, []).append(case)
@@ -126,7 +126,7 @@ def at_most(value: float) -> str:
 
 
 def share(true: ArrayLike) -> str:
-    """How many: "1990 of 2000"."""
+    """Return a share in words: "1990 of 2000"."""
     found = np.asarray(true)
     return f"{int(found.sum())} of {found.size}"
 

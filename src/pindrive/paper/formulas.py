@@ -65,9 +65,9 @@ UNIT_RELEASE: Final = Release(mouse_velocity=0.0, displacement=1.0)
 """A drive without friction and damping, and its release, in units of m, x_0 and 1/ω_0."""
 
 _QUANTITY: Final = {"friction": "plate.kinetic"}
-"""Where a field's bounds stand in the table of quantities, if not under its own name."""
+"""Quantity with the bounds of a field, if its name differs."""
 _ARGUMENT: Final = {"friction": "plate_kinetic"}
-"""What a field is called in `simulate_batch`, if not the same."""
+"""Argument name of a field in `simulate_batch`, if it differs."""
 
 
 @dataclass(frozen=True, init=False, eq=False)
@@ -125,11 +125,11 @@ class Releases:
         return self.mass.shape
 
     def take(self, index: slice | NDArray[np.bool_]) -> Releases:
-        """Some of these releases, by a slice or a mask of their (one-dimensional) arrays."""
+        """Return some releases, by a slice or a mask of their (one-dimensional) arrays."""
         return Releases(**{field.name: getattr(self, field.name)[index] for field in fields(self)})
 
     def replace(self, **changes: ArrayLike) -> Releases:
-        """The same releases with other values for some fields."""
+        """Return the releases with other values for some fields."""
         return Releases(
             **{f.name: changes.get(f.name, getattr(self, f.name)) for f in fields(self)}
         )
@@ -191,7 +191,7 @@ def damped_frequency(r: Releases) -> Array:
 
 
 def applies(r: Releases) -> NDArray[np.bool_]:
-    """Whether (4) to (26) describe the pin right after its release.
+    """Return True if (4) to (26) describe the pin right after its release.
 
     Underdamped, and k x_0 + b v_p >= F. Below that the plate carries the pin on; below -F friction
     pulls the other way from the start.
@@ -312,7 +312,7 @@ def return_velocity(r: Releases) -> Array:
 
 
 def _extreme(r: Releases, t: Array) -> Array:
-    """How far from its middle an oscillation is at its extreme at t."""
+    """Return the distance of an oscillation from its middle at its extreme at t."""
     return _fading(r, t) * amplitude(r) * np.cos(velocity_phase(r))
 
 
@@ -380,7 +380,7 @@ def steady_amplitude(r: Releases) -> Array:
 
 
 def reversals_to_steady(r: Releases) -> Array:
-    """How often friction changes sign until the undamped pin is carried by the plate, as floats.
+    """Return the sign changes of friction until the plate carries the undamped pin, as floats.
 
     It is at v_p at the places x_0 → 2 x_d - x_0 → -2 x_d - x_1 …, until |x| <= x_d. The paper's
     0.5 (x_0 / x_d + 1) "periods" are these: their whole part, but where it is whole already.
@@ -394,7 +394,7 @@ def reversals_to_steady(r: Releases) -> Array:
 
 
 def time_to_steady(r: Releases) -> Array:
-    """When the steady oscillation of `steady_amplitude` begins, s: the transitional period.
+    """Return the begin of the steady oscillation of `steady_amplitude`, s: the transitional period.
 
     The sum of the swings between the reversals and of the last carried stretch, up to x_d. For
     v_p = 0 the pin then rests. Infinite without friction, NaN with damping.
@@ -416,7 +416,7 @@ def time_to_steady(r: Releases) -> Array:
 
 
 def periods_to_rest(r: Releases, finger_friction: ArrayLike) -> Array:
-    """How many periods after its last break-away from the plate the undamped pin rests.
+    """Return the periods after its last break-away in which the undamped pin comes to rest.
 
     Each half swing takes 2 x_f from the amplitude, x_f = finger friction / k. The paper has
     v_p / (4 x_f ω_0), calling x_f x_d; the exact number is ceil(v_p / (2 x_f ω_0)) / 2 - 1/4, which

@@ -81,7 +81,7 @@ DISPLACEMENT_MAPS: Final = (("speed", "damping"), ("plate", "speed"), ("plate", 
 
 
 def numbers(groups: Mapping[str, xr.DataArray | float]) -> xr.Dataset:
-    """What `simulate_batch` says of a drive given by its groups, in units of m, x_0 and 1/ω_0."""
+    """Return results of `simulate_batch` by dimensionless groups, in units of m, x_0, 1/ω_0."""
     values = {name: groups.get(name, group.baseline) for name, group in GROUPS.items()}
     return batched(
         UNIT_DRIVE,
@@ -128,7 +128,7 @@ def _joined(planes: dict[str, xr.Dataset], name: str) -> xr.Dataset:
 
 
 def time_and_displacement() -> tuple[Exhibit, Exhibit]:
-    """The maps of the settling time, and those of the largest displacement."""
+    """Return the maps of the settling time, and the maps of the largest displacement."""
     wanted = dict.fromkeys((*TIME_MAPS, *DISPLACEMENT_MAPS))
     planes = {f"{across}_{up}": plane(across, up) for across, up in wanted}
     at = ", ".join(f"{MEANING[g.name]} {g.baseline:.3g}" for g in GROUPS.values())
@@ -171,7 +171,7 @@ def time_and_displacement() -> tuple[Exhibit, Exhibit]:
 
 
 def _reading(values: xr.DataArray, across: str, up: str, name: str) -> str:
-    """How the number goes along each axis through the baseline, and where it is extreme."""
+    """Return the trends along each axis through the baseline, and the place of the extreme."""
     middle = {n: GROUPS[n].baseline for n in (across, up)}
     along = values.sel({up: middle[up]}, method="nearest").values
     against = values.sel({across: middle[across]}, method="nearest").values
@@ -187,7 +187,7 @@ def _reading(values: xr.DataArray, across: str, up: str, name: str) -> str:
 
 
 def _checks() -> tuple[float, float]:
-    """How well the four groups decide, and how well the peak needs but three."""
+    """Check that four groups determine the motion, and three its peak."""
     draw = np.random.default_rng(SEED)
     count = 500
     groups = {n: xr.DataArray(draw.uniform(0.02, g.most, count)) for n, g in GROUPS.items()}

@@ -32,7 +32,7 @@ _CARRY: Final = baseline.VALUES["displacement"] / baseline.VALUES["mouse_velocit
 
 
 def _modes(motion: Motion, t: NDArray[np.float64]) -> NDArray[np.int8]:
-    """Which mode holds at each time, as an index of `_STUCK`."""
+    """Return the mode at each time, as an index of `_STUCK`."""
     begins = np.array([segment.begin for segment in motion.segments])
     modes = np.array([_STUCK.index(segment.mode) for segment in motion.segments], dtype=np.int8)
     return modes[np.searchsorted(begins, t, side="right") - 1]

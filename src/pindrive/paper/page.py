@@ -121,7 +121,7 @@ def _labelled(table: str) -> str:
 
 
 def anchor(title: str) -> str:
-    """Where GitHub puts a heading: lower case, no punctuation, hyphens."""
+    """Return the anchor of a heading on GitHub: lower case, no punctuation, hyphens."""
     plain = re.sub(r"<[^>]+>", "", title).lower()
     return "".join(c for c in plain if c.isalnum() or c in " -_").replace(" ", "-")
 

@@ -34,10 +34,10 @@ RANGES = (
     "m 2–20 g, k 20–400 N/m, ζ 0–0.97 (denser where small), F 0–50 mN, v_p 0–300 mm/s; "
     "x_0 from where the pin breaks away, on average 1.5 mm beyond"
 )
-"""What `damped` draws from, in words."""
+"""Ranges of `damped`, in words."""
 
 UNDAMPED_RANGES = "F 5–50 mN, v_p 20–300 mm/s, x_0 0–3 mm"
-"""What else `undamped` draws from."""
+"""Further ranges of `undamped`."""
 
 
 def damped(count: int = COUNT, seed: int = SEED) -> Releases:
@@ -86,7 +86,7 @@ def motion_of(
     finger: float = 0.0,
     duration: float | None = None,
 ) -> Motion:
-    """The exact motion of one of these releases.
+    """Return the exact motion of a release.
 
     Args:
         r: the releases.
@@ -106,13 +106,13 @@ def motion_of(
 
 
 SAMPLED: Final = 400
-"""Of the releases, how many are sampled over time."""
+"""Number of releases that are sampled over time."""
 SAMPLES: Final = 9
 
 
 @dataclass(frozen=True)
 class Facts:
-    """What the exact simulator says of the stated releases."""
+    """Facts of the exact simulator on the stated releases."""
 
     r: Releases
 
@@ -122,7 +122,7 @@ class Facts:
         return self.r.batch(duration=1.01 * formulas.limit_reversal_time(self.r))
 
     def number(self, name: str) -> Array:
-        """One of the transient's."""
+        """Return a number of the transient."""
         return self.batch[f"transient_{name}"].to_numpy()
 
     @cached_property
@@ -199,19 +199,19 @@ class Claim:
     sentence: str
     """Word for word."""
     true: Truth | None
-    """Of each trial: whether it is true; None for what is no sentence about the drive."""
+    """Truth of the claim in each trial; None for a sentence that is no claim on the drive."""
     shown_by: str
     """The exhibit that shows it, or the table of equations; empty where none does."""
     finding: str
-    """What was found, with its numbers."""
+    """Result with its numbers."""
     condition: str = ""
-    """When it holds, in words."""
+    """Condition of the claim, in words."""
     meets: Truth | None = None
-    """Of each trial: whether it meets the condition."""
+    """True for trials that meet the condition."""
     done: bool = False
-    """Whether it says what the authors did, so that the trials are of doing the same here."""
+    """True for a sentence on the authors' actions, which the trials repeat."""
     excludes: bool = False
-    """Whether it says that something cannot be, so that trials can contradict it alone."""
+    """True for a claim of impossibility, which trials can only contradict."""
 
     @property
     def verdict(self) -> str:

@@ -40,7 +40,7 @@ PAGE: Final = "paper.html"
 """The name of the page."""
 
 STEPS, FIGURES = 12, 12
-"""How often `make` tells its progress, and how many exhibits it makes."""
+"""Number of progress reports of `make`, and number of its exhibits."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class Section:
 
 @dataclass(frozen=True)
 class Report:
-    """What the report says, not yet how it looks."""
+    """Content of the report, without its layout."""
 
     rows: list[Row]
     claims: list[Claim]
@@ -115,7 +115,7 @@ class Report:
         return table
 
     def slips(self) -> str:
-        """What else is wrong with the text around the equations."""
+        """Further errors in the text around the equations."""
         return (
             "(1) needs two corrections: the signs, and F_1 and F_2 exchanged. As printed F_1 is "
             "the plate's friction; the analysis sets F_1 = 0 for a pin that does not slide along "

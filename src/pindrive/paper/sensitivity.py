@@ -38,7 +38,7 @@ BASELINE: Final[dict[str, Any]] = {
 
 
 class Parameter(NamedTuple):
-    """One of the eight, and how it is drawn."""
+    """Parameter of the paper, and its appearance."""
 
     argument: str
     name: str
@@ -65,7 +65,7 @@ _NUMBERS: Final = ("settling_time", "rest_time", "peak_displacement")
 
 
 def curves() -> xr.Dataset:
-    """The numbers along each of the eight ranges, the other parameters at the baseline."""
+    """Return the results along the eight ranges, all other parameters at the baseline."""
     values = np.array([np.linspace(p.least, p.most, POINTS) for p in PARAMETERS])
     found = [_along(p.argument, x) for p, x in zip(PARAMETERS, values, strict=True)]
     masses = values[[p.argument for p in PARAMETERS].index("mass")]
@@ -107,7 +107,7 @@ def _batch(drive: Drive, argument: str, values: NDArray[np.float64]) -> xr.Datas
 
 
 def _along(argument: str, values: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
-    """The numbers over one of the parameters."""
+    """Return the results over a parameter."""
     if argument == "fall_time":
         transients = [_falling(float(time)).transient for time in values]
         return {name: np.array([getattr(t, name) for t in transients]) for name in _NUMBERS}
@@ -132,7 +132,7 @@ _OF_TWO: Final = (
 
 
 def _far_apart(data: xr.Dataset, name: str) -> tuple[float, float]:
-    """How far the curve of the mass is from the one that follows the weight: most, and where."""
+    """Return the largest distance between the curves of mass and weight, and its place."""
     of = data.sel(parameter="mass")
     apart = np.abs(of[f"{name}_by_weight"].values - of[name].values)
     return float(apart.max()), float(of.value[int(apart.argmax())])

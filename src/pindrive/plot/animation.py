@@ -66,7 +66,7 @@ def animation_format(path: Path) -> str:
 
 
 def ffmpeg() -> str | None:
-    """Where ffmpeg is: on the path, or that of the package imageio-ffmpeg."""
+    """Path of ffmpeg: from the search path, or from the package imageio-ffmpeg."""
     found = shutil.which("ffmpeg")
     if found is None:
         try:
@@ -79,7 +79,7 @@ def ffmpeg() -> str | None:
 
 
 def frame_times(path: HandPath, slow: float) -> NDArray[np.float64]:
-    """When the frames are, s, for an animation so many times slower than the hand.
+    """Return the times of the frames, s, for an animation slowed down by a factor.
 
     Raises:
         ValueError: `slow` is not greater than 0, or there would be too many frames.
@@ -156,7 +156,7 @@ def _write_gif(frames: Iterator[NDArray[np.uint8]], target: Path) -> None:
 
 
 def _palette(image: Image.Image) -> Image.Image:
-    """A palette with the colours of what moves, beside those of the first frame."""
+    """Return a palette with the colours of moving parts, beside the colours of the first frame."""
     tints = np.linspace(0.0, 1.0, 9)[:, np.newaxis]
     rows = [
         np.round(255.0 * (tints * np.array(to_rgb(PALETTE[name])) + 1.0 - tints))
@@ -197,7 +197,7 @@ def _write_mp4(frames: Iterator[NDArray[np.uint8]], target: Path) -> None:
 
 @dataclass(eq=False)
 class _Stage:
-    """What stands still, drawn once, and what moves."""
+    """Still parts, drawn once, and moving parts of an animation."""
 
     canvas: Any
     background: Any

@@ -26,15 +26,16 @@ if TYPE_CHECKING:
 
 MAP: Final = "viridis"
 JUMP: Final = 0.9
-"""Width of the line along a jump, points; contours have half of it."""
+"""Width of the line along a jump, points; contours have half that width."""
 _STEEP: Final = 4.0
-"""So many times the usual step beside it is a jump."""
+"""Factor beyond the usual neighbouring step from which on a step is a jump."""
 _SEEN: Final = 0.02
-"""Of the scale of colours: a smaller jump is not seen, and no jump here."""
+"""Smallest visible jump, as a fraction of the scale of colours."""
 _SHORTEST: Final = 0.04
-"""Of the panel's width or height: shorter pieces of contours are left out."""
+"""Shortest drawn piece of a contour, as a fraction of the panel's width or height."""
 _ROOM: Final = 0.06
-"""Of the panel, from the middle of a label to the frame; between two labels twice as much."""
+"""Distance from the middle of a label to the frame, as a fraction of the panel; twice between
+labels."""
 _BRIGHT: Final = 0.5
 """From this luminance of a colour on, lines on it are black."""
 
@@ -130,7 +131,7 @@ def _fronts(jumps: Mask, x: Array, y: Array) -> list[Array]:
 
 
 def _outside(line: Array, x: Array, y: Array, cells: Mask) -> Iterator[Array]:
-    """The pieces of a contour that are in none of these cells, but for the shortest."""
+    """Return the pieces of a contour outside of certain cells, without the shortest pieces."""
     middles = 0.5 * (line[1:] + line[:-1])
     column = np.clip(np.searchsorted(x, middles[:, 0]) - 1, 0, len(x) - 2)
     row = np.clip(np.searchsorted(y, middles[:, 1]) - 1, 0, len(y) - 2)

@@ -127,7 +127,7 @@ def _draw_over_time(motion: Motion, trace: Trace, x: Axes, v: Axes, a: Axes) -> 
 
 
 def _name_time_under(panels: list[Axes]) -> None:
-    """Move what names the time from the first of these to the last."""
+    """Move the label of the time axis from the first panel to the last."""
     panels[-1].set_xlabel(panels[0].get_xlabel())
     for axes in panels[:-1]:
         axes.set_xlabel("")
@@ -181,7 +181,7 @@ def _draw_portrait(motion: Motion, trace: Trace, axes: Axes) -> None:
 
 
 def _draw_key(motion: Motion, trace: Trace, axes: Axes) -> None:
-    """What the signs mean: those that occur."""
+    """Draw the legend of the occurring signs."""
     axes.set_axis_off()
     handles: list[Artist] = []
     notes: list[str] = []
@@ -234,7 +234,7 @@ def _mark_events(trace: Trace, axes: Axes, across: list[float], ordinate: str) -
 
 
 def _stops_met(motion: Motion, trace: Trace) -> list[float]:
-    """Where the end stops are that the pin touches, mm: others would stretch the axes."""
+    """Return the end stops that the pin touches, mm; free ones would stretch the axes."""
     sides = {copysign(1.0, e.position) for e, _ in trace.events if e.contact == "stop"}
     if motion.drive.travel is None:
         return []
@@ -358,7 +358,7 @@ def _mark_extremes(motion: Motion, trace: Trace, axes: Axes) -> None:
 
 
 def _outward(motion: Motion) -> bool:
-    """Whether the peak is above the trough."""
+    """Return True if the peak is above the trough."""
     return not motion.transient.peak_displacement < motion.transient.trough_displacement
 
 
@@ -373,11 +373,11 @@ _STOPS: Final = {
     "stop_stiffness": r"$k_\mathrm{s}$",
     "stop_damping": r"$b_\mathrm{s}$",
 }
-"""Of end stops, by their symbols."""
+"""Labels of end stops, by their symbols."""
 _LINE: Final = 118
 """Characters that fit side by side above the panels."""
 _MOST_TURNS: Final = 4
-"""Of a curve or an input that changes, how many values are told."""
+"""Largest number of values shown of a curve or a varying input."""
 
 
 def _values(given: float | Profile) -> Sequence[float]:
@@ -385,7 +385,7 @@ def _values(given: float | Profile) -> Sequence[float]:
 
 
 def _course(name: str, values: Sequence[float]) -> str:
-    """One value, or those that it takes in turn: "60 → 0 mm/s"; of many the least and the most."""
+    """Return one value, or its sequence: "60 → 0 mm/s"; for many values the range."""
     turns = [value for value, _ in groupby(values)]
     if len(turns) > _MOST_TURNS:
         return " … ".join(short(name, value) for value in (min(turns), max(turns)))
@@ -394,7 +394,7 @@ def _course(name: str, values: Sequence[float]) -> str:
 
 
 def stuck_name(motion: Motion, mode: str) -> str:
-    """What a phase stuck in this way is called."""
+    """Return the name of a stuck phase."""
     if mode == "resting" and (
         isinstance(motion.release.mouse_velocity, Profile)
         or not motion.drive.finger.rigid
@@ -408,7 +408,7 @@ def stuck_name(motion: Motion, mode: str) -> str:
 
 
 def outcome(motion: Motion) -> str:
-    """How it ends, how long the transient lasts and how far it swings."""
+    """Return the ending, the duration of the transient and its swing."""
     end, numbers = motion.ending, motion.transient
     place = short("displacement", end.position)
     words = {

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _DPI: Final = 96
-"""Of the picture: as large on the screen as on paper."""
+"""Resolution of the picture: equal sizes on screen and on paper."""
 _MOST_LABELS: Final = 12
 _MOST_COLUMNS: Final = 8
 _STYLE: Final = (
@@ -53,7 +53,7 @@ def html(result: Any) -> str:
 
 
 def _columns(data: xr.Dataset, dim: str) -> list[str]:
-    """What makes a table with a row for each label of a dimension; nothing where it has none."""
+    """Return a table with a row for each label of a dimension; nothing without labels."""
     labels = data.coords.get(dim)
     if labels is None or labels.dtype.kind != "U" or labels.size > _MOST_LABELS:
         return []
@@ -104,7 +104,7 @@ def _row(name: str, variable: xr.DataArray) -> str:
 
 
 def _display(unit: str) -> tuple[str, float]:
-    """The unit in which a person reads an SI unit, and how many of it make one."""
+    """Return the display unit of an SI unit, and the number of display units in it."""
     return ("", 1.0) if unit == "1" else DISPLAY.get(unit, (unit, 1.0))
 
 

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 LINES: Final = 4
 """Shown in the history, at most."""
 LONGEST: Final = 1.2
-"""Of the history, s, where it holds more than one line."""
+"""Longest history with more than one line, s."""
 BEFORE: Final = 0.04
 AFTER: Final = 0.16
 """Before the first line and after the last, s."""
@@ -149,7 +149,7 @@ def _times(pin: PinScan, chosen: Moment) -> NDArray[np.float64]:
 
 
 def _draw_bands(evaluation: Evaluation, chosen: Moment, axes: Axes) -> None:
-    """Where a printed line is under the pin's spot."""
+    """Draw the times at which a printed line is under the pin's spot."""
     scan = evaluation.scan
     spans = [
         (MS * (line.begin - chosen.begin), MS * (line.end - line.begin))

@@ -116,7 +116,7 @@ def _from(limit: SpeedLimit) -> float:
 
 
 def _bands(axes: Axes, limits: Sequence[SpeedLimit]) -> list[Line2D]:
-    """Where the lines are distinct again beyond the limit."""
+    """Draw the speeds beyond the limit at which the lines are distinct again."""
     return [
         line
         for limit in limits

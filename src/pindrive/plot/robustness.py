@@ -1,4 +1,4 @@
-"""How designs scatter within their tolerances, as a picture: histograms, limits, worst cases."""
+"""Figure of the scatter within tolerances: histograms, limits, worst cases."""
 
 from __future__ import annotations
 
@@ -130,7 +130,7 @@ def _outcome(found: Robustness) -> str:
 
 
 def _left_out(found: Robustness) -> str:
-    """How many draws are in no bar, as they cannot exist."""
+    """Return the number of draws without a bar, for designs that cannot exist."""
     if not found.refused:
         return ""
     drawn = counted(found.draws, "draw")

@@ -1,4 +1,4 @@
-"""The picture of a scan: the page, what the pins made of it, and one pin's history in detail."""
+"""Figure of a scan: page, tactile image, and the history of one pin."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ if TYPE_CHECKING:
     from pindrive.evaluation.perception import Evaluation
 
 WIDTH: Final = 180.0
-"""Of the page that it is drawn for, mm."""
+"""Assumed width of the page, mm."""
 WIDE: Final = 1.7
-"""A scene so many times as wide as it is high stands above its tactile image, not beside it."""
+"""Ratio of width to height from which on the scene stands above its tactile image."""
 MOST: Final = 99.0
 """Percent of the tactile image within the scale of colours."""
 LABELS: Final = {"lag_on": "lag on", "lag_off": "lag off"}
 APART: Final = 1.5
-"""What is empty between words of neighbouring rows, mm: the layout lets them touch."""
+"""Space between words of neighbouring rows, mm; the layout alone would let them touch."""
 BAR: Final = 0.022
 """Width of the scale of colours, a part of the page's."""
 TALLEST: Final = 1000.0
@@ -61,9 +61,9 @@ RELIEF: Final = LinearSegmentedColormap.from_list(
 )
 """Back is orange, at rest is white, forward is blue."""
 BACK: Final = 0.1
-"""What is deflected back by more than this part of the scale is dotted, which grey print keeps."""
+"""Fraction of the scale from which on backward deflection is dotted, for grey print."""
 SEEN: Final = 0.01
-"""Of the width of the page, what is a line; a shorter one is hidden by its dot."""
+"""Shortest visible line, as a fraction of the page's width; its dot hides a shorter one."""
 DOTTED: Final[dict[str, Any]] = {"fc": "none", "ec": "0.35", "hatch": "....", "lw": 0.0}
 
 
@@ -165,7 +165,7 @@ def plot_reliefs(evaluations: Sequence[Evaluation]) -> Figure:
 
 
 def _key(scan: Scan, panels: Iterable[Axes]) -> list[Artist]:
-    """What the signs on the page mean."""
+    """Draw the legend of the signs on the page."""
     way: dict[str, Any] = {"color": PALETTE["stick"], "alpha": 0.8}
     handles: list[Artist] = [Line2D([], [], **way, lw=0.9, label="way of the hand, reading")]
     if any(back for _, back in _strokes(scan)):
@@ -188,7 +188,7 @@ def _draw_key(figure: Figure, handles: list[Artist], columns: int) -> None:
 
 
 def _relief_title(evaluation: Evaluation) -> str:
-    """How fast the hand was, and what came of it."""
+    """Return the hand speed and the result of the evaluation, as a title."""
     counts = evaluation.counts
     speed = f"{MM * evaluation.scan.path.peak_speed:.4g} mm/s"
     lag, smear = (evaluation.spread(f"line.{name}")[1] for name in ("lag_off", "smear"))
@@ -293,7 +293,7 @@ def _dot_back(axes: Axes, painting: Painting, size: float) -> None:
 
 
 def _middles(painting: Painting, shape: tuple[int, ...]) -> tuple[NDArray[np.float64], ...]:
-    """The places x and y (mm) of the middles of so many rows and columns on its extent."""
+    """Return the centres x and y (mm) of rows and columns on the extent."""
     left, right, top, bottom = (MM * edge for edge in painting.extent)
     rows, columns = shape
     x = left + (np.arange(columns) + 0.5) * (right - left) / columns
@@ -312,20 +312,20 @@ def _scale(figure: Figure, image: AxesImage, place: Axes) -> None:
 
 
 def _draw_moment(scan: Scan, axes: Axes, chosen: Moment) -> None:
-    """Where on the page the history below takes place."""
+    """Mark the place of the history on the page."""
     x, y = MM * _track(scan, chosen)
     axes.plot(x, y, color=PALETTE["slip"], lw=1.6, solid_capstyle="butt", gid="moment")
     axes.plot(x[:1], y[:1], "o", color=PALETTE["slip"], ms=3.5, gid="moment")
 
 
 def _track(scan: Scan, chosen: Moment) -> NDArray[np.float64]:
-    """Where the pin's spot is in that time, m, of shape (2, n)."""
+    """Return the path of the pin's spot in that time, m, of shape (2, n)."""
     spots: NDArray[np.float64] = scan.spots(np.linspace(chosen.begin, chosen.end, 200))[chosen.pin]
     return spots.T
 
 
 def _where(scan: Scan, chosen: Moment) -> str:
-    """What of that is seen of it in the pictures above: a line, its dot, or nothing."""
+    """Return the visible part of the path in the pictures above: a line, its dot, or nothing."""
     left, right, top, bottom = view(scan)
     x, y = _track(scan, chosen)
     inside = (left <= x) & (x <= right) & (top <= y) & (y <= bottom)
@@ -347,7 +347,7 @@ def _frame(axes: Axes, title: str) -> None:
 
 
 def _title(evaluation: Evaluation) -> str:
-    """What was scanned, and how well it was shown."""
+    """Return the scanned page and the counts of its lines, as a title."""
     scan, counts = evaluation.scan, evaluation.counts
     lines, shown = counts["lines.crossed"], counts["lines.shown"]
     pins = f"{len(scan.pins)} pin{'s' if len(scan.pins) > 1 else ''}"

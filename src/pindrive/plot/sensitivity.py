@@ -1,4 +1,4 @@
-"""Which parameter matters, near and over the ranges; the derivatives of a motion over time."""
+"""Figures of sensitivity: Sobol' indices and elasticities, and derivatives over time."""
 
 from __future__ import annotations
 
@@ -34,13 +34,13 @@ _TOTAL: Final = "#A9CFE8"
 _FULL: Final = 2.0
 """The elasticity at which the colour is full."""
 _BAR: Final = 0.84
-"""Of a column, what a whole variance takes."""
+"""Width of a whole variance, as a fraction of a column."""
 _LONGEST: Final = 1.15
-"""Of a whole variance: an estimate above 1 is drawn as it is, up to the next column."""
+"""Longest bar, in whole variances: an estimate above 1 is drawn up to the next column."""
 _WIDTH: Final = 104
 """Characters of a line of the title."""
 _FEW: Final = 8
-"""With so many columns at most, the half is written at each scale too."""
+"""Largest number of columns with a label at the half of each scale."""
 MINUS: Final = "\N{MINUS SIGN}"
 
 

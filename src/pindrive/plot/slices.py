@@ -37,7 +37,7 @@ _ABSENT: Final[dict[str, Any]] = {**_HATCH, "hatch": "xxx"}
 _REFUSED: Final = "0.72"
 _LEVELS: Final = 8
 _FLAT: Final = 0.25
-"""Of a common scale of colours: a panel that takes less has its own."""
+"""Fraction of a common scale of colours below which a panel has its own scale."""
 
 
 def plot_study(
@@ -88,7 +88,7 @@ def plot_sweep(path: Path) -> Figure:
 
 
 def _common(panels: Sequence[Panel]) -> dict[str, float]:
-    """What all panels hold at the same value."""
+    """Return the values that all panels share."""
     first = panels[0].at
     return {k: v for k, v in first.items() if all(panel.at[k] == v for panel in panels)}
 
@@ -156,7 +156,7 @@ def _ends(shown: Sequence[Any]) -> tuple[float, float]:
 
 
 def _flattened(shown: Sequence[Any]) -> bool:
-    """Whether a panel that varies would take a small part of a common scale of colours."""
+    """Return True if a varying panel would take a small part of a common scale of colours."""
     low, high = _ends(shown)
     spans = [np.ptp(_ends([values])) for values in shown if np.isfinite(values).any()]
     return any(0.0 < span < _FLAT * (high - low) for span in spans)
@@ -251,7 +251,7 @@ def _draw_curves(panels: Sequence[Panel], axes: Axes, named: bool) -> None:
 
 
 def _shade_gaps(axes: Axes, x: Any, panel: Panel) -> None:
-    """Where the motion did not settle, the number does not exist, or there is no motion."""
+    """Shade points without a settled motion, without the number, or without a motion."""
     edges = np.concatenate([x[:1], 0.5 * (x[1:] + x[:-1]), x[-1:]])
     grey = {"color": _REFUSED, "lw": 0.0}
     for where, look in (
@@ -264,7 +264,7 @@ def _shade_gaps(axes: Axes, x: Any, panel: Panel) -> None:
 
 
 def _key(panels: Sequence[Panel]) -> list[Artist]:
-    """What grey areas and bands mean: those that occur."""
+    """Draw the legend of the occurring grey areas and bands."""
     handles: list[Artist] = []
     maps = len(panels[0].keys) == 2
     median = panels[0].low is not None

@@ -43,7 +43,7 @@ CONTACTS: Final = {
     "both": ("left", 6.0),
     "stop": ("none", 9.0),
 }
-"""How a marker is filled, and its size, by the contact that changes."""
+"""Fill and size of a marker, by the contact that changes."""
 SIGNS: Final[tuple[Sign, ...]] = (
     *product(("stick", "slip", "reverse"), ("plate", "finger", "both")),
     ("stop", "stop"),
@@ -59,21 +59,21 @@ CURVES: Final[tuple[dict[str, Any], ...]] = (
     {"color": "#E69F00", "ls": "-", "lw": 2.0},
     {"color": "#56B4E9", "ls": (0, (1.5, 1.5)), "lw": 1.6},
 )
-"""Curves side by side: the same colours, and dashes for print in grey."""
+"""Colours and dashes of neighbouring curves; dashes are for grey print."""
 
 PRINTED: Final[dict[str, Any]] = {"fc": "0.96", "ec": "0.72", "hatch": "/////", "lw": 0.0}
-"""Where a printed line passes: hatched, so that what the plate carries is told from it in grey."""
+"""Hatching of the passage of a printed line, to be distinguishable in grey."""
 LIFTED: Final[dict[str, Any]] = {"fc": "none", "ec": "#0072B2", "hatch": "....", "lw": 0.0}
 """While the finger is lifted: dotted, as nothing is felt."""
 HANDS: Final[dict[str, Any]] = {"fc": "#FBF0D8", "ec": "#E69F00", "hatch": "\\\\\\\\", "lw": 0.0}
 """A band that other areas cover."""
 HALO: Final = [withStroke(linewidth=2.0, foreground="white")]
-"""Of a text that a line may cross."""
+"""Outline of a text that a line may cross."""
 
 MM: Final = 1e3
-"""Of lengths and velocities: a metre in millimetres."""
+"""Millimetres per metre, for lengths and velocities."""
 MS: Final = 1e3
-"""Of times: a second in milliseconds."""
+"""Milliseconds per second."""
 
 GREY: Final = "0.45"
 SMALL: Final = 7.0
@@ -112,12 +112,12 @@ _SAVING: Final[dict[str, dict[str, Any]]] = {
 
 
 def plain(text: str, width: int = 10_000) -> str:
-    """Text of a user, in lines of about so many characters, none of which begins a formula."""
+    """Return a user's text in lines of limited length, safe from formula syntax."""
     return fill(text, width).replace("$", r"\$")
 
 
 def event_name(kind: str, contact: str) -> str:
-    """What such an event is called: "sticks at the plate", "strikes an end stop"."""
+    """Return the name of an event: "sticks at the plate", "strikes an end stop"."""
     if contact == "stop":
         return {"stop": "strikes an end stop", "leave": "leaves an end stop"}[kind]
     change = {"stick": "sticks", "slip": "slips", "reverse": "reverses"}[kind]
@@ -146,7 +146,7 @@ def mark_events(axes: Axes, points: Iterable[tuple[str, str, float, float]]) -> 
 
 
 def event_key(signs: Iterable[Sign]) -> list[Artist]:
-    """What the markers of events mean, for a legend."""
+    """Return the legend of the markers of events."""
     return [Line2D([], [], **event_marker(*sign), label=event_name(*sign)) for sign in signs]
 
 
@@ -175,7 +175,7 @@ class Figure(_Figure):
 
 
 def new_figure(width: float, height: float) -> Figure:
-    """An empty figure of so many millimetres; made, and drawn in, within `STYLE`."""
+    """Return an empty figure with a size in millimetres; made, and drawn in, within `STYLE`."""
     return Figure(figsize=(width / 25.4, height / 25.4))
 
 

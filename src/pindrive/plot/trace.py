@@ -19,15 +19,15 @@ if TYPE_CHECKING:
     from pindrive.motion.results import Event, Segment
 
 MOST_PHASES, MOST_PERIODS = 5000, 2500
-"""What is traced of a very long motion, from its start: so many phases, so many periods in motion.
+"""Limits of the trace of a very long motion, from its start: phases, and periods in motion.
 
 While the pin is stuck nothing swings, however long that takes."""
 STUCK: Final = ("carried", "resting")
 _STUCK_POINTS: Final = 200
-"""Of a phase in which the pin is stuck: there its place is a parabola over time."""
+"""Points in a phase in which the pin is stuck: its position is a parabola over time."""
 
 _MOST_CLOSER: Final = 30.0
-"""How much closer at most the grid is where skin grips, which is a stiffer spring."""
+"""Largest refinement of the grid for sticking skin, which acts as a stiffer spring."""
 
 MICRON: Final = 1e6  # of stretches
 
@@ -41,7 +41,7 @@ class Trace:
     phases: tuple[tuple[Segment, float], ...]
     """Segments, and how much later than themselves they are drawn (another round of a cycle), s."""
     starts: NDArray[np.intp]
-    """Where each phase begins in the columns; each has both its ends."""
+    """Begin of each phase in the columns; each phase includes both ends."""
     t: NDArray[np.float64]
     x: NDArray[np.float64]
     v: NDArray[np.float64]
@@ -53,7 +53,7 @@ class Trace:
     events: tuple[tuple[Event, float], ...]
     """Events, and their delay."""
     unit: str
-    """Of time."""
+    """Unit of time."""
     scale: float
     """Units of time in a second."""
 
@@ -122,7 +122,7 @@ class Trace:
         return self._spans(lambda phase: phase.mode == mode)
 
     def gripping(self) -> list[tuple[float, float]]:
-        """The same of the phases in which compliant skin grips the pin."""
+        """Return the phases in which compliant skin sticks to the pin."""
         return self._spans(lambda phase: phase.finger == 0)
 
     def _spans(self, chosen: Callable[[Segment], bool]) -> list[tuple[float, float]]:
@@ -145,7 +145,7 @@ class Trace:
 
 
 def _until(phases: tuple[tuple[Segment, float], ...], end: float, room: float) -> float:
-    """When the pin has moved freely for so long, s; the end if that is before."""
+    """Return the time after a given duration of free motion, s; at most the end."""
     for phase, delay in phases:
         if phase.mode not in STUCK:
             begin = phase.begin + delay

@@ -1,4 +1,4 @@
-"""How many of each thing a run may have: known before anything is allocated, refused beyond.
+"""Limits on the counts of a run, checked before any allocation.
 
 A device file of a few lines can ask for any amount of work. What it asks for is counted first. The
 limits keep a run on one machine below 4 GB of memory and, with as many cores as a laptop has, in
@@ -19,10 +19,10 @@ class Budget:
     """The largest count of one thing."""
 
     counted: str
-    """What is counted, as a message names it."""
+    """Name of the counted things, as in a message."""
     most: int
     why: str
-    """What each of them takes."""
+    """Cost of a counted thing."""
 
     def check(self, count: float, of: str = "", *, where: str = "") -> None:
         """Refuse a count beyond the limit.
@@ -138,7 +138,7 @@ DESIGN_VALUES: Final = Budget(
 
 
 def usable_cores() -> int:
-    """How many this process may use."""
+    """Return the number of processor cores available to this process."""
     of_this_process = getattr(os, "sched_getaffinity", None)
     return len(of_this_process(0)) if of_this_process else os.cpu_count() or 1
 
@@ -148,7 +148,7 @@ MOST_THREADS: Final = 4096
 
 
 def worker_count(threads: int | None) -> int:
-    """As many as given, or as there are cores to run on.
+    """Return the given number of workers, or the number of available cores.
 
     Raises:
         ValueError: that is no count.

@@ -28,9 +28,9 @@ class CsvTable:
     file: str
     headings: tuple[str, ...]
     numbers: tuple[int, ...]
-    """Of each row, as an editor counts lines."""
+    """Line number of each row, as in an editor."""
     cells: tuple[tuple[str, ...], ...]
-    """Of each row."""
+    """Cells of each row."""
 
     @classmethod
     def read(cls, path: str | PathLike[str], what: str, example: str) -> CsvTable:
@@ -79,7 +79,7 @@ class CsvTable:
         return found
 
     def __contains__(self, name: str) -> bool:
-        """Whether there is a column of that name."""
+        """Return True if a column has that name."""
         return name in self._columns
 
     def unit(self, name: str) -> str | None:
@@ -87,7 +87,7 @@ class CsvTable:
         return self._columns[name][0][1]
 
     def check_header(self, holds: bool, required: str) -> None:
-        """Refuse the header unless it holds what is required of it."""
+        """Reject a header without a required column."""
         if not holds:
             given = quoted(", ".join(self.headings))
             raise ValueError(refusal("the header", required, given, self.file))

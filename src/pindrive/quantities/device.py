@@ -14,7 +14,7 @@ from pindrive.quantities.quantity import FINE, NON_NEGATIVE, Quantity, between, 
 LUMINANCE: Final = between(0.0, 1.0)
 ACUTE: Final = between(0.0, radians(90.0))
 SPEED: Final = between(1e-4, 100.0)
-"""Of a hand."""
+"""Speed of a hand."""
 PLACE: Final = between(-1e3, 1e3)
 """On the page."""
 TURN: Final = radians(720.0)
@@ -317,7 +317,7 @@ DEVICE_PARTS: Final[tuple[Quantity, ...]] = (
         "least room of a pin to the end of its slot; negative where it goes beyond",
     ),
 )
-"""What the parts of a device are made of in Python, and what follows from them."""
+"""Attributes of the parts of a device in Python, and quantities derived from them."""
 
 PIN: Final[tuple[Quantity, ...]] = (
     Quantity("pin.energised", "t_on", "s", "time its magnet was switched on"),
@@ -329,7 +329,7 @@ PIN: Final[tuple[Quantity, ...]] = (
     Quantity("pin.peak_skin_force", "R_max", "N", "largest force on the skin, either way"),
     Quantity("pin.peak_stretch", "s_max", "m", "largest stretch of a compliant finger's skin"),
 )
-"""What each pin did in a scan."""
+"""Results of each pin of a scan."""
 
 # One pin of a tactile mouse may be heavy. Sixteen under a finger have magnets a few millimetres
 # wide, and springs so stiff that none of them reaches the next.
@@ -427,4 +427,4 @@ READER: Final[dict[str, dict[str, Any]]] = {
         "source": "assumed: half of what static friction holds, 45 mN / (300 N/m)",
     },
 }
-"""What differs, by the keys of a device file: fields of a `Quantity`."""
+"""Differing fields of `Quantity`, by the keys of a device file."""

@@ -50,7 +50,7 @@ COMPUTED: Final = {
     POSITIVE: ABOVE_ZERO,
     POSITIVE_OR_RIGID: OR_INFINITE,
 }
-"""What is computed of each of these intervals."""
+"""Computable intervals of the derived quantities."""
 RATIOS: Final = Bounds(1e-11, 1e6, True, True, also=(0.0,))
 PHASES: Final = between(0.0, 1e12)
 
@@ -437,7 +437,7 @@ _MOTION: Final = (
     ),
 )
 INPUTS: Final = _computed(in_table("drive", *_DRIVE), _CONTACTS, in_table("motion", *_MOTION))
-"""What a device file may give, in its order."""
+"""Keys of a device file, in order."""
 
 _PARTS: Final = (
     Quantity("kinetic", "F", "N", "friction force of a sliding contact", NON_NEGATIVE),
@@ -510,7 +510,7 @@ _PARTS: Final = (
     ),
 )
 PARTS: Final = _computed(_PARTS)
-"""What the parts of a drive are made of in Python, and what follows from them."""
+"""Attributes of the parts of a drive in Python, and quantities derived from them."""
 
 COLUMNS: Final[dict[str, tuple[str, str]]] = {
     "curve": ("curve.speed", "curve.force"),
@@ -519,4 +519,4 @@ COLUMNS: Final[dict[str, tuple[str, str]]] = {
     "steps": ("profile.time", "profile.value"),
     "places": ("place.x", "place.y"),
 }
-"""What stands in the rows of a curve, of a profile and of places, by the names of the parts."""
+"""Columns in the points of a curve, of a profile and of places, by the names of the parts."""

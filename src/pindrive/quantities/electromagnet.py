@@ -298,4 +298,5 @@ MADE: Final[tuple[Quantity, ...]] = (
         absent=0.004,
     ),
 )
-"""What follows from how it is made, and the time constants, which stand for its times."""
+"""Quantities derived from the design of the magnet, with the time constants that replace its times.
+"""

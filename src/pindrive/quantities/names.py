@@ -13,13 +13,13 @@ from pindrive.quantities.refusal import quoted
 _NEAR: Final = 0.6
 """Least likeness of a name that is suggested."""
 _BESIDE: Final = 0.03
-"""How much less likely than the best another suggestion may be."""
+"""Largest difference in likelihood between the best suggestion and another listed one."""
 _MOST: Final = 3
 """Suggestions at most."""
 _BY_PART: Final = 0.9
 """Likeness of a known name in the wrong table, and of the names of a table that stands alone."""
 _FEW: Final = 8
-"""So many names are listed where none is near."""
+"""Largest number of names that a message lists if none is similar."""
 OTHER_WORDS: Final = {
     "speed": "velocity",
     "friction": "kinetic",
@@ -111,11 +111,11 @@ class Names:
             yield from ((end, name) for name in names)
 
     def unknown(self, given: str) -> str:
-        """What to say of a name that is none: 'unknown key mas; did you mean drive.mass?'."""
+        """Return the message for an unknown name: 'unknown key mas; did you mean drive.mass?'."""
         return f"unknown {self._kind} {in_message(given)}; {self.suggestion(given)}"
 
     def suggestion(self, given: str) -> str:
-        """What to write for an unknown name: "did you mean drive.mass?"."""
+        """Return the advice for an unknown name: "did you mean drive.mass?"."""
         near = self.nearest(given)
         if near:
             return f"did you mean {self._or(near)}?"
@@ -135,7 +135,7 @@ def label(variable: str) -> str:
 
 
 def number_names(variables: Mapping[str, Quantity | None]) -> Names:
-    """How a user may write the numbers of these variables; None is what holds none, as a status.
+    """Return the accepted spellings of variables; None marks a variable without a number.
 
     The number of a transient goes before that of an ending, a median before a worst value.
     """
@@ -156,7 +156,7 @@ def _plain(name: str) -> str:
 
 
 def _ends(spelling: str) -> Iterator[str]:
-    """What follows each dot of a spelling, in plain letters."""
+    """Return the text after each dot of a spelling, in plain letters."""
     parts = spelling.split(".")
     yield from (_plain("_".join(parts[n:])) for n in range(1, len(parts)))
 

@@ -24,7 +24,7 @@ class Number(Protocol):
 
 
 class OptionalNumber(Protocol):
-    """The same, of one that may be None."""
+    """Descriptor of a number that may be None."""
 
     def __get__(self, instance: object, owner: object) -> float | None: ...
     def __set__(self, instance: object, value: float | str | None) -> None: ...
@@ -108,7 +108,7 @@ class Part:
         return number
 
     def default(self, name: str) -> Any:
-        """What holds where the quantity called `name` is not given, SI; None where nothing does."""
+        """Return the default of the quantity called `name`, SI; None without a default."""
         return self.rows[name].absent
 
 

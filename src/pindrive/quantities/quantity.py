@@ -1,4 +1,4 @@
-"""What a quantity is: a name, a unit, bounds, and how a value of it is written."""
+"""Definition of a quantity: name, unit, bounds, and text form of its values."""
 
 from __future__ import annotations
 
@@ -25,7 +25,8 @@ DISPLAY: Final[dict[str, tuple[str, float]]] = {
     "H": ("mH", 1e3),
     "1/m": ("dpi", 0.0254),
 }
-"""The unit in which a person reads each SI unit, and how many of it make one; others as is."""
+"""Display unit of each SI unit, and the number of display units in one SI unit; other units are
+displayed unchanged."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +43,7 @@ class Bounds:
     also: tuple[float, ...] = ()
 
     def __contains__(self, value: float) -> bool:
-        """Whether `value` is allowed; NaN never is."""
+        """Return True if `value` is allowed; NaN never is."""
         return (
             self.lower < value < self.upper
             or (self.lower_closed and value == self.lower)
@@ -79,7 +80,7 @@ def between(lower: float, upper: float) -> Bounds:
 
 
 FINE: Final = between(1e-8, 0.1)
-"""Rows that are so close to a curve: their number grows with one over the root of it."""
+"""Tolerance of a curve through points: the number of points grows with one over its square root."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,34 +94,35 @@ class Quantity:
     """SI unit, "1" when dimensionless, "" for a count or a truth value."""
     meaning: str
     bounds: Bounds = FINITE
-    """What it can be at all."""
+    """Bounds of all possible values."""
     default: float | None = None
     """SI value in the file that `pindrive init` writes."""
     source: str = ""
     section: str = ""
     """The table of the device file that holds it; empty when the name says so or it is no input."""
     mandatory: bool = False
-    """Whether a device file must give it."""
+    """True if a device file must contain the quantity."""
     alternative: tuple[str, ...] = ()
-    """The keys from one of which a mandatory one follows where that is given in its place."""
+    """Keys that may replace a mandatory quantity, which then follows from them."""
     absent: float | None = None
     """SI value that holds where a device file, or a call in Python, leaves it out; None: there is
     none, or it follows from others."""
     remark: str = ""
-    """What else its device file says about it."""
+    """Additional remark of the device file."""
     example: float | None = None
     """SI value in a comment of that file, where the file leaves it out."""
     rows_of: str = ""
-    """What its rows make where it may change, a key of `COLUMNS`: "curve", "profile"."""
+    """Key of `COLUMNS` for the points of a quantity that may vary: "curve", "profile"."""
     rows: Rows = ()
     """Such rows, SI, in a comment of that file; given alone, it must be rows."""
     follows: tuple[str, ...] = ()
     """Keys to which it keeps its ratio where they are varied and it is not: to the first, or to the
     first over the second. Of rows, the values keep it."""
     limits: Bounds = FINITE_OR_NOT
-    """What of that is computed, far outside of any device: all else is refused too."""
+    """Bounds of the computable values, far outside of any device; other values are rejected."""
     seen: Bounds | None = None
-    """What any such device has, either way; a value outside is taken, but warned of."""
+    """Plausible values of any such device, in magnitude; a value outside is accepted with a
+    warning."""
 
     @property
     def key(self) -> str:
@@ -134,17 +136,17 @@ class Quantity:
 
     @property
     def may_be_constant(self) -> bool:
-        """Whether one value may stand for it, or it must be rows."""
+        """True if a single value is accepted, besides points."""
         return not self.rows or self.default is not None or self.example is not None
 
     @property
     def kind(self) -> str:
-        """What a value of it is, for messages: "a number in kg", "a plain number"."""
+        """Kind of a value for messages: "a number in kg", "a plain number"."""
         return f"a number in {self.unit}" if self.unit not in ("", "1") else "a plain number"
 
     @property
     def kinds(self) -> str:
-        """What several values of it are: "numbers in kg", "plain numbers"."""
+        """Kind of several values: "numbers in kg", "plain numbers"."""
         return f"numbers in {self.unit}" if self.unit not in ("", "1") else "plain numbers"
 
     @property
@@ -154,17 +156,17 @@ class Quantity:
 
     @property
     def display_scale(self) -> float:
-        """How many display units make one SI unit."""
+        """Number of display units in one SI unit."""
         return DISPLAY.get(self.unit, (self.unit, 1.0))[1]
 
     @property
     def heading(self) -> str:
-        """The heading of a column of it in a CSV, SI: "position [m]", "line_stroke [m]"."""
+        """Heading of a CSV column, SI: "position [m]", "line_stroke [m]"."""
         return heading(self.variable, self.unit)
 
     @property
     def usual(self) -> str:
-        """A usual value of it as text: "10 g"; of one that must be rows, their last."""
+        """Usual value as text: "10 g"; for a quantity of points, their last value."""
         unknown = self.rows[-1][1] if self.rows else 1.0 / self.display_scale
         stated = (self.default, self.example, self.absent, unknown)
         return self.written(next(value for value in stated if value is not None))
@@ -180,12 +182,12 @@ class Quantity:
 
     @property
     def attributes(self) -> dict[str, str]:
-        """What a variable of a dataset that holds it says of it: meaning, symbol, SI unit."""
+        """Attributes of a dataset variable: meaning, symbol, SI unit."""
         stated = {"long_name": self.meaning, "symbol": self.symbol, "units": self.unit}
         return {name: text for name, text in stated.items() if text}
 
     def required(self, value: float) -> str:
-        """What a value (SI) must be, if it is not: "finite and greater than 0 kg"."""
+        """Return the requirement that a value (SI) violates: "finite and greater than 0 kg"."""
         for bounds in (self.bounds, self.limits):
             if value not in bounds:
                 return bounds.words("" if self.unit == "1" else self.unit)
@@ -219,7 +221,7 @@ def in_table(section: str, *rows: Quantity) -> tuple[Quantity, ...]:
 
 
 def optional(section: str, *rows: Quantity) -> tuple[Quantity, ...]:
-    """The same of a table that may be left out: what `pindrive init` writes holds then."""
+    """Return the quantities as optional ones, with their values in `pindrive init` as defaults."""
     return tuple(
         replace(row, absent=row.default) if row.absent is None else row
         for row in in_table(section, *rows)
@@ -243,7 +245,7 @@ def brief(value: float) -> str:
 
 
 def significant(value: float, digits: int = 4) -> str:
-    """`value` to so many significant digits, plain where that stays short; "-" for NaN."""
+    """Return `value` with that number of significant digits, plain if short; "-" for NaN."""
     if isnan(value):
         return "-"
     if value == 0.0 or not isfinite(value):

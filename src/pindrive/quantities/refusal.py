@@ -11,7 +11,7 @@ class Refusal(str):
     """The words of a refused value, which know the quantity that they refuse."""
 
     label: str
-    """What the message calls the quantity."""
+    """Name of the quantity in the message."""
     said: str
     """The words without the place where the value was written."""
 
@@ -23,7 +23,7 @@ class Refusal(str):
         return words
 
     def at(self, where: str, key: str) -> Refusal:
-        """The same of a value written at a place; its label is the key if that is its last part."""
+        """Return the message for a value at a place; the key becomes the label if it ends so."""
         own = self.label.partition("[")[0]
         full = key if key.endswith(f".{own}") else own
         label, said = (full + words.removeprefix(own) for words in (self.label, self.said))
@@ -48,7 +48,7 @@ def told_by(error: Exception) -> Refusal | str:
 
 
 def refused_by(error: Exception) -> str:
-    """What an error refuses: the label of the quantity, or the kind of an error that has none."""
+    """Return the label of the rejected quantity, or the kind of an error without a label."""
     told = told_by(error)
     return told.label if isinstance(told, Refusal) else type(error).__name__
 

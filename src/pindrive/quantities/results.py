@@ -122,7 +122,7 @@ ENDING: Final[tuple[Quantity, ...]] = (
         for name, symbol, unit, meaning in _AFTERWARDS
     ),
 )
-"""How a motion ends, in numbers."""
+"""Numbers of the ending of a motion."""
 
 FINAL: Final[tuple[Quantity, ...]] = (
     Quantity("final.position", "x_T", "m", "position at the end of the duration, or at rest"),
@@ -177,7 +177,7 @@ RATE: Final = Quantity(
     source="assumed",
     absent=1000.0,
 )
-"""Of files over time."""
+"""Sampling rate of time series in files."""
 
 MOTION: Final[tuple[Quantity, ...]] = (
     Quantity("time", "t", "s", "time since the release"),
@@ -191,7 +191,7 @@ MOTION: Final[tuple[Quantity, ...]] = (
     Quantity("stretch_rate", "s'", "m/s", "stretch rate of the skin"),
     Quantity("plate_velocity", "v_p", "m/s", "velocity of the plate in the housing"),
 )
-"""What is known of a motion at a time."""
+"""State of a motion at a time."""
 
 SCANNED: Final[tuple[Quantity, ...]] = (
     Quantity("hand_x", "x_h", "m", "place of the hand across the page"),
@@ -203,7 +203,7 @@ SCANNED: Final[tuple[Quantity, ...]] = (
     Quantity("pull", "P", "N", "pull of the magnet"),
     Quantity("warming", "ΔT", "K", "warming of the magnet above 20 °C"),
 )
-"""What is known of a scan at a time besides, on the clock of the hand's path."""
+"""Additional state of a scan at a time, on the clock of the hand's path."""
 
 SERIES: Final[dict[str, Quantity]] = {quantity.name: quantity for quantity in (*MOTION, *SCANNED)}
 """The columns over time of files and datasets, by their names."""
@@ -212,7 +212,7 @@ CHANNELS: Final[dict[str, Quantity]] = {
     **{name: SERIES[name] for name in ("position", "velocity", "acceleration")},
     "force": Quantity("force", "R", "N", "friction force of both contacts on the pin"),
 }
-"""What a recording of a release may hold over time, by the names of its columns."""
+"""Columns of a recording of a release."""
 
 # ---- scans ------------------------------------------------------------------------------------
 
@@ -288,7 +288,7 @@ _FOUND: Final = (
 LINE: Final[tuple[Quantity, ...]] = tuple(
     Quantity(f"line.{name}", symbol, unit, meaning) for name, symbol, unit, meaning in _FOUND
 )
-"""What is found of each line under each pin."""
+"""Numbers of each line under each pin."""
 
 EDGES: Final[tuple[Quantity, ...]] = tuple(
     Quantity(
@@ -301,7 +301,7 @@ EDGES: Final[tuple[Quantity, ...]] = tuple(
         ("y", "y", "m", "where down the page"),
     )
 )
-"""When and where it passed."""
+"""Time and place of the edges of a line."""
 
 BAD_WHEN_SMALL: Final = ("stroke", "skin_on", "skin_off", "contrast")
 """Numbers of a line, by their last parts, whose worst value is the least."""
@@ -326,7 +326,7 @@ LINE_COUNTS: Final[tuple[Quantity, ...]] = tuple(
         ("sure", "n_8", "shown, and it moved enough to tell it right in 95 % of cases"),
     )
 )
-"""What is found of a scan."""
+"""Counts of the evaluation of a scan."""
 
 SPEED: Final[tuple[Quantity, ...]] = (
     Quantity("speed.pitch", "p", "m", "distance between two lines", between(1e-6, 10.0)),
@@ -361,10 +361,10 @@ SPEED: Final[tuple[Quantity, ...]] = (
     Quantity("speed.distinct", "v_d", "m/s", "largest hand speed at which the lines are distinct"),
     Quantity("speed.settled", "v_s", "m/s", "largest up to which the pin settles in between, too"),
 )
-"""What the largest hand speed is found for, and what it is."""
+"""Quantities of the search for the largest hand speed."""
 
 JUDGE: Final = LINE + LINE_COUNTS + SPEED
-"""What is found of scans and speeds."""
+"""Results of scans and speeds."""
 
 DESIGNED: Final[tuple[Quantity, ...]] = (
     Quantity(
@@ -384,4 +384,4 @@ DESIGNED: Final[tuple[Quantity, ...]] = (
         "largest hand speed at which the lines of a grating stay distinct, least of its pitches",
     ),
 )
-"""Numbers of a design beside those of its motions and scans."""
+"""Numbers of a design beside the numbers of its motions and scans."""

@@ -59,7 +59,7 @@ def check_times(
     steps: bool = True,
     why: str = "",
 ) -> None:
-    """Refuse times (s) of rows out of order; with `steps` two may be the same, never three.
+    """Reject times (s) out of order; with `steps` a time may occur twice, never three times.
 
     `label` is of the index of the one that is wrong, `why` says why there may be no step.
     """

@@ -15,11 +15,11 @@ from pindrive.quantities.drive import INPUTS, PARTS
 __all__ = ["OUTCOMES", "End", "Side", "SimulationError", "Status", "outcome_attributes"]
 
 Side = Literal["left", "right"]
-"""Which limit of a motion at an event."""
+"""One-sided limit of a motion at an event."""
 
 
 class Status(IntEnum):
-    """Whether a motion or a scan was followed to its end, and what stopped it or kept it away.
+    """Status of a motion or a scan: complete, or the reason for its end or its absence.
 
     The values below `incomplete` are those of `Status` in model.hpp: there are numbers, up to where
     the simulation stopped. From `refused` on there is no motion. A result made from many motions,
@@ -59,12 +59,12 @@ class Status(IntEnum):
 
     @property
     def exists(self) -> bool:
-        """Whether there is a motion, if only up to where it was stopped."""
+        """True if a motion exists, complete or up to the time at which it was stopped."""
         return self < Status.refused
 
     @property
     def explanation(self) -> str:
-        """What it means and what to do about it, for a person."""
+        """Explanation of the status, with the remedy."""
         if self > Status.refused:
             bad = self.name.removeprefix("bad_")
             known = {quantity.name: quantity.meaning for quantity in (*INPUTS, *PARTS)}
@@ -106,7 +106,7 @@ class SimulationError(ValueError):
 
 
 class End(IntEnum):
-    """How a motion ends, as `End` in model.hpp has it; -1 where there is none."""
+    """Ending of a motion, with the values of `End` in model.hpp; -1 without an ending."""
 
     unknown = -1
     moving = 0

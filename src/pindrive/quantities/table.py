@@ -19,11 +19,11 @@ from pindrive.quantities.results import CRITERIA, DESIGNED, FINAL, JUDGE, OUTPUT
 T = TypeVar("T")
 
 DEVICE_INPUTS: Final = MAGNET + COIL + CONTROL + ARRAY + SCAN + CRITERIA
-"""What a device file may give beyond the drive, in its order; all of it may be left out."""
+"""Optional keys of a device file beyond the drive, in order."""
 
 
 DEVICE: Final[tuple[Quantity, ...]] = DEVICE_INPUTS + MADE + DEVICE_PARTS + PIN + JUDGE
-"""What the whole device adds."""
+"""Additional quantities of a whole device."""
 
 _ALL: Final = Part((*INPUTS, *PARTS, *OUTPUTS, *FINAL, RATE, *DEVICE, *DESIGNED))
 QUANTITIES: Final = _ALL.rows

@@ -86,7 +86,7 @@ def to_si(text: str, unit: str, example: str) -> float:
 
 
 def expected(unit: str, written: str, otherwise: str = "") -> str:
-    """What a unit has to be, in words, and that `written` is none where it is not known at all.
+    """Return the description of the required unit; it mentions if the unit `written` is unknown.
 
     Args:
         unit: the SI unit, "1" for dimensionless.
@@ -103,7 +103,7 @@ def expected(unit: str, written: str, otherwise: str = "") -> str:
 
 @cache
 def _factor(written: str, unit: str) -> Decimal:
-    """How many of the SI unit `unit` one `written` is; LookupError if they are not of a kind."""
+    """Return the number of units `unit` in one `written`; LookupError for different dimensions."""
     registry = _registry()
     try:
         source = registry.parse_units(written)

@@ -71,7 +71,7 @@ def _compared(value: Any) -> Iterator[Field[Any]]:
 
 
 def _text(value: Any, room: int) -> str:
-    """A value in so many characters."""
+    """Return a value as text of limited length."""
     if is_dataclass(value):
         shown = (
             f"{field.name}={_text(item, _NESTED)}"
@@ -94,14 +94,14 @@ def _text(value: Any, room: int) -> str:
 
 
 def _tells(field: Field[Any], value: Any) -> bool:
-    """Whether a field says something: it exists, and is not what it is unless given."""
+    """Return True if a field exists and differs from its default."""
     default = field.default if field.default_factory is MISSING else field.default_factory()
     exists = value is not None and not (isinstance(value, float) and isnan(value))
     return exists and (default is MISSING or _frozen(default) != _frozen(value))
 
 
 def _fitted(begin: str, parts: list[str], room: int) -> str:
-    """As many parts as fit, in brackets."""
+    """Return the leading parts that fit the length, in brackets."""
     text = begin
     for i, part in enumerate(parts):
         comma, last = ", " if i else "", i == len(parts) - 1

@@ -1,4 +1,4 @@
-"""How a study file writes an axis: a list, a table with one way to choose, or a tolerance."""
+"""Notations of an axis in a study file: a list, a table with one distribution, or a tolerance."""
 
 from __future__ import annotations
 

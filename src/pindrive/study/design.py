@@ -1,4 +1,4 @@
-"""What a study is: a device, its axes, every point in one order, and the page that is scanned."""
+"""Data of a study: device, axes, order of the points, and the scanned page."""
 
 from __future__ import annotations
 
@@ -84,14 +84,14 @@ class StudyPage:
                 raise ValueError(f"page.{name}: {path} has changed since the study was read")
 
     def scene(self, reading: Reading, array: PinArray) -> Scene:
-        """What is on the page; errors as for `Page`."""
+        """Return the scene on the page; errors as for `Page`."""
         size = Reading(
             text_height=reading.text_height, pixel=reading.pixel, line_pitch=reading.line_pitch
         )
         return _scene(self, size, array)
 
     def hand(self, reading: Reading, scene: Scene, array: PinArray) -> HandPath:
-        """How the hand moves over it; errors as for `Page`."""
+        """Return the path of the hand over the page; errors as for `Page`."""
         if self.page.path:
             hand = Reading(
                 hand_acceleration=reading.hand_acceleration,
@@ -159,7 +159,7 @@ def _recorded(given: StudyPage, path: Path, reading: Reading) -> HandPath:
 CHUNK: Final = 1 << 16
 """Points of a chunk: half a second's work, 15 MB of numbers."""
 SCANS: Final = 16
-"""The same of scans: from a quarter of a second's work with one pin to some with sixteen."""
+"""Scans of a chunk: from a quarter of a second's work with one pin to some seconds with sixteen."""
 COUNTS: Final = ("array.columns", "array.rows")
 """Keys that are whole numbers."""
 
@@ -208,7 +208,7 @@ class Plan:
     tolerance_links: Mapping[str, Linked]
     constraints: tuple[Constraint, ...] = ()
     page: StudyPage | None = None
-    """What is scanned at every point; None: every point is a release."""
+    """Scanned page of every point; None: every point is a release."""
 
     @property
     def inputs(self) -> tuple[Path, ...]:
@@ -218,17 +218,17 @@ class Plan:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """How many points along each dimension."""
+        """Number of points along each dimension."""
         return tuple(dimension.size for dimension in self.dimensions)
 
     @property
     def size(self) -> int:
-        """How many points there are."""
+        """Number of points."""
         return prod(self.shape)
 
     @property
     def chunks(self) -> int:
-        """How many chunks they make."""
+        """Number of chunks."""
         return -(-self.size // self.chunk)
 
     def bounds(self, chunk: int) -> tuple[int, int]:
@@ -246,7 +246,7 @@ class Plan:
 
     @property
     def at_a_time(self) -> int:
-        """How many points are computed before the progress is reported again."""
+        """Number of points between two reports of the progress."""
         return 16 * SCANS if self.page else CHUNK
 
     @property
@@ -261,7 +261,7 @@ class Plan:
 
     @property
     def axes(self) -> dict[str, Axis]:
-        """Every swept key with its values, those that follow another last."""
+        """Every swept key with its values; dependent keys come last."""
         found: dict[str, Axis] = {}
         for dimension in self.dimensions:
             found.update(dimension.axes)
@@ -308,7 +308,7 @@ def device_at(plan: Plan, at: Mapping[str, float]) -> DeviceFile:
 
 @dataclass(frozen=True, slots=True)
 class Ranges:
-    """What varies in a study, and how."""
+    """Varied keys of a study with their ranges."""
 
     scatter: Mapping[str, Distribution]
     fixed: Mapping[str, float]

@@ -61,7 +61,7 @@ class Listed:
 
     @property
     def count(self) -> int:
-        """How many."""
+        """Number of values."""
         return len(self.values)
 
     def at(self, index: Indices) -> NDArray[np.float64]:
@@ -83,14 +83,14 @@ KINDS: Final[dict[Kind, tuple[str, str]]] = {
     "normal": ("mean", "standard deviation"),
     "lognormal": ("median", "factor of one standard deviation"),
 }
-"""What the two numbers of a distribution are."""
+"""Meaning of the two numbers of a distribution."""
 _FAR: Final = 0.00135
 """The part of a normal distribution beyond three standard deviations, on one side."""
 
 
 @dataclass(frozen=True, slots=True)
 class Distribution:
-    """How a value scatters; what lies outside `lower` and `upper` is cut off and never drawn."""
+    """Distribution of a value; values outside `lower` and `upper` are cut off and never drawn."""
 
     kind: Kind
     first: float
@@ -124,7 +124,7 @@ class Distribution:
         )
 
     def _cut(self, limit: float) -> bool:
-        """Whether a limit leaves out more than the far ends do."""
+        """Return True if a limit cuts off more than the far ends."""
         return _FAR < self._part_below(limit) < 1.0 - _FAR
 
     def _part_below(self, value: float) -> float:
@@ -140,14 +140,14 @@ class Distribution:
 
 @dataclass(frozen=True, slots=True)
 class Linked:
-    """So many times the value of another key, or of one key over another."""
+    """Link of a key: a factor times the value of another key, or of a ratio of two keys."""
 
     of: str
     times: float
     over: str = ""
 
     def words(self, key: str, name: Callable[[str], str] = str) -> str:
-        """How `key` follows: "plate.static = 1.5 × plate.kinetic"; `name` gives a key's name."""
+        """Return the link of `key` in words, such as "plate.static = 1.5 × plate.kinetic"."""
         over = f" / {name(self.over)}" if self.over else ""
         return f"{name(key)} = {self.times:g} × {name(self.of)}{over}"
 
@@ -223,7 +223,7 @@ LEFT_OUT: Final = {
 
 
 def base_value(device: pindrive.DeviceFile, key: str) -> Any:
-    """What the device has for a key, in SI; for what it leaves out, what holds then."""
+    """Return the value of the device for a key, SI; the default for a missing key."""
     value = device.values()[key]
     if value is not None or key not in LEFT_OUT:
         return value
@@ -269,7 +269,7 @@ def implied_links(
 def with_links(
     device: pindrive.DeviceFile, columns: Columns, links: Mapping[str, Linked]
 ) -> Columns:
-    """The columns, and those of the keys that follow them or a value of the device.
+    """Return the columns with the columns of linked keys.
 
     The links have no circle (see `circle`).
     """

@@ -96,12 +96,12 @@ _WHOLE: Final = {
     "transient_settled": np.bool_,
 }
 _NOT_OF_THE_DRIVE: Final = ("duration", "settling_band")
-"""What is asked of a motion, beside its drive and its release."""
+"""Parameters of a motion beside its drive and its release."""
 _STOPS: Final = ("travel", "stop_stiffness", "stop_damping")
 _FOLLOWED: Final = tuple(
     f"motion.{name}" for name in ("skin_stretch", "force", "across_velocity", "finger_load")
 )
-"""Which points `simulate_batch` does not take."""
+"""Reasons for which `simulate_batch` does not simulate a point."""
 _RELEASE: Final = tuple(field.name for field in fields(Release))
 Table = dict[str, Any]
 """Arrays of one length by the names of their variables."""
@@ -183,7 +183,7 @@ def follow(plan: Plan, at: Mapping[str, float]) -> Motion:
 
 
 def is_slow(device: DeviceFile, swept: Mapping[str, object]) -> bool:
-    """Whether the points of a device must be simulated one by one."""
+    """Return True if the points of a device must be simulated one by one."""
     changes = {
         f"motion.{name}": isinstance(getattr(device.release, name), Profile) for name in INPUTS
     }
@@ -211,7 +211,7 @@ def _inputs(device: DeviceFile, columns: Columns) -> dict[str, Any]:
 
 
 def _refused(status: NDArray[np.int8]) -> NDArray[Any]:
-    """Of each point which argument is refused, by its status; empty where none is."""
+    """Return the rejected argument of each point by its status; empty without one."""
     names = np.full(max(Status) + 1, "", object)
     for code in Status:
         names[code] = "" if code.exists else code.name
@@ -238,7 +238,7 @@ def _point(inputs: Mapping[str, Any], i: int) -> dict[str, Any]:
 
 
 def _numbers(given: Mapping[str, Any]) -> dict[str, Any]:
-    """What `evaluate` gives of one point."""
+    """Return the numbers of one point for `evaluate`."""
     try:
         motion = _motion(given)
     except ValueError as error:
@@ -274,11 +274,11 @@ class RefusedPoints:
 
     count: int
     reason: str
-    """In the words, and with the values, of the first of them."""
+    """Return the reason of the first rejected point in words, with the values."""
 
 
 def exist(status: NDArray[Any]) -> NDArray[np.bool_]:
-    """Which points have a motion or a scan, by their `status`; it may have been stopped early."""
+    """Return True for points with a motion or a scan, by their `status`; a stopped one counts."""
     return np.asarray(status < Status.refused)
 
 
@@ -302,7 +302,7 @@ def refusals(plan: Plan, columns: Columns, reasons: NDArray[Any]) -> tuple[Refus
 
 
 def why(plan: Plan, at: Mapping[str, float]) -> str:
-    """Why there is no motion or scan at a point, which the keys' values (SI) say; empty: it is.
+    """Return the reason for a missing motion or scan at these values (SI); empty if it exists.
 
     It is said of the values to six digits, where these are refused too.
     """
@@ -311,7 +311,7 @@ def why(plan: Plan, at: Mapping[str, float]) -> str:
 
 
 def _reason(plan: Plan, at: Mapping[str, float]) -> str:
-    """What is refused of a point; empty where nothing is."""
+    """Return the rejection of a point; empty without one."""
     try:
         if plan.page:
             scan_numbers(plan, at)

@@ -1,4 +1,4 @@
-"""Which parameter matters at the device's own values: exact derivatives as elasticities."""
+"""Local sensitivity at the device's own values: exact derivatives as elasticities."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _WITHOUT: Final = ("motion.duration", "motion.settling_band")
 @equal_by_value
 @dataclass(frozen=True, slots=True, repr=False)
 class Elasticities(lazy.NotebookHtml):
-    """By how many per cent each number changes when a key grows by one per cent."""
+    """Relative change of each number, in per cent, when a key grows by one per cent."""
 
     keys: tuple[str, ...]
     values: Mapping[str, float]
@@ -37,12 +37,12 @@ class Elasticities(lazy.NotebookHtml):
     duration: float
     """The time over which they hold, s: it does not change with the keys."""
     gaps: Mapping[str, str]
-    """Why, for each key with numbers that have no derivative."""
+    """Reason, for each key with numbers that have no derivative."""
     name: str = ""
-    """Of the study."""
+    """Name of the study."""
 
     def __repr__(self) -> str:
-        """Of how many numbers and keys, in a line."""
+        """Return the counts of numbers and keys in a line."""
         numbers, keys = counted(len(self.table), "number"), counted(len(self.keys), "key")
         return f"<Elasticities of {numbers} to {keys}, {self.status.name}>"
 
@@ -76,7 +76,7 @@ class Elasticities(lazy.NotebookHtml):
 
 
 def local_sensitivity(study: Plan, *, tolerances: bool = False) -> Elasticities:
-    """By how many per cent each number changes where a key of a study grows by one per cent.
+    """Compute the change of each number, in per cent, when a key of a study grows by one per cent.
 
     Exact derivatives at the device's own values, by dual numbers through every event.
 
@@ -151,7 +151,7 @@ def elasticities(plan: Plan, keys: Sequence[str], links: Mapping[str, Linked]) -
 
 
 def _changes(plan: Plan, key: str, links: Mapping[str, Linked]) -> dict[str, float]:
-    """By how much each parameter of the motion changes, SI, where a key grows by its own size."""
+    """Return the change of each parameter of the motion, SI, when a key grows by its own size."""
     drive = plan.device.drive
     if key == "drive.damping_ratio":
         return {"damping": drive.damping}

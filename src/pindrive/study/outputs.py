@@ -69,11 +69,11 @@ _OF_SCANS: Final = variables(SCANNED)
 NUMBERS: Final[dict[str, Quantity]] = _OF_MOTIONS | _OF_SCANS | variables(DESIGNED)
 """By the names of their variables."""
 OUTPUTS: Final = (*_OF_MOTIONS, "status", "ending", "events")
-"""Of a motion."""
+"""Outputs of a motion."""
 SCAN_OUTPUTS: Final = (*_OF_SCANS, "status")
-"""Of a scan."""
+"""Outputs of a scan."""
 DESIGN_OUTPUTS: Final = tuple(variables(DESIGNED))
-"""Of a design."""
+"""Outputs of a design."""
 
 LEDGER: Final = tuple(variables(ENERGY))
 """The terms of the energy ledger: they take long, and are kept where a study names them."""
@@ -86,23 +86,23 @@ _COUNTS: Final = (
 _SETTLED: Final = "transient_settled"
 
 MEASURED: Final = tuple(name for name in _OF_MOTIONS if name != _SETTLED)
-"""Those of a motion that are numbers, not yes or no."""
+"""Numeric outputs of a motion, without flags."""
 SCAN_MEASURED: Final = tuple(_OF_SCANS)
-"""Those of a scan: all."""
+"""Numeric outputs of a scan: all outputs."""
 
 
 def is_measured(name: str) -> bool:
-    """Whether a variable is a number, not a flag."""
+    """Return True for a number, False for a flag."""
     return name in NUMBERS and name != _SETTLED
 
 
 def is_stepped(name: str) -> bool:
-    """Whether a variable is a count, or a part of one: it has no values between."""
+    """Return True for a count or a fraction of a count, which has no values in between."""
     return name in _COUNTS or name == "lines_shown_part"
 
 
 def usual_outputs(among: Sequence[str], *, rigid: bool, coil: bool) -> tuple[str, ...]:
-    """All numbers but those of the ledger; of a skin and of a coil only where there is one."""
+    """Return all numbers but the energy ledger; skin and coil only if present."""
     missing = (*LEDGER, *(_SKIN if rigid else ()), *(() if coil else ("coil_warming",)))
     return tuple(name for name in among if name not in missing)
 
@@ -126,7 +126,7 @@ def _names(among: tuple[str, ...]) -> Names:
 
 
 def dtype(name: str) -> np.dtype[Any]:
-    """How a variable is held: counts and flags as whole numbers."""
+    """Return the storage type of a variable: counts and flags are integers."""
     if name in ("status", "ending", _SETTLED):
         return np.dtype("<i1")
     return np.dtype("<i4" if name in _COUNTS or name == "events" else "<f8")
@@ -140,7 +140,7 @@ def encoded(name: str, values: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
 
 
 def attributes(name: str) -> dict[str, Any]:
-    """What a variable says of itself; xarray reads a missing count as NaN."""
+    """Return the attributes of a variable; xarray reads a missing count as NaN."""
     if name in OUTCOMES:
         return outcome_attributes(name)
     found = {**NUMBERS[name].attributes}
@@ -159,7 +159,7 @@ def measured(name: str) -> Quantity:
 
 _CONDITION: Final = re.compile(r"\s*(<=|>=|≤|≥)\s*(.+)")
 LARGEST: Final = 1e100
-"""Of a limit: so that squares of what is beyond it are numbers."""
+"""Largest limit: its square is still finite."""
 _AT_MOST: Final = ("<=", "≤")
 
 
@@ -173,11 +173,11 @@ class Constraint:
     limit: float
 
     def met(self, values: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Which values meet it; a number that does not exist never does."""
+        """Return True for values within the limit; NaN never is."""
         return values <= self.limit if self.at_most else values >= self.limit
 
     def excess(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
-        """How far beyond the limit, SI: negative within it, infinite for what does not exist."""
+        """Return the distance beyond the limit, SI: negative within, infinite for NaN."""
         beyond = values - self.limit if self.at_most else self.limit - values
         return np.where(np.isnan(values), inf, beyond)
 
@@ -262,7 +262,7 @@ class Share:
     low: float
     high: float
     without: int = 0
-    """How many have no number to meet the constraint with, such as one that never settles."""
+    """Number of designs without the constrained number, for example never settled."""
 
     @property
     def text(self) -> str:
@@ -274,13 +274,13 @@ class Share:
 
     @classmethod
     def of_designs(cls, met: int, of: int, without: int = 0) -> Share:
-        """Of so many independent draws of designs that exist, at least 1."""
+        """Return the share among independent draws of existing designs, at least 1."""
         interval = stats.binomtest(met, of).proportion_ci(_CONFIDENCE, method="exact")
         return cls(met, of, float(interval.low), float(interval.high), without)
 
 
 def points_that_meet(path: Path) -> tuple[int, int] | None:
-    """How many points meet the specification that the file holds, and of how many that exist.
+    """Return the counts of points that meet the specification of the file, and of existing points.
 
     None where it holds none.
     """

@@ -39,7 +39,7 @@ _GENERATIONS_OF_SCANS: Final = 10
 @concise
 @dataclass(frozen=True, slots=True)
 class WorstCase:
-    """Where a constraint is missed by the most, or met by the least."""
+    """Point with the largest violation of a constraint, or with the smallest margin."""
 
     constraint: Constraint
     keys: Mapping[str, float]
@@ -49,13 +49,13 @@ class WorstCase:
     sampled: float
     """The worst among the draws, before the search."""
     motion: Motion | None
-    """The same point followed by itself; None of a scan."""
+    """Motion at that point; None for a scan."""
 
 
 @equal_by_value
 @dataclass(frozen=True, slots=True, repr=False)
 class Robustness(lazy.NotebookHtml):
-    """What `robustness` found."""
+    """Result of `robustness`."""
 
     ranges: Ranges
     draws: int
@@ -71,13 +71,13 @@ class Robustness(lazy.NotebookHtml):
     shares: tuple[tuple[Constraint, Share], ...]
     """For each constraint, how many designs meet it; without a number a design does not."""
     all_met: Share | None
-    """How many meet all of them: the yield."""
+    """Number of designs that meet all constraints: the yield."""
     worst: tuple[WorstCase, ...]
     name: str = ""
-    """Of the study."""
+    """Name of the study."""
 
     def __repr__(self) -> str:
-        """How many designs, and how many meet the specification, in a line."""
+        """Return the counts of designs and of feasible designs in a line."""
         met = f"{self.all_met.text} meet the specification" if self.all_met else "no specification"
         return f"<Robustness of {counted(self.designs, 'design')}: {met}, {self.status.name}>"
 
@@ -87,7 +87,7 @@ class Robustness(lazy.NotebookHtml):
         return Status.incomplete if self.refusals else Status.ok
 
     def plot(self) -> mpl_figure.Figure:
-        """How the watched numbers spread, with the limits, as a figure that a notebook shows."""
+        """Plot the distributions of the watched numbers with the limits."""
         from pindrive.plot.robustness import plot_robustness
 
         return plot_robustness(self, self.name)

@@ -52,13 +52,13 @@ Work = Callable[["Plan", list[int]], Iterator[tuple[int, list[Piece]]]]
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Sweep(lazy.NotebookHtml):
-    """What `sweep` computed, and the file that holds it."""
+    """Result of `sweep`, and its file."""
 
     path: Path
     points: int
-    """Of the study that are in the file."""
+    """Number of points in the file."""
     worked_out: int
-    """Of them, those of this run."""
+    """Number of points computed in this run."""
     refused: int
     settled: int
     """-1 where the settling time is not among the outputs."""
@@ -66,7 +66,7 @@ class Sweep(lazy.NotebookHtml):
     complete: bool
 
     def __repr__(self) -> str:
-        """How many points are in the file, in a line."""
+        """Return the number of points in the file in a line."""
         points = counted(self.points, "point")
         refused = f", {self.refused} without numbers" if self.refused else ""
         return f"<Sweep {self.path.name} of {points}{refused}, {self.status.name}>"
@@ -170,7 +170,7 @@ def sweep(
 
 
 def on_threads(threads: int | None = None) -> Work:
-    """Chunks side by side on the cores of this machine, as many at a time as there are threads.
+    """Compute chunks in parallel on the cores of this machine, one per thread at a time.
 
     Scans are computed by as many processes instead: a script that sweeps them does so under
     `if __name__ == "__main__":`, as all that begin processes.
@@ -277,7 +277,7 @@ def _keeping(part: Path, journal: Journal) -> Iterator[None]:
 
 
 def _kept(chunks: int) -> str:
-    """What an interrupted run leaves."""
+    """Result of an interrupted run."""
     if not chunks:
         return "no chunk was finished yet"
     finished = counted(chunks, "finished chunk is", "finished chunks are")
@@ -285,14 +285,14 @@ def _kept(chunks: int) -> str:
 
 
 def _drop_damaged(journal: Journal, store: Store, plan: Plan) -> None:
-    """Forget chunks whose bytes are not those that were written."""
+    """Discard chunks whose bytes differ from the written ones."""
     for chunk, (noted, _) in list(journal.done.items()):
         if not 0 <= chunk < plan.chunks or checksum(store.read(plan, chunk)) != noted:
             del journal.done[chunk]
 
 
 def _is_complete(target: Path, plan: Plan) -> bool:
-    """Whether the file is the whole of this study; one of another study is refused."""
+    """Return True if the file holds the whole study; reject the file of another study."""
     if not target.is_file():
         return False
     try:

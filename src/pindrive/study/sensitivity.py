@@ -1,4 +1,4 @@
-"""Which parameter matters, near the device's values and over the study's ranges."""
+"""Sensitivity near the device's values and over the ranges of a study."""
 
 from __future__ import annotations
 
@@ -126,7 +126,7 @@ class _Sums:
 
     @classmethod
     def of(cls, design: NDArray[np.float64]) -> _Sums:
-        """Of values at A, B and each mixture, shape (keys + 2, count)."""
+        """Compute the indices from the values at A, B and each mixture, shape (keys + 2, count)."""
         exists = np.isfinite(design).all(axis=0)
         keys = len(design) - 2
         kept = float(exists.mean())
@@ -169,7 +169,7 @@ USUAL_ROWS_OF_SCANS: Final = 256
 @equal_by_value
 @dataclass(frozen=True, slots=True, repr=False)
 class SobolIndices(lazy.NotebookHtml):
-    """Which key matters to which number: Sobol' indices, and elasticities beside them if wanted."""
+    """Sobol' indices of each key for each number, optionally with elasticities."""
 
     keys: tuple[str, ...]
     ranges: Ranges
@@ -181,10 +181,10 @@ class SobolIndices(lazy.NotebookHtml):
     refusals: tuple[RefusedPoints, ...]
     """Points that cannot exist, as their values contradict each other; left out."""
     name: str = ""
-    """Of the study."""
+    """Name of the study."""
 
     def __repr__(self) -> str:
-        """Of how many numbers and keys, from how many points, in a line."""
+        """Return the counts of numbers, keys and points in a line."""
         numbers, keys = counted(len(self.over), "number"), counted(len(self.keys), "key")
         points = counted(self.points, "point")
         return f"<Sobol' indices of {numbers} over {keys}, {points}, {self.status.name}>"
@@ -238,7 +238,7 @@ def sobol(
     progress: Progress = lambda done, total: None,
     near: bool = False,
 ) -> SobolIndices:
-    """Which key matters over the ranges of a study: Sobol' indices of first order and total.
+    """Compute Sobol' indices, first order and total, over the ranges of a study.
 
     The estimators are those of Saltelli et al. 2010, 10.1016/j.cpc.2009.09.018, the intervals a
     bootstrap over the rows.

@@ -83,7 +83,7 @@ def symbol(name: str) -> str:
 
 
 def axis_label(name: str) -> str:
-    r"""What stands along an axis: "plate friction $F_\mathrm{p}$ (mN)"."""
+    r"""Return the label of an axis: "plate friction $F_\mathrm{p}$ (mN)"."""
     unit = QUANTITY[name].display_unit
     said = " ".join(filter(None, (words(name), symbol(name))))
     return f"{said} ({unit})" if unit else said
@@ -95,7 +95,7 @@ def value(name: str, number: float) -> str:
 
 
 def values(given: Mapping[str, float], width: int) -> str:
-    """Values one after the other, broken into lines of about so many characters."""
+    """Return values in sequence, broken into lines of limited length."""
     lines = [""]
     for name, number in given.items():
         said = value(name, number)
@@ -108,7 +108,7 @@ def values(given: Mapping[str, float], width: int) -> str:
 
 
 def ranges(scatter: Mapping[str, Distribution]) -> str:
-    """What varies, five in a line: "m 9.4 … 10.6 g (3σ), k …"."""
+    """Return the varied keys with their ranges, five in a line: "m 9.4 … 10.6 g (3σ), k …"."""
     said = []
     for key, axis in scatter.items():
         quantity = QUANTITY[variable(key)]
@@ -131,16 +131,16 @@ class Panel:
     keys: Sequence[str]
     """x alone, or y and x: the axes of `values`."""
     at: Mapping[str, float]
-    """What else was varied, and is held here."""
+    """Fixed values of all other varied keys."""
     along: Sequence[NDArray[np.float64]]
     """The values of each key."""
     values: NDArray[np.float64]
     unsettled: NDArray[np.bool_]
     absent: NDArray[np.bool_]
-    """Where the number does not exist although the motion settles."""
+    """True for points without the number although the motion settles."""
     refused: NDArray[np.bool_]
     low: NDArray[np.float64] | None = None
-    """Of many draws the 5 % quantile, where `values` are their median."""
+    """5 % quantile of many draws, whose median is in `values`."""
     high: NDArray[np.float64] | None = None
     """The 95 % quantile."""
     met: NDArray[np.float64] | None = None
@@ -148,7 +148,7 @@ class Panel:
 
 
 class Slice:
-    """An open study: which keys it varies, and slices of it."""
+    """Open study file with its varied keys and slices."""
 
     def __init__(self, path: str | PathLike[str]) -> None:
         """Open the file of a sweep.
@@ -180,7 +180,7 @@ class Slice:
         ]
         self.sampled = [k for k in self.keys if self.data[k].dims == ("sample",)]
         self.page = str(self.data.attrs.get("page", ""))
-        """What was scanned; empty of a study of releases."""
+        """Scanned page; empty for a study of releases."""
         known = SCAN_MEASURED if self.page else MEASURED
         self.numbers = [name for name in known if name in self.data]
         self.fixed = {
@@ -264,7 +264,7 @@ class Slice:
         return found
 
     def axes(self, x: str | None, y: str | None, held: Mapping[str, float]) -> tuple[str, str]:
-        """The keys to draw over: those given, or the first two that are free.
+        """Return the keys of the axes: the given ones, or the first two free ones.
 
         Raises:
             ValueError: there are none, or the two change together.
@@ -286,7 +286,7 @@ class Slice:
         return chosen[0], chosen[1] if len(chosen) > 1 else ""
 
     def _independent(self, one: str, other: str) -> bool:
-        """Whether two keys take all combinations of their values, or are drawn each by itself."""
+        """Return True if two keys take all combinations of values, or are drawn independently."""
         return one != other and (
             self.dimension(one) != self.dimension(other) or one in self.sampled
         )
@@ -351,7 +351,7 @@ class Slice:
 
 
 def _unsettled(part: xr.Dataset) -> NDArray[np.bool_]:
-    """Where a motion did not settle, as far as the file knows."""
+    """Return True for points without a settled motion, as far as the file contains this."""
     if "transient_settled" in part:
         return np.asarray(~part["transient_settled"].values)
     if "transient_settling_time" in part:
@@ -360,7 +360,7 @@ def _unsettled(part: xr.Dataset) -> NDArray[np.bool_]:
 
 
 def _beside(coordinate: xr.DataArray, dims: Sequence[str]) -> NDArray[np.float64]:
-    """A coordinate's values, so that they spread over the others of these dimensions."""
+    """Return the values of a coordinate, shaped for these dimensions."""
     shape = [coordinate.size if d == coordinate.dims[0] else 1 for d in dims]
     return np.asarray(coordinate.values).reshape(shape)
 
@@ -370,7 +370,7 @@ def _summed_up(
     values: NDArray[np.float64],
     flags: NDArray[np.bool_],
 ) -> tuple[Any, ...]:
-    """Of a panel, from its places on: quantiles over the draws, which are the last axis."""
+    """Return the quantiles of a panel over the draws, which are the last axis."""
     shape = values.shape[:-1]
     group = np.repeat(np.arange(values[..., 0].size), values.shape[-1])
     low, middle, high = quantiles(group, values.ravel(), values[..., 0].size).reshape(3, *shape)
@@ -383,7 +383,7 @@ def _binned(
     values: NDArray[np.float64],
     flags: NDArray[np.bool_],
 ) -> tuple[Any, ...]:
-    """Of a panel, from its places on: quantiles over the draws that fall into each of many bins."""
+    """Return the quantiles of a panel over the draws within many bins."""
     most = _BINS if len(along) == 1 else int(np.clip(np.sqrt(len(values) / 200), 4, _BINS))
     group, middles, shape = np.zeros(len(values), np.int64), [], []
     for places in along:
@@ -409,7 +409,7 @@ def _binned(
 def quantiles(
     group: NDArray[np.int64], values: NDArray[np.float64], count: int
 ) -> NDArray[np.float64]:
-    """The 5, 50 and 95 % quantiles of the values in each of `count` groups without NaN, (3, n)."""
+    """Return the 5, 50 and 95 % quantiles of `count` groups of values without NaN, (3, n)."""
     exists = ~np.isnan(values)
     group, values = group[exists], values[exists]
     order = np.lexsort((values, group))

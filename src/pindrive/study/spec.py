@@ -52,7 +52,7 @@ _TEMPLATE: Final = 'a study names its device, base = "device.toml", and what to 
 
 
 def read_study(path: str | PathLike[str], overrides: Iterable[str] = ()) -> Plan:
-    """What the study file at `path` says; arguments and errors as for `load_study`."""
+    """Read the study file at `path`; arguments and errors as for `load_study`."""
     file = Path(path)
     tables = read_tables(file, _TEMPLATE)
     if not tables.keys() & {*STUDY_KEYS} and tables.keys() & {*TABLES}:
@@ -136,7 +136,7 @@ def plan_of(
 
 
 def _with_required(outputs: Sequence[str], required: Iterable[Constraint]) -> tuple[str, ...]:
-    """The variables to keep, and those that the specification limits."""
+    """Return the stored variables and the variables of the specification."""
     added = dict.fromkeys(
         constraint.name for constraint in required if constraint.name not in outputs
     )
@@ -145,7 +145,7 @@ def _with_required(outputs: Sequence[str], required: Iterable[Constraint]) -> tu
 
 
 def _too_much(plan: Plan) -> Iterator[str]:
-    """What of the study is beyond the budgets."""
+    """Return the errors of a study beyond the budgets."""
     of = f"{plan.size} points, {plan.chunk} in each; a larger chunk makes fewer"
     for budget, count, words in (
         (budgets.CHUNKS, plan.chunks, of),
@@ -219,7 +219,7 @@ def _device(
 
 
 def _settings(tables: Mapping[str, Any], file: Path) -> list[Setting]:
-    """What its table [set] sets of the device."""
+    """Return the settings of the table [set]."""
     given = tables.get("set", {})
     if not isinstance(given, dict):
         raise ConfigError([refusal("set", "a table, [set]", quoted(given), str(file))])
@@ -257,7 +257,7 @@ class _Reader:
         self.dimensions = self._dimensions(axes)
 
     def table(self, name: str) -> dict[str, Any]:
-        """One of its tables; empty where it is missing."""
+        """Return a table of the file; empty for a missing table."""
         given = self._tables.get(name, {})
         if isinstance(given, dict):
             return given
@@ -308,7 +308,7 @@ class _Reader:
         return tuple(dict.fromkeys((*found, "status")))
 
     def _links(self, axes: Mapping[str, Axis]) -> dict[str, Linked]:
-        """The keys that follow others: those written, and those that keep their ratio."""
+        """Return the linked keys: the written links, and keys that keep their ratio."""
         written = {key: axis for key, axis in axes.items() if isinstance(axis, Linked)}
         return written | implied_links(self._device, axes.keys(), self._scans)
 

@@ -172,7 +172,7 @@ def _fixed(plan: Plan) -> dict[str, float]:
 
 
 def identity(plan: Plan) -> str:
-    """What the study's numbers follow from, as text."""
+    """Return the text on which the study's numbers depend."""
     return json.dumps(plan.identity(), sort_keys=True)
 
 
@@ -187,7 +187,7 @@ def _variable(
 
 
 class Tally(NamedTuple):
-    """The numbers of points of a chunk, by what became of them."""
+    """Number of points of a chunk by their status."""
 
     points: int
     refused: int
@@ -272,7 +272,7 @@ class Journal:
 
 
 def difference(one: Any, other: Any, where: str = "") -> str:
-    """Where two identities first differ, and how: "device drive.mass was 0.01, is 0.02"."""
+    """Return the first difference of two identities: "device drive.mass was 0.01, is 0.02"."""
     if isinstance(one, dict) and isinstance(other, dict):
         for key in [*one, *(key for key in other if key not in one)]:
             if one.get(key) != other.get(key):

@@ -1,4 +1,4 @@
-"""`Study`: a device and what varies of it, from a study file or from Python."""
+"""`Study`: a device with varied keys, from a study file or from Python."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from pindrive.study.runner import Work, on_cluster, on_threads, sweep
 from pindrive.study.spec import plan_of, read_study
 
 _PLACE: Final = "Study"
-"""Where values were written, in messages."""
+"""Place of Python values in messages."""
 
 
 class Study(Plan):
-    """A device and the keys of it that vary; every point is a release, or a scan of a page.
+    """Device with varied keys; every point is a release, or a scan of a page.
 
     Args:
         device: as `load_device` reads it.
@@ -102,7 +102,7 @@ class Study(Plan):
         Plan.__init__(self, **{field.name: getattr(plan, field.name) for field in fields(Plan)})
 
     def __repr__(self) -> str:
-        """How many points there are, along which dimensions, in a line."""
+        """Return the number of points and the dimensions in a line."""
         sizes = ", ".join(f"{one.name} {one.size}" for one in self.dimensions)
         what = f"{counted(self.size, 'point')}: {sizes}" if sizes else "tolerances alone"
         return f"<Study{f' {self.name!r}' if self.name else ''} of {what}>"

@@ -1,4 +1,4 @@
-"""How a study file is written: a device, what to vary of it, and the rest as comments."""
+"""Template of a study file: a device, varied keys, and the rest as comments."""
 
 from __future__ import annotations
 

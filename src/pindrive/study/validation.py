@@ -51,12 +51,12 @@ def conflicts(plan: Plan, file: str) -> list[str]:
 
 
 def _sizes(key: str) -> bool:
-    """Whether the size of a page, or a way over it, follows from a key."""
+    """Return True if the size of a page, or a path over it, depends on a key."""
     return key.startswith(("array.", "scan."))
 
 
 def _unreadable(plan: Plan) -> Iterator[str]:
-    """Of a page that is the same at every point."""
+    """Return the errors of a page that is equal at every point."""
     if plan.page and plan.device.whole:
         reading, array = plan.device.reading, plan.device.whole.array()
         try:
@@ -95,7 +95,7 @@ def _in_words(keys: tuple[str, ...]) -> str:
 
 
 def _around(plan: Plan, axes: Mapping[str, Axis]) -> Iterator[str]:
-    """Of the tables around the drive."""
+    """Return the errors of the tables around the drive."""
     magnet = {name for table, _, name in (key.partition(".") for key in axes) if table == "magnet"}
     if magnet:
         try:
@@ -165,7 +165,7 @@ def _span(plan: Plan, axes: Mapping[str, Axis], key: str) -> tuple[float, float]
 
 
 def _below_along(plan: Plan, static: str, kinetic: str) -> bool:
-    """Whether two keys that go together never fit, though their ranges overlap."""
+    """Return True if two zipped keys contradict at every point, though their ranges overlap."""
     for dimension in plan.dimensions:
         if {static, kinetic} <= dimension.axes.keys() and dimension.size <= _MOST_COMPARED:
             values = dimension.at(np.arange(dimension.size))
@@ -214,7 +214,7 @@ def coefficient_range(plan: Plan, *, tolerances: bool) -> tuple[float, float] | 
 
 
 def coefficient_words(plan: Plan, *, tolerances: bool = False) -> tuple[str, bool] | None:
-    """The same in a sentence, and whether it leaves what handbooks say; None: no change."""
+    """Return the range of the friction coefficients in a sentence; None without a change."""
     found = coefficient_range(plan, tolerances=tolerances)
     if found is None:
         return None

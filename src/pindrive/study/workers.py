@@ -1,4 +1,4 @@
-"""Who works on a study: threads where the core does the work, processes where Python does, Dask."""
+"""Workers of a study: threads for the core, processes for Python, or a Dask cluster."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ DIED = "a process that worked on the study died"
 
 
 def workers(count: int, *, processes: bool) -> Executor:
-    """So many workers. One alone is a thread of this process in any case."""
+    """Return the given number of workers. A single worker is a thread of this process."""
     return _processes(count) if processes and count > 1 else ThreadPoolExecutor(count)
 
 
 class Standing:
-    """Processes that stand by for one batch of points after the other."""
+    """Processes that wait for batches of points."""
 
     def __init__(self, count: int) -> None:
         """Begin them at the first batch."""
@@ -43,7 +43,7 @@ class Standing:
     def spread(
         self, work: Callable[[Shared, Given], Done], shared: Shared, portions: Sequence[Given]
     ) -> list[Done]:
-        """The work of each portion, in their order; `shared` is the same for all."""
+        """Compute each portion, in order; `shared` is passed to all portions."""
         try:
             return list(self._pool.map(work, [shared] * len(portions), portions))
         except BrokenProcessPool:
@@ -117,11 +117,11 @@ def _attend() -> None:
 
 
 _PATIENCE: Final = 20.0
-"""How long a scheduler may take to write its file, and to answer, s."""
+"""Longest wait for a scheduler to write its file, and to respond, s."""
 
 
 class Here:
-    """Parts one after the other, in this thread."""
+    """Worker that computes parts in sequence, in this thread."""
 
     def spread(
         self,
@@ -152,7 +152,7 @@ class Cluster:
 
 @contextmanager
 def crew(address: str | None) -> Iterator[Here | Cluster]:
-    """Who computes independent parts: the workers of a scheduler, or without one this thread.
+    """Return the workers of independent parts: a scheduler, else this thread.
 
     Raises:
         ValueError: as for `cluster_executor`.
