@@ -26,8 +26,8 @@ namespace {
 using pd::batch::Block, pd::batch::no_column, pd::batch::PlainNumber, pd::batch::Row;
 using pd::detail::Asked;
 
-/// In packs as wide as the processor has them, where the kernel is compiled for several widths; the bits are
-/// the same in each.
+/// Simulates in packs of the processor's width if the kernel is compiled for several widths; the
+/// bits do not depend on the width.
 void run_kernel(Block& block, std::size_t count, Asked asked) {
 #ifdef PINDRIVE_KERNELS
   pindrive_extension::kernel_of(0)->follow(block, static_cast<int>(count), asked);
@@ -36,8 +36,8 @@ void run_kernel(Block& block, std::size_t count, Asked asked) {
 #endif
 }
 
-/// What the arguments of the core are for a point without curves and inputs that change, with the load of the
-/// plate in its friction; the order is that of the kernel's blocks.
+/// Arguments of the core for a point without curves and varying inputs, with the plate load
+/// included in the friction, in the order of the kernel's blocks.
 std::array<double, Block::inputs> arguments(const pd::Numbers& at, double band) {
   const double load = at.plate_load[0].second, velocity = at.mouse_velocity[0].second;
   const double finger_load = at.finger_load[0].second;
@@ -62,7 +62,7 @@ bool constant(const pd::Numbers& at) {
          at.plate_load.size() == 1 && std::isnan(at.skin_stretch) && none_of(at.force) &&
          none_of(at.across_velocity) && at.finger_load.size() == 1 && !at.stops.present();
 }
-/// The same with its load in its friction.
+/// Contact with its load included in its friction.
 pd::Numbers pressed(pd::Numbers at) {
   const double load = at.plate_load[0].second;
   if (load != 1)
@@ -73,7 +73,7 @@ pd::Numbers pressed(pd::Numbers at) {
   return at;
 }
 
-/// What a batch fills; all but the numbers may be null.
+/// Outputs of a batch; all but the numbers may be null.
 struct Filled {
   double* numbers;
   int* events;
@@ -152,7 +152,8 @@ class Batch {
     }
   }
 
-  /// What the kernel has left of a point to the general core: all of it, its settling time, its energies.
+  /// Part of a point that the kernel leaves to the general core: everything, its settling time, or
+  /// its energies.
   void finish(std::size_t point, std::size_t i, Attended& attended) {
     if (kinds_[i] == Kind::refused) return;
     const bool all = kinds_[i] == Kind::general || block_->given_up[i];

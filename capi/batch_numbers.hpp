@@ -1,5 +1,4 @@
-/// Which numbers a batch has, and where each comes from: of the general core, and of the kernel. Those of
-/// batches in Python and C.
+/// Numbers of a batch in Python and C, with their sources in the general core and in the kernel.
 #pragma once
 
 #include <cstring>
@@ -14,7 +13,7 @@ namespace pindrive::batch {
 using Block = pindrive::detail::KernelBlock;
 using pindrive::detail::PlainNumber;
 
-/// Of one point: all its numbers, and where it is in the end.
+/// Result of one point: all numbers, and the final state.
 struct Summary : pindrive::Summary<double> {
   double final_position, final_velocity;
 };
@@ -23,7 +22,7 @@ using pindrive::detail::no_column;
 using pindrive::detail::transient_columns;
 static_assert(std::size(transient_columns) == std::size(transient_numbers<double>));
 
-/// What a batch has beside the transient's numbers and the terms of the ledger.
+/// Numbers of a batch beside the transient's numbers and the terms of the ledger.
 inline constexpr NamedNumber<double, Summary> state_numbers[] = {
     {"duration", [](const Summary& s) { return s.duration; }},
     {"final.position", [](const Summary& s) { return s.final_position; }},
@@ -61,7 +60,7 @@ struct Row {
   double of(const Summary& summary) const {
     return transient ? transient(summary.transient) : state(summary);
   }
-  /// What the kernel must be asked for it.
+  /// Part of the kernel that computes the number.
   pindrive::detail::Asked asked() const {
     using pindrive::detail::Asked;
     if (column == no_column || column >= Block::rest_position) return Asked::state;

@@ -1,4 +1,4 @@
-/// What the sources of the C interface share: its handles, how they are checked, how errors are told.
+/// Shared parts of the C interface: handles, checks, and error messages.
 #pragma once
 
 #include <cmath>
@@ -40,7 +40,7 @@ __attribute__((format(printf, 2, 3)))
 pindrive_error fail(pindrive_error error, const char* format, ...);
 pindrive_error null_pointer(const char* what);
 
-/// What a function returns that may run out of memory.
+/// Result of a function that may run out of memory.
 template <class Function>
 pindrive_error guarded(Function&& function) {
 #if defined(__cpp_exceptions)
@@ -54,7 +54,7 @@ pindrive_error guarded(Function&& function) {
 #endif
 }
 
-/// Whether an input or a friction force is finite and small enough that nothing formed of it overflows.
+/// True if an input or a friction force is finite and small enough that no product overflows.
 inline bool in_range(double value, bool may_be_negative) {
   return value <= 1e12 && value >= (may_be_negative ? -1e12 : 0);
 }
@@ -97,14 +97,14 @@ constexpr const char* release_names =
     "skin_stretch, duration";
 
 pindrive_error check_band(double band);
-/// What the core can follow, whether to an end, and what fits the direction of a derivative.
+/// Checks that the core can simulate the drive, and that the direction of a derivative fits.
 pindrive_error check(const pindrive_drive& drive, const pindrive_release& release);
 pindrive_error check_duration(const pindrive_release& release);
 pindrive_error check(const char* name, double value, bool good, const char* range);
 pindrive_error check_rates(const pindrive_drive& drive, const pindrive_release& release,
                            const pindrive_drive& drive_rate, const pindrive_release& release_rate);
 pd::Numbers numbers_of(const pindrive_drive& drive, const pindrive_release& release);
-/// What stands for the plate's velocity at the release, with its derivative.
+/// Velocity of the plate at the release, with its derivative.
 void start(pd::Numbers& at, pd::Numbers& along);
 
 /// A quantity at an instant of a trajectory; friction() tells the friction there.

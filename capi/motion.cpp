@@ -18,7 +18,7 @@ namespace pd = pindrive;
 
 using namespace pindrive_c;  // NOLINT(google-build-using-namespace): its own
 
-/// A motion, or the derivatives of one: the same questions, answered by values or by derivatives.
+/// A motion, or the derivatives of a motion: equal functions return values or derivatives.
 struct pindrive_motion {
   std::unique_ptr<pd::OwnedMotion<double>> values;
   std::unique_ptr<pd::OwnedMotion<Dual>> derivatives;

@@ -49,8 +49,8 @@ inline Numbers without_change(const Numbers& at) {
   return along;
 }
 
-/// A number of the core from its value and its derivative along a direction; what is infinite in a direction,
-/// as it is at first, does not change along it.
+/// Returns a number of the core from its value and its derivative along a direction; an infinite
+/// direction, as initially, has no derivative.
 template <class T>
 T number(double value, double slope) {
   if constexpr (std::is_same_v<T, Dual<double>>)
@@ -65,7 +65,7 @@ Stops<T> stops(const StopNumbers& at, const StopNumbers& along) {
           number<T>(at.damping, along.damping)};
 }
 
-/// What is asked of a motion: a value; of a number with its derivative, the derivative.
+/// Returns the requested part of a number: its value, or its derivative if it has one.
 inline double result(double value) { return value; }
 inline double result(Dual<double> value) { return value.slope; }
 
@@ -160,7 +160,8 @@ class OwnedMotion {
   Outcome<T> outcome_;
 };
 
-/// Of a segment that is a step of a series, what its acceleration stays below; NaN of a closed form.
+/// Returns the bound of the acceleration of a segment that is a step of a series; NaN for a closed
+/// form.
 inline double acceleration_bound(const Motion<double>& motion, const Segment<double>& segment) {
   return motion.along(segment, [](const auto& along) {
     if constexpr (std::is_same_v<std::decay_t<decltype(along)>, detail::BySeries<double>>)

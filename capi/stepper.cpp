@@ -111,7 +111,7 @@ class Reading {
     from_ += sizeof number;
     left_ -= sizeof number;
   }
-  /// Whether so many more are there.
+  /// True if that many entries remain.
   bool fits(std::uint64_t size) {
     good_ = good_ && size <= left_;
     return good_;

@@ -1,5 +1,5 @@
-/// What the sources of the C interface share of a pin that is followed step by step: its handle, which answers by
-/// values or by derivatives.
+/// Shared parts of the C interface for a pin that is simulated step by step: its handle, which
+/// returns values or derivatives.
 #pragma once
 
 #include <cstring>
@@ -88,7 +88,7 @@ class Followed final : public Following {
   }
 
  private:
-  /// Sets one of the inputs, which change(line) changes; the others go on.
+  /// Sets an input, which change(line) changes; all other inputs continue.
   template <class Change>
   pindrive_error set_input(const char* name, Change&& change);
 
@@ -184,7 +184,7 @@ std::unique_ptr<Followed<T>> followed(const pd::Numbers& at, const pd::Numbers& 
   return std::make_unique<Followed<T>>(at, along, inputs, begin);
 }
 
-/// Of a stepper, which begins at a time.
+/// Handle of a stepper, which begins at a time.
 pindrive_error check_start(const pindrive_release& release, double begin);
 
 }  // namespace pindrive_c

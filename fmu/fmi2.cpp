@@ -36,7 +36,7 @@ fmi2Status attempt(fmi2Component c, Function&& function) {
   return at(c).told(function(at(c).instance));
 }
 
-/// The same for each of several numbers.
+/// Applies a function to several numbers.
 template <class Function>
 fmi2Status each(fmi2Component c, size_t count, Function&& function) {
   return attempt(c, [&](Instance& i) {
@@ -48,7 +48,7 @@ fmi2Status each(fmi2Component c, size_t count, Function&& function) {
 
 Text text(const char* from) { return Text(from, from + std::strlen(from) + 1); }
 
-/// What a digit of a percent-encoding stands for; −1: none.
+/// Value of a digit of a percent-encoding; −1 for any other character.
 int digit(char c) {
   const char* const digits = "0123456789abcdef";
   const char small = static_cast<char>(c >= 'A' && c <= 'F' ? c - 'A' + 'a' : c);

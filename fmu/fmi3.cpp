@@ -34,7 +34,7 @@ fmi3Status attempt(fmi3Instance c, Function&& function) {
   return at(c).told(function(at(c).instance));
 }
 
-/// The same for each of several numbers.
+/// Applies a function to several numbers.
 template <class Function>
 fmi3Status each(fmi3Instance c, size_t count, Function&& function) {
   return attempt(c, [&](Instance& i) {

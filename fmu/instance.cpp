@@ -16,7 +16,7 @@ namespace {
 
 using pindrive_c::fail;
 
-/// The plate's load is what the magnet makes of it, from now on.
+/// Sets the plate load by the pull of the magnet from now on.
 pindrive_error pulled(pindrive_stepper* stepper, const Magnet& magnet, double time) {
   return pindrive_stepper_set(stepper, "plate_load", magnet.load(time), magnet.load_rate());
 }
@@ -82,7 +82,7 @@ pindrive_error Instance::make(Stepper& stepper, Magnet& magnet) const {
   return error;
 }
 
-/// Before the initialisation has ended the stepper is made where something is asked of it.
+/// Creates the stepper at its first use before the end of the initialisation.
 pindrive_error Instance::followed() { return stepper_ ? PINDRIVE_OK : make(stepper_, magnet_); }
 
 pindrive_error Instance::initialise() {
@@ -99,7 +99,7 @@ const Variable* Instance::variable(std::size_t reference) const {
   return nullptr;
 }
 
-/// Where a variable of a kind stands in the list of its kind; −1 for another kind, and for none.
+/// Index of a variable within its kind; −1 for another kind, and for an unknown variable.
 int Instance::place(std::size_t reference, Variable::Kind kind) const {
   if (reference < 1 || reference > variables_.size()) return -1;
   const Variable& asked = variables_[reference - 1];
@@ -197,7 +197,7 @@ pindrive_error Instance::flag(std::size_t reference, bool& value) {
   return PINDRIVE_OK;
 }
 
-/// What may be set now; before the initialisation has ended all but outputs.
+/// True if the variable may be set now; before the end of the initialisation all but outputs.
 pindrive_error Instance::settable(std::size_t reference, const Variable*& given) const {
   given = variable(reference);
   if (!given) return PINDRIVE_BAD_VALUE;

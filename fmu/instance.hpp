@@ -17,14 +17,14 @@ struct FreeStepper {
 };
 using Stepper = std::unique_ptr<pindrive_stepper, FreeStepper>;
 
-/// What of an instance changes while it lives, but for its stepper and its magnet.
+/// Variable state of an instance, beside its stepper and its magnet.
 struct Values {
-  std::vector<double> start;  ///< of parameters and inputs, by number; of a command 0 or 1
+  std::vector<double> start;  ///< parameters and inputs, by number; a command is 0 or 1
   double begin{0};            ///< start time, s
   bool initialised{false};
 };
 
-/// Where a call is refused, pindrive_last_error says what was given and what is allowed.
+/// After a rejected call pindrive_last_error reports the given and the allowed value.
 class Instance {
  public:
   /// `folder` holds `drive.txt`, which lists the variables with their start values. Refused where it cannot
@@ -36,17 +36,18 @@ class Instance {
   void reset();
 
   pindrive_error number(std::size_t reference, double& value);
-  pindrive_error whole(std::size_t reference, int& value);  ///< of the states of the contacts
-  pindrive_error flag(std::size_t reference, bool& value);  ///< of a command
+  pindrive_error whole(std::size_t reference, int& value);  ///< states of the contacts
+  pindrive_error flag(std::size_t reference, bool& value);  ///< command of the magnet
   pindrive_error set(std::size_t reference, double value);
   pindrive_error set_flag(std::size_t reference, bool value);
-  pindrive_error set_rate(std::size_t reference, double rate);  ///< of an input
+  pindrive_error set_rate(std::size_t reference, double rate);  ///< rate of an input
 
   pindrive_error now(double& time);
   pindrive_error next_event(double& time);
   /// Goes on by a step, to the first event where it may end early; whether there is an event.
   pindrive_error step(double from, double size, bool may_end_early, bool& happens);
-  /// Of `unknown` along the seeds of inputs; before the initialisation has ended, of parameters too.
+  /// Derivative of `unknown` along the seeds of inputs; before the end of the initialisation also
+  /// along parameters.
   pindrive_error derivative(std::size_t unknown, const unsigned* knowns, const double* seeds,
                             std::size_t count, double& value);
 

@@ -25,7 +25,7 @@ constexpr double magnetic_constant = 1.25663706127e-6, copper = 1 / 58e6, copper
 constexpr double pi = 0x1.921fb54442d18p+1;
 constexpr double at_once = 0.01;  // how soon after a switching the pull is exact
 
-/// A flux linkage that tends to `target`, so many time constants later.
+/// Flux linkage that tends to `target`, a number of time constants later.
 double flux_after(double start, double target, double constants) {
   const double left = exp(-constants);
   return target == 1 ? 1 - (1 - start) * left : target + (start - target) * left;
@@ -276,7 +276,7 @@ Magnet::Piece Magnet::piece() const {
   return {target, constant, inductance, state_.since + lasts};
 }
 
-/// Where the gap closes or opens it is that linkage to the bit, which piece() relies on.
+/// At a closing or opening of the gap it equals that linkage to the bit, on which piece() relies.
 double Magnet::flux(double time) const {
   const Piece piece = this->piece();
   if (time == piece.end) return edge_;
@@ -343,7 +343,7 @@ void Magnet::make_rows() {
   add(last + 1, target);
 }
 
-/// The same where the flux tends to another than none or the full one.
+/// Times and currents of a flux that tends to a partial value.
 void Magnet::make_rows_between(const Piece& piece) {
   const double start = state_.flux, target = piece.target, constant = piece.constant;
   const double sigma = saturation_, swing = start - target;

@@ -1,6 +1,6 @@
-/// The electromagnet of a drive, followed from command to command: commands to current, current to pull,
-/// and the pull over time as the lines that a scan of the Python package makes of it
-/// (pindrive.device.electromagnet, which derives them).
+/// Electromagnet of a drive, simulated from command to command: commands to current, current to
+/// pull, and the pull over time as the lines of a scan of the Python package
+/// (pindrive.device.electromagnet derives them).
 #pragma once
 
 #include <cstdint>
@@ -10,18 +10,18 @@
 
 namespace pindrive_fmu {
 
-/// What of it changes: its last switching, or closing or opening of its gap, and how far it has been
-/// followed since.
+/// State of the magnet: its last switching, or closing or opening of its gap, and the time since
+/// then.
 struct CoilState {
-  double since{0};    ///< when that was, s
+  double since{0};    ///< time of that change, s
   double flux{0};     ///< the flux linkage then, a part of that of the full current, the gap closed
   double pull{0};     ///< then, N
   double warming{0};  ///< then, above 20 °C, K
   double level{1};    ///< the voltage across it while it is on, a part of the full one
-  double commanded{0};    ///< when it was commanded on, s, if it is
-  double period{0};       ///< of pulses: the number of the one that goes on, or comes next
-  std::uint64_t step{0};  ///< of the voltage: which of its rows holds
-  std::uint64_t row{0};   ///< which row of the pull holds
+  double commanded{0};    ///< time of the command to switch on, s, if commanded
+  double period{0};       ///< number of the present or next pulse
+  std::uint64_t step{0};  ///< present row of the voltage
+  std::uint64_t row{0};   ///< present row of the pull
   std::uint32_t command{0}, on{0};
 };
 
@@ -33,7 +33,7 @@ class Magnet {
   static Number first_load(const Given& given);
 
   void command(bool on, double time);
-  /// When the line of the pull ends, s: pass() goes over that.
+  /// End of the line of the pull, s: pass() crosses it.
   double next() const;
   void pass(double until);
 
@@ -50,10 +50,10 @@ class Magnet {
   struct Row {
     double time, pull;
   };
-  /// How the flux linkage goes on while the voltage stays, and the gap closed or open.
+  /// Continuation of the flux linkage at constant voltage and gap.
   struct Piece {
     double target, constant, inductance;  ///< the last over that of the closed gap
-    double end;                           ///< when the gap closes or opens, s; infinity: never
+    double end;  ///< time of the closing or opening of the gap, s; infinity: never
   };
 
   pindrive_error read(const Given& given);

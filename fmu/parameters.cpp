@@ -25,7 +25,7 @@ struct Key {
   char text[48];
 };
 
-/// What is set in a contact: each force, or the coefficient that gives it.
+/// Setters of a contact: each force, or the coefficient of a force.
 struct Friction {
   const char *kinetic, *limit, *speeds, *values;
 };

@@ -22,12 +22,12 @@ class Given {
   const std::vector<Variable>& variables() const { return variables_; }
   Number at(std::size_t i) const { return {values_[i], seeds_ ? seeds_[i] : 0}; }
   bool has(const char* name) const { return find(name) < variables_.size(); }
-  /// Where there is none of that name, `otherwise`.
+  /// Value of a name; `otherwise` if the name is unknown.
   Number of(const char* name, Number otherwise = 0) const;
-  /// Those of "name[1]", "name[2]" …
+  /// Values of "name[1]", "name[2]" …
   std::vector<Number> rows(const char* name) const;
 
-  /// What presses the magnet on the plate while it does not pull, N: weight and preload.
+  /// Normal force of the magnet on the plate without pull, N: weight and preload.
   Number plate_normal_force() const;
 
  private:

@@ -24,8 +24,9 @@ void operator delete(void* memory, const std::nothrow_t& /*tag*/) noexcept { std
 extern "C" void __cxa_pure_virtual() { std::abort(); }  // NOLINT(bugprone-reserved-identifier)
 
 #if defined(__MINGW32__) && defined(__x86_64__) && defined(__clang__)
-/// What compilers for Windows call where a frame, of so many bytes as rax says, is larger than a page: it touches each
-/// page in turn, as Windows makes the stack larger at the page next to it alone. All registers stay as they are.
+/// Stack probe of compilers for Windows: for a frame larger than a page, of the number of bytes in
+/// rax, it touches each page in sequence, because Windows extends the stack by the next page alone.
+/// All registers are preserved.
 extern "C" __attribute__((naked)) void ___chkstk_ms() {  // NOLINT(bugprone-reserved-identifier)
   __asm__ volatile(
       "push %rcx\n"

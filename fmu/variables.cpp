@@ -21,7 +21,8 @@ constexpr const char* outputs[] = {
     "stretch",        "stretch_rate", "next_event_time", "magnet_current", "magnet_pull",
     "magnet_warming", "plate_state",  "finger_state"};
 
-/// Where a name stands among the inputs, each followed by its rate, or among the outputs; −1: nowhere.
+/// Index of a name among the inputs, each followed by its rate, or among the outputs; −1 if
+/// unknown.
 int place_of(Variable::Kind kind, const char* name) {
   int place = 0;
   if (kind == Variable::input)

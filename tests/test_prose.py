@@ -19,8 +19,6 @@ PRONOUN = re.compile(
     r"|as many|so many|one of)\b",
     re.IGNORECASE,
 )
-OPEN = ("device", "evaluation")
-"""Python packages whose prose is not yet written by these rules."""
 
 
 def of_python(text: str) -> Iterator[str]:
@@ -37,7 +35,7 @@ def of_python(text: str) -> Iterator[str]:
 
 
 def of_cpp(text: str) -> Iterator[str]:
-    """Documentation comments of a C++ or TypeScript text."""
+    """Documentation comments of a C++ text."""
     block: list[str] = []
     for line in [*text.splitlines(), ""]:
         if match := re.match(r"\s*///\s?(?!<)(.*)", line):
@@ -50,6 +48,17 @@ def of_cpp(text: str) -> Iterator[str]:
             yield match[1]
 
 
+def of_typescript(text: str) -> Iterator[str]:
+    """Documentation comments of a TypeScript text."""
+    for comment in re.findall(r"/\*\*(.*?)\*/", text, re.DOTALL):
+        yield " ".join(re.sub(r"\n\s*\*", " ", comment).split())
+
+
+def test_summaries_of_typescript_are_read_from_comments() -> None:
+    text = "/** A. */\nlet a;\n/**\n * B\n * c.\n */\nlet b; // no\n"
+    assert [*of_typescript(text)] == ["A.", "B c."]
+
+
 def test_summaries_of_cpp_are_read_from_blocks_and_from_the_ends_of_lines() -> None:
     text = "/// What it is,\n/// and one of them.\nint a;  ///< of it\n"
     assert [*of_cpp(text)] == ["What it is, and one of them.", "of it"]
@@ -60,16 +69,19 @@ def test_summaries_of_python_are_read_from_docstrings_and_attributes() -> None:
     assert [*of_python(text)] == ["A.", "B.", "C."]
 
 
-PYTHON = [
+PYTHON = sorted((ROOT / "src" / "pindrive").rglob("*.py"))
+CPP = [
     path
-    for path in sorted((ROOT / "src" / "pindrive").rglob("*.py"))
-    if path.relative_to(ROOT / "src" / "pindrive").parts[0] not in OPEN
+    for folder in ("include", "capi", "fmu", "src")
+    for path in sorted((ROOT / folder).rglob("*.[ch]pp"))
 ]
-CPP = sorted((ROOT / "include").rglob("*.hpp"))
+TYPESCRIPT = sorted((ROOT / "studio" / "src").rglob("*.ts"))
 
 
 @pytest.mark.parametrize(
-    ("paths", "read"), [(PYTHON, of_python), (CPP, of_cpp)], ids=["Python", "C++"]
+    ("paths", "read"),
+    [(PYTHON, of_python), (CPP, of_cpp), (TYPESCRIPT, of_typescript)],
+    ids=["Python", "C++", "TypeScript"],
 )
 def test_summaries_neither_begin_with_a_question_word_nor_lean_on_a_pronoun(
     paths: list[Path], read: Callable[[str], Iterator[str]]

@@ -73,7 +73,7 @@ using Input = nb::ndarray<const double, nb::device::cpu>;
 using Inputs = std::array<Input, input_count>;
 using Point = std::array<double, input_count>;
 
-/// Which of the arrays have one value.
+/// Marks the arrays with one value.
 std::array<bool, input_count> with_one_value(const Inputs& inputs) {
   std::array<bool, input_count> found{};
   for (std::size_t k = 0; k < input_count; ++k) {
@@ -84,8 +84,8 @@ std::array<bool, input_count> with_one_value(const Inputs& inputs) {
   return found;
 }
 
-/// Points first to first + count, in C order, of arrays that have one shape, as columns; along an axis an
-/// array may stand still. Of those that are not `asked` for nothing is written.
+/// Columns of points first to first + count, in C order, of arrays with one shape; along an axis an
+/// array may have stride zero. Nothing is written for arrays that are not `asked`.
 void points(const Inputs& inputs, std::size_t first, std::size_t count,
             const std::array<bool, input_count>& asked, double (*columns)[Block::stride]) {
   const std::size_t axes = inputs[0].ndim();
@@ -116,10 +116,10 @@ void points(const Inputs& inputs, std::size_t first, std::size_t count,
   }
 }
 
-/// The status of a point that breaks the first bound is one more; then those of the others. As in
+/// Status of a point that breaks the first bound, less one; all further bounds follow, as in
 /// quantities/status.py.
 constexpr std::int8_t refused = 15;
-/// That of a point whose travel is refused; after it those of the stops' stiffness and damping.
+/// Status of a point with a rejected travel; the stops' stiffness and damping follow.
 constexpr std::size_t first_of_stops = refused + 1 + std::tuple_size<pe::Bounds>::value;
 
 pd::Drive<double> drive_of(const Point& p, const pd::Stops<double>& stops) {
@@ -176,8 +176,8 @@ class Batch {
 
   std::size_t size() const { return size_; }
 
-  /// Works all points off with so many threads, of which the caller's is one and alone looks for an
-  /// interrupt; when it finds one, all of them stop.
+  /// Computes all points with several threads. The caller's thread is the first one and alone
+  /// checks for an interrupt, which stops all threads.
   void run(std::size_t threads, Interrupt& interrupt) {
     share_ = std::clamp<std::size_t>(size() / (4 * threads), least_share, Block::capacity);
     const auto go_on = [&](std::size_t) { return !stopped_.load(std::memory_order_relaxed); };
@@ -214,7 +214,7 @@ class Batch {
   }
 
  private:
-  /// What a thread works with.
+  /// Workspace of a thread.
   struct Space {
     signed char broken[Block::capacity];
     Block block;
@@ -235,7 +235,7 @@ class Batch {
     return size;
   }
 
-  /// What one thread does.
+  /// Work of one thread.
   template <class GoOn>
   void work(GoOn go_on) {
     const auto space = std::make_unique<Space>();
@@ -246,7 +246,7 @@ class Batch {
     for (std::size_t k = 0; k < input_count; ++k) merge(ends_[k], ends[k]);
   }
 
-  /// What does not change from point to point is written once.
+  /// Arguments that are equal for all points are written once.
   void fill(Block& block, std::size_t count) {
     for (std::size_t k = 0; k < input_count; ++k)
       if (!varies_[k]) std::fill_n(block.input[k], count, size() > 0 ? *inputs_[k].data() : 0.0);
@@ -322,7 +322,7 @@ class Batch {
       for (std::size_t i = 0; i < count; ++i) block.input[force][i] *= block.input[plate_load][i];
   }
 
-  /// What the general core has to find of a point.
+  /// Part of a point that the general core computes.
   enum class Left : signed char { nothing, settling_time, all };
   static Left left_by_kernel(const Block& block, std::size_t i) {
     if (block.given_up[i]) return Left::all;
@@ -370,7 +370,7 @@ class Batch {
       numbers_[k][i] = std::numeric_limits<double>::quiet_NaN();
   }
 
-  /// One point, or what is left of it, and its energies.
+  /// Computes one point, or the rest of a point, and its energies.
   template <class GoOn>
   void by_general_core(std::size_t i, const Point& p, const pd::Stops<double>& stops, Left left,
                        std::vector<pd::Segment<double>>& segments, GoOn go_on) {
@@ -411,7 +411,7 @@ class Batch {
   const pe::KernelFunctions& kernel_;
   const StopNumbers& stops_;
   Rows numbers_;
-  std::array<bool, input_count> varies_;        ///< which inputs are written for each block
+  std::array<bool, input_count> varies_;        ///< inputs that are written for each block
   std::array<pe::Extremes, input_count> ends_;  ///< the least and the largest of each input
   std::mutex merging_;
   Column<std::int8_t> status_, ending_;

@@ -47,7 +47,7 @@ class Rows {
   double* values_{nullptr};
 };
 
-/// A column of flags or counts over all points, each of which is written once.
+/// Column of flags or counts over all points, written once per point.
 template <class T>
 class Column {
  public:

@@ -58,14 +58,14 @@ using StopNumbers = std::tuple<double, double, double>;
 using Numbers = std::tuple<double, double, double, ContactNumbers, ContactNumbers, Rows, Rows,
                            double, double, double, Rows, Rows, Rows, StopNumbers, double>;
 
-/// A tuple of Python's as the struct with the same fields.
+/// Converts a Python tuple to the struct with equal fields.
 template <class Struct, class Tuple>
 Struct as(Tuple&& tuple) {
   return std::apply([](auto&&... field) { return Struct{std::forward<decltype(field)>(field)...}; },
                     std::forward<Tuple>(tuple));
 }
 
-/// What nobody else needs any more becomes the core's.
+/// Moves an array without other owners into the core.
 pd::Numbers numbers(double mass, double stiffness, double damping, ContactNumbers&& plate,
                     ContactNumbers&& finger, Rows&& mouse_velocity, Rows&& plate_load,
                     double displacement, double velocity, double skin_stretch, Rows&& force,
@@ -182,7 +182,7 @@ Array<double> stretch(const CoreMotion<T>& motion, const Times& times, bool righ
                   });
 }
 
-/// All of these at each time, by their names; without those that the drive does not have.
+/// Quantities at each time, by name, without quantities that the drive does not have.
 nb::dict columns(const CoreMotion<double>& motion, const Times& times, bool right) {
   enum { position, velocity, acceleration, plate, finger, stop, skin, skin_rate, count };
   const char* const names[count] = {"position",     "velocity",   "acceleration", "plate_force",
@@ -253,7 +253,7 @@ nb::dict segments(const CoreMotion<T>& motion) {
   return table;
 }
 
-/// Of each segment that is a step of a series, what its acceleration stays below; NaN of a closed form.
+/// Bound of the acceleration of the segments that are a step of a series; NaN for a closed form.
 Array<double> acceleration_bounds(const CoreMotion<double>& motion) {
   return column<double>(motion, [view = motion.view()](const pd::Segment<double>& segment) {
     return pd::acceleration_bound(view, segment);
@@ -284,7 +284,7 @@ nb::dict ledger(const CoreMotion<T>& motion, double duration) {
                }));
 }
 
-/// Times and what is seen there, as far as a motion hands them over, but no more than so many.
+/// Times and values at these times, as far as a motion passes them on, up to a largest count.
 template <class Seen, class Search>
 nb::tuple found(std::size_t most, Search&& search) {
   auto both = interruptible([&](auto go_on) {
@@ -335,7 +335,7 @@ nb::dict certificate(const CoreMotion<double>& motion, double duration) {
                }));
 }
 
-/// What a motion and its derivatives have in common.
+/// Common part of a motion and its derivatives.
 template <class T>
 nb::class_<CoreMotion<T>> bind(nb::module_& m, const char* name, const char* meaning) {
   using Friction = pd::Friction<T>;

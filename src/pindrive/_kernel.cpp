@@ -17,7 +17,7 @@ namespace {
 
 #ifdef PINDRIVE_X86
 #ifdef _MSC_VER
-/// Whether the processor has a feature of leaf 7 and the system keeps these registers for it.
+/// True if the processor has a feature of leaf 7 and the system saves these registers.
 bool has(int bit, unsigned long long registers) {
   int found[4];
   __cpuidex(found, 1, 0);

@@ -8,23 +8,24 @@
 
 namespace pindrive_extension {
 
-/// Of a number: the least and the largest that are allowed, and one beside them or NaN.
+/// Bounds of a number: lowest and highest allowed value, and an additional value or NaN.
 using Interval = std::array<double, 3>;
-/// Of the inputs of a block, then of the damping ratio and of the phase over the duration.
+/// Bounds of the inputs of a block, of the damping ratio, and of the phase over the duration.
 using Bounds = std::array<Interval, pindrive::detail::KernelBlock::inputs + 2>;
 
-/// Of some numbers; NaN if one is NaN, or there is none.
+/// Extremes of some numbers; NaN if a number is NaN, or without numbers.
 struct Extremes {
   double least, largest;
 };
 
-/// What is compiled for one width.
+/// Functions that are compiled for one width.
 struct KernelFunctions {
   int width;
   void (*follow)(pindrive::detail::KernelBlock& block, int count, pindrive::detail::Asked asked);
-  /// 0, or 1 and more for the first bound that a release of the block breaks: those of its inputs, a
-  /// static friction below the kinetic one (as if it broke its own), those of what they make together.
-  /// Whether all are 0. `of_inputs`: the extremes of each input of the block.
+  /// Writes 0, or the number (1 and more) of the first bound that a release of the block breaks:
+  /// bounds of its inputs, a static friction below the kinetic one (counted as its own bound),
+  /// bounds of derived values. Returns true if all are 0. `of_inputs`: extremes of each input of
+  /// the block.
   bool (*judge)(const pindrive::detail::KernelBlock& block, int count, const Extremes* of_inputs,
                 const Bounds& bounds, signed char* broken);
   Extremes (*extremes)(const double* values, std::size_t count);

@@ -21,7 +21,7 @@ using V = OfWidth<PINDRIVE_WIDTH>::type;
 enum : int { mass, stiffness, damping, plate_kinetic, plate_static, finger_kinetic, finger_static };
 constexpr int duration = 11, inputs = pk::KernelBlock::inputs;
 
-/// Whether the inputs keep a bound of `checks`.
+/// True if the inputs are within a bound of `checks`.
 template <class T>
 pk::MaskOf<T> keeps(int check, const T (&in)[inputs], const Bounds& bounds) {
   const auto within = [](const T& value, const Interval& bound) {
@@ -44,21 +44,21 @@ pk::MaskOf<T> keeps(int check, const T (&in)[inputs], const Bounds& bounds) {
   }
 }
 constexpr int checks = inputs + 4;
-/// Which bound it is that breaks, from 1 on.
+/// Number of the broken bound, from 1 on.
 int flag(int check) {
   constexpr int of_others[] = {plate_static, finger_static, inputs, inputs + 1};
   return 1 + (check < inputs ? check : of_others[check - inputs]);
 }
 
-/// Whether all between two ends keep a bound.
+/// True if all values between two ends are within a bound.
 bool surely_keeps(const Extremes& ends, const Interval& bound) {
   return (bound[0] <= ends.least && ends.largest <= bound[1]) ||
          (ends.least == bound[2] && ends.largest == bound[2]);
 }
 
-/// Whether all releases surely keep the bounds of `checks`: told from the extremes of the inputs and
-/// without a division or a root, so one within rounding of a bound, or of powers beyond a double's, is
-/// not sure.
+/// True if all releases are certainly within the bounds of `checks`, by the extremes of the inputs
+/// and without division or root; a value within rounding of a bound, or with powers beyond a
+/// double, is not certain.
 bool all_surely_keep(const pk::KernelBlock& block, int count, const Extremes* of_inputs,
                      const Bounds& bounds) {
   for (int k = 0; k < inputs; ++k)

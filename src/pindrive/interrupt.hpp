@@ -8,14 +8,15 @@
 /// Looks for a signal that Python has not handled yet, now and then; only the main thread finds any.
 class Interrupt {
  public:
-  /// Whether to go on; called without Python's lock, after so many segments, panels or points.
+  /// Returns true to continue; called without Python's lock, after a number of segments, panels or
+  /// points.
   bool go_on(std::size_t done = 1) {
     done_ += done;
     if (done_ < between_looks) return !found_;
     done_ = 0;
     return look();
   }
-  /// The same, looking at once.
+  /// Returns true to continue, with an immediate check.
   bool look() {
     const nanobind::gil_scoped_acquire locked;
     if (!found_ && PyErr_CheckSignals() != 0) found_ = true;
@@ -30,8 +31,9 @@ class Interrupt {
   bool found_{false};
 };
 
-/// What a computation returns, during which Python's other threads run. It is handed a function that
-/// says whether to go on, and ends early where that returns false: then Python's error is raised.
+/// Returns the result of a computation during which Python's other threads run. The computation
+/// receives a function that returns true to continue, and ends early otherwise; Python's error is
+/// then raised.
 template <class Computation>
 auto interruptible(Computation&& computation) {
   Interrupt interrupt;

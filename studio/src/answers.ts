@@ -7,7 +7,7 @@ export function bits(values: Iterable<number>): string {
   return Array.from(bytes, (byte) => byte.toString(16).padStart(2, "0")).join("");
 }
 
-/** What a motion is, to the bit: its numbers, its segments, and values at eleven times. */
+/** Motion to the bit: its numbers, its segments, and values at eleven times. */
 export function answerOf(core: Core, input: Input, duration: number | null): Record<string, unknown> {
   const motion = core.simulate(input);
   const { outcome } = motion;

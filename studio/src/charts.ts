@@ -235,7 +235,7 @@ export class Charts {
   }
 }
 
-/** As they are drawn: the current design last, over the others. */
+/** Order of drawing: the current design last, over all others. */
 function inOrder(view: View): Line[] {
   return [...view.lines].reverse();
 }

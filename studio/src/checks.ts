@@ -14,9 +14,9 @@ import { brief, floatRepr, general } from "./python";
 import { DRIVE, part, type Quantity, required, TABLES } from "./table";
 
 export const MOUSE = "motion.mouse_velocity";
-/** What a drive with end stops has, each of which needs those before it. */
+/** Keys of end stops, each of which requires the keys before it. */
 export const STOPS = ["travel", "stop_stiffness", "stop_damping"] as const;
-/** What a release has beside what it has over time. */
+/** Keys of a release beside its inputs over time. */
 export const RELEASED = ["displacement", "velocity", "skin_stretch", "duration"] as const;
 
 /** A value that is refused; its words have no place yet. */
@@ -83,7 +83,7 @@ export function checkOneKind(contact: string, given: readonly string[]): void {
   throw new Refusal(coefficient, words, `both, ${coefficient} and ${force}`);
 }
 
-/** Refuses a coefficient of the finger without a touch force, or that without the other. */
+/** Rejects a finger coefficient without a touch force, and the reverse. */
 export function checkTouch(coefficients: boolean, touch: Value | null | undefined): void {
   if (coefficients && touch == null) {
     throw new Refusal("touch_force", "given where a coefficient gives the finger's friction", "none");
@@ -94,7 +94,7 @@ export function checkTouch(coefficients: boolean, touch: Value | null | undefine
   }
 }
 
-/** What a key of friction is, and its unit behind a number: a force or a coefficient. */
+/** Kind of a friction key and its unit behind a number: force or coefficient. */
 function kindOf(key: string): {
   readonly name: string;
   readonly what: string;
@@ -149,7 +149,7 @@ export function checkWithinTravel(values: Found): void {
   throw new Refusal("displacement", words, `${floatRepr(displacement)} m`);
 }
 
-/** What an input is at t = 0. */
+/** Value of an input at t = 0. */
 function initial(given: Value): number {
   if (typeof given === "number") return given;
   const after = given.findIndex(([time]) => time > 0);
@@ -216,7 +216,7 @@ export function dampingOf(values: Found): number {
   return 2 * num(values, "drive.damping_ratio") * Math.sqrt(mass) * Math.sqrt(stiffness);
 }
 
-/** What is wrong with values that a person set, in one line; empty where nothing is. */
+/** Error of values from a person, in one line; empty without one. */
 export function problemOf(values: Values): string {
   const found: Record<string, Value | null> = {};
   for (const [key, quantity] of DRIVE) found[key] = values[key] ?? quantity.absent ?? null;

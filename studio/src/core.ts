@@ -37,7 +37,7 @@ const ENDS = [
 export type End = (typeof ENDS)[number];
 const TRANSITIONS = ["none", "stick", "slip", "reverse"] as const;
 export type Transition = (typeof TRANSITIONS)[number];
-/** The same numbers at an end stop, which meets the pin, lets it go, or throws it back. */
+/** Contact numbers of an end stop: impact, release, rebound. */
 const AT_STOP = ["none", "stop", "leave", "stop"] as const;
 export type StopTransition = (typeof AT_STOP)[number];
 const CONTACT_STATES: Readonly<Record<number, ContactState>> = {
@@ -75,16 +75,16 @@ export interface Segment {
   readonly velocity: number;
   readonly plate: ContactState;
   readonly finger: ContactState;
-  /** Whether an end stop is reached, and whether the pin begins without velocity and acceleration. */
+  /** True for an end stop in contact with a pin without velocity and acceleration. */
   readonly atStop: boolean;
   readonly still: boolean;
-  /** What happens at its end. */
+  /** Events at its end. */
   readonly plateEvent: Transition;
   readonly fingerEvent: Transition;
   readonly stopEvent: StopTransition;
 }
 
-/** What the core refuses, in its words. */
+/** Error of the core, in its words. */
 export class CoreError extends Error {}
 
 type Exports = { readonly memory: WebAssembly.Memory } & Readonly<
@@ -138,7 +138,7 @@ export class Core {
     );
   }
 
-  /** The exact derivatives of that motion along a direction; rows of it that are missing are 0. */
+  /** Exact derivatives of the motion along a direction; missing rows are 0. */
   differentiate(input: Input, direction: Input): Motion {
     const { wasm } = this;
     return this.withInput(input, (drive, release) => {
@@ -311,7 +311,7 @@ export class Core {
   }
 }
 
-/** A motion in the core, or the derivatives of one; what is asked of it is answered exactly. */
+/** Motion in the core, or its derivatives, with exact values. */
 export class Motion {
   readonly outcome: Outcome;
 
@@ -353,7 +353,7 @@ export class Motion {
     });
   }
 
-  /** The modes that begin before `until`; those of a cycle once. */
+  /** Modes that begin before `until`; modes of a cycle occur once. */
   segments(until = Infinity): Segment[] {
     return this.core.borrowed(SEGMENT_BYTES, (at) => {
       const found: Segment[] = [];
@@ -397,7 +397,7 @@ export class Motion {
     );
   }
 
-  /** How long one has to look to see the ending, s. */
+  /** Observation time that shows the ending, s. */
   duration(band: number): number {
     return this.core.borrowed(8, (at) => {
       this.core.call("duration", this.handle, band, at);

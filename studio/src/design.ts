@@ -16,7 +16,7 @@ import {
 import { DRIVE, TABLES } from "./table";
 
 export interface Design extends Device {
-  /** Whether its curves are drawn beside those of the current one. */
+  /** True if its curves are drawn beside the curves of the current design. */
   readonly shown: boolean;
 }
 
@@ -24,12 +24,12 @@ export function isRows(value: Value | null | undefined): value is Rows {
   return Array.isArray(value);
 }
 
-/** What holds for a key: what is given, or what holds where it is left out; null: nothing. */
+/** Value of a key: the given one, or the default of a missing key; null: none. */
 export function valueFor(values: Values, key: string): Value | null {
   return values[key] ?? DRIVE.get(key)!.absent ?? null;
 }
 
-/** What a drive may do without: the core's name and the key. */
+/** Optional values of a drive: the core's name and the key. */
 const OPTIONAL: readonly (readonly [string, string])[] = [
   ["finger.stiffness", "finger.stiffness"],
   ...STOPS.map((name) => [name, `drive.${name}`] as const),
@@ -74,7 +74,7 @@ function needing(key: string): readonly string[] {
   return keys.includes(key) ? keys.slice(keys.indexOf(key) + 1) : [];
 }
 
-/** Whether what a key of end stops needs is given; of others, true. */
+/** True if the keys that a key of end stops requires are given; true for all other keys. */
 export function applies(values: Values, key: string): boolean {
   return STOPS.every((name) => !needing(`drive.${name}`).includes(key) || `drive.${name}` in values);
 }
@@ -132,7 +132,7 @@ function numberOf(values: Values, key: string): number | null {
   return typeof value === "number" ? value : null;
 }
 
-/** How the core's numbers change with one key, a part of its value: the rate that withValue has. */
+/** Derivative of the core's numbers by the relative change of one key: the rate of withValue. */
 export function direction(values: Values, key: string, part: number): Input {
   const relative: Record<string, number> = { [key]: part };
   const of = (name: string): number => relative[name] ?? 0;
@@ -187,7 +187,7 @@ export function direction(values: Values, key: string, part: number): Input {
   return { drive, curves, release, profiles };
 }
 
-/** How what presses on a contact changes, a part of it. */
+/** Relative change of the normal force on a contact. */
 function pressRate(values: Values, contact: string, of: (key: string) => number): number {
   const parts = Object.entries(TABLES.pressedBy[contact]!);
   const sizes = parts.map(
@@ -221,7 +221,7 @@ export function plateVelocity(values: Values, t: number): number {
   return y0 + ((y1 - y0) * (t - t0)) / (t1 - t0);
 }
 
-/** How far the plate went since the release, m. */
+/** Distance of the plate since the release, m. */
 export function plateDistance(values: Values, t: number): number {
   const given = values[MOUSE];
   if (!isRows(given)) return (given ?? 0) * t;

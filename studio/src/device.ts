@@ -25,7 +25,7 @@ import { fits } from "./whole";
 export interface Device {
   readonly name: string;
   readonly description: string;
-  /** Of the keys of DRIVE that are given. */
+  /** Given keys of DRIVE. */
   readonly values: Values;
   /** The tables about the drive, as the file has them. */
   readonly around: Readonly<Record<string, TomlTable>>;

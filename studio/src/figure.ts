@@ -117,7 +117,7 @@ function escaped(text: string): string {
   );
 }
 
-/** A picture of SVG text, at so many times its size. */
+/** Picture of SVG text, magnified. */
 export async function pngOf(svg: string, scale = 3): Promise<Blob> {
   const image = new Image();
   image.src = `data:image/svg+xml;base64,${btoa(unescape(encodeURIComponent(svg)))}`;

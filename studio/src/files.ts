@@ -5,7 +5,7 @@ import { h } from "./dom";
 export interface Given {
   readonly file: string;
   readonly text: string;
-  /** What stands in CSV files that the device file names, SI, by key. */
+  /** Contents of the CSV files of a device file, SI, by key. */
   readonly rows: Readonly<Record<string, Rows>>;
 }
 

@@ -43,7 +43,7 @@ function measured(motion: Motion, name: Channel, times: Float64Array): Float64Ar
   return motion.evaluate("finger_force", times).map((force, i) => force + plate[i]!);
 }
 
-/** The times of the motion at which the samples were taken; outside of it those at its ends. */
+/** Times of the motion at the samples; samples outside take the times of its ends. */
 function motionTimes(data: Data, offset: number, motion: Motion): Float64Array {
   const { knownUntil } = motion.outcome;
   return data.times.map((time) => Math.min(Math.max(time - offset, 0), knownUntil));

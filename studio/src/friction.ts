@@ -5,7 +5,7 @@ import { DRIVE, TABLES } from "./table";
 export type Value = number | Rows;
 /** The values of keys that are given, SI. */
 export type Values = Readonly<Record<string, Value>>;
-/** The same with what holds where a key is left out; null where nothing does. */
+/** Keys with defaults of missing ones; null without a default. */
 export type Found = Readonly<Record<string, Value | null | undefined>>;
 
 /** The friction of a contact: forces (N), or coefficients of what presses on it. */
@@ -28,14 +28,14 @@ export function byCoefficient(values: Found, contact: string): boolean {
   return frictionKeys(contact, true).some((key) => values[key] != null);
 }
 
-/** What presses on a contact while the magnet is off, N. */
+/** Normal force on a contact while the magnet is off, N. */
 export function normalForce(values: Found, contact: string): number {
   const parts = Object.entries(TABLES.pressedBy[contact]!);
   const sizes = parts.map(([key, factor]) => factor * ((values[key] ?? DRIVE.get(key)!.absent) as number));
   return sizes.slice(1).reduce((sum, size) => sum + size, sizes[0]!);
 }
 
-/** As it is given, by forces or by coefficients. */
+/** Notation of friction: by forces or by coefficients. */
 export function givenFriction(values: Found, contact: string): Friction {
   const [ofKinetic, ofStatic, ofCurve] = frictionKeys(contact, byCoefficient(values, contact));
   const curve = (values[ofCurve] as Rows | null | undefined) ?? null;
@@ -61,7 +61,7 @@ export function frictionParts(key: string): readonly string[] {
   return [own, ...(DRIVE.get(own)!.follows ?? []), ...Object.keys(TABLES.pressedBy[key.split(".")[0]!]!)];
 }
 
-/** The same friction given the other way, to rounding; a finger is then touched by so much, N. */
+/** Friction in the alternative notation, within rounding; a finger then has this touch force, N. */
 export function withKind(values: Values, contact: string, coefficients: boolean): Values {
   if (byCoefficient(values, contact) === coefficients) return values;
   const touch = "finger.touch_force";

@@ -15,7 +15,7 @@ export function mapNumbers(): Quantity[] {
   );
 }
 
-/** The keys over which a map can be: those that are given, one number each, and not what is looked at. */
+/** Keys of a map: given single numbers, without the displayed ones. */
 export function mapKeys(state: State): string[] {
   const { values } = state.designs[state.current]!;
   return [...DRIVE.keys()].filter((key) => {

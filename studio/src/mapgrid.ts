@@ -13,7 +13,7 @@ export interface Product {
 export interface MapTask {
   readonly input: Input;
   readonly varied: Readonly<Record<string, Product>>;
-  /** Of friction curves that grow with an axis: what their forces are multiplied by. */
+  /** Factors of the forces of friction curves that grow with an axis. */
   readonly curves: Readonly<Record<string, Product>>;
   readonly band: number;
   /** The number, and the limits on others. */
@@ -25,7 +25,7 @@ export interface MapResult {
   readonly values: Float64Array;
   /** 1 where every limit is kept. */
   readonly met: Uint8Array;
-  /** What it took, ms. */
+  /** Computing time, ms. */
   readonly took: number;
 }
 

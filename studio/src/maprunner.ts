@@ -15,7 +15,7 @@ export class MapRunner {
   task: MapTask | null = null;
   private readonly view: MapView;
   private worker: Worker | null = null;
-  /** Whether the thread has not answered yet. */
+  /** True while the thread has not responded. */
   busy = false;
   private next: (() => MapTask) | null = null;
   private state: State | null = null;

@@ -56,7 +56,7 @@ export class MapView {
     this.draw();
   }
 
-  /** What is shown next; the colours stay until a result comes. */
+  /** Next picture; the colours stay until a result arrives. */
   show(shown: MapShown): void {
     this.shown = shown;
     const [x, y] = [DRIVE.get(shown.x)!, DRIVE.get(shown.y)!];

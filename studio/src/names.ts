@@ -33,7 +33,7 @@ export function nearest(given: string): string[] {
     .map(({ key }) => key);
 }
 
-/** What to say of an unknown key of a device file. */
+/** Message for an unknown key of a device file. */
 export function unknownInFile(key: string): string {
   if (key === "plate.stiffness") {
     return `${key} cannot be given, the plate is rigid; skin gives way by finger.stiffness`;
@@ -76,7 +76,9 @@ function alike(given: string, spelled: string, table: string): number {
   return shares ? Math.max(letters, 0.5 + 0.5 * letters) : letters;
 }
 
-/** Twice the characters in matching blocks over all of them (Ratcliff and Obershelp). */
+/**
+ * Similarity: twice the characters in matching blocks over all characters (Ratcliff and Obershelp).
+ */
 function similarity(a: string, b: string): number {
   const total = a.length + b.length;
   return total ? (2 * matching(a, b)) / total : 1;

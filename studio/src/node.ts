@@ -19,7 +19,7 @@ type Question =
   | { readonly recording: string; readonly file: string }
   | { readonly si: string; readonly unit: string };
 
-/** A device file, and what is asked of it. */
+/** Device file, and the requested result. */
 interface Device {
   readonly device: string;
   readonly file: string;

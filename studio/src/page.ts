@@ -420,13 +420,13 @@ function entry(classes: string, words: string): HTMLElement {
   return h("span", {}, h("span", { class: classes, "aria-hidden": "true" }), words);
 }
 
-/** What the signs of end stops mean. */
+/** Legend of the signs of end stops. */
 function stopSigns(): HTMLElement {
   const of = (kind: string): HTMLElement => entry(`mark ${kind} stop`, TABLES.events[kind]!.stop!);
   return h("span", { class: "legend" }, of("stop"), of("leave"));
 }
 
-/** What the signs in the plots mean. */
+/** Legend of the signs in the plots. */
 function legend(more: HTMLElement): HTMLElement {
   return h(
     "p",

@@ -25,7 +25,7 @@ interface Control {
 export class Panel {
   readonly element = h("div", { class: "parameters" });
   private readonly controls: Control[] = [];
-  /** Before the first of the last changes, where all of them are of one key. */
+  /** State before the first of the last changes, if all changes are of one key. */
   private base: { key: string; values: Values; now: string } | null = null;
 
   constructor(
@@ -50,7 +50,7 @@ export class Panel {
     for (const control of this.controls) control.update(values);
   }
 
-  /** What a change of a key starts from: ratios survive a slider that is dragged to 0 and back. */
+  /** Start of a change of a key: ratios survive a slider at 0. */
   private before(key: string): Values {
     const now = this.now();
     const same = this.base?.key === key && this.base.now === JSON.stringify(now);
@@ -64,7 +64,7 @@ export class Panel {
     this.change(next, kind);
   }
 
-  /** Whether friction is given by forces or by coefficients. */
+  /** True if friction is given by coefficients. */
   private kind(contact: string, title: string): Control {
     const select = h(
       "select",
@@ -81,7 +81,7 @@ export class Panel {
     };
   }
 
-  /** A number, which may be left out unless it is mandatory, and may be rows where those exist. */
+  /** Number field; optional unless mandatory, with rows if the key may have rows. */
   private number(quantity: Quantity): Control {
     const { key } = quantity;
     const id = key.replace(".", "-");
@@ -178,7 +178,7 @@ export class Panel {
     return { element, update };
   }
 
-  /** What holds usually, or what holds now. */
+  /** Usual value, or present value. */
   private usual(quantity: Quantity): number {
     const values = this.now();
     const [contact, name] = quantity.key.split(".") as [string, string];
@@ -208,15 +208,15 @@ export class Panel {
   }
 }
 
-/** Where the release begins, m. */
+/** Displacement at the release, m. */
 function startOf(values: Values): number {
   return (valueFor(values, "motion.displacement") as number | null) ?? 0;
 }
 
-/** What a contact whose friction is given by coefficients must have. */
+/** Mandatory keys of a contact with coefficients. */
 const PRESSED: readonly string[] = ["plate.coefficient", "finger.coefficient", "finger.touch_force"];
 
-/** Whether a key means something: as the friction of its contact is given, beside such end stops. */
+/** True if a key has a meaning with the notation of its contact and with these end stops. */
 function meant(key: string, values: Values): boolean {
   const contact = key.split(".")[0]!;
   if (!(contact in TABLES.pressedBy)) return key in values || applies(values, key);
@@ -229,12 +229,12 @@ function nameOf(quantity: Quantity): string {
   return quantity.name.replace(/^(plate|finger)\./, "").replaceAll("_", " ");
 }
 
-/** The other way to give the same: damping or damping ratio. */
+/** Alternative notation: damping or damping ratio. */
 function partner(key: string): string | null {
   return { "drive.damping": "drive.damping_ratio", "drive.damping_ratio": "drive.damping" }[key] ?? null;
 }
 
-/** What holds where a key is left out. */
+/** Default of a missing key. */
 function absentWords(key: string, values: Values): string {
   const name = key.split(".")[1]!;
   const words: Record<string, string> = {

@@ -26,7 +26,7 @@ function plainDigits(value: number): string {
   return `${sign}${whole}${rest ? `.${rest}` : ""}`;
 }
 
-/** Python's format "g": so many significant digits, without zeros at the end. */
+/** Python's format "g": a number of significant digits, without trailing zeros. */
 export function general(value: number, count = 6): string {
   if (!Number.isFinite(value)) return floatRepr(value);
   if (value === 0) return Object.is(value, -0) ? "-0" : "0";

@@ -4,9 +4,9 @@ import type { Quantity } from "./table";
 export interface Range {
   readonly lower: number;
   readonly upper: number;
-  /** Whether equal steps multiply. */
+  /** True if equal steps multiply. */
   readonly logarithmic: boolean;
-  /** Whether the first place stands for 0, which no logarithm has. */
+  /** True if the first place stands for 0, which has no logarithm. */
   readonly zero: boolean;
 }
 

@@ -108,7 +108,7 @@ function unquoted(cell: string): string {
   return cell.startsWith('"') && cell.endsWith('"') ? cell.slice(1, -1).replaceAll('""', '"') : cell;
 }
 
-/** One cell of a line, without cutting the rest of it up. */
+/** Cell of a line; the rest of the line is not split. */
 function cellOf(line: string, mark: string, index: number): string {
   if (line.includes('"')) return unquoted((line.split(mark)[index] ?? "").trim()).trim();
   let begin = 0;

@@ -18,7 +18,7 @@ const ENDINGS: Readonly<Record<string, string>> = {
   irregular: "irregular, never repeats",
 };
 
-/** How the motion goes, in one sentence. */
+/** Description of the motion in one sentence. */
 export function sentence(view: View, statusText: (status: number) => string): string {
   const curves = currentCurves(view);
   if (!curves) {
@@ -108,7 +108,7 @@ function valueIn(curves: NonNullable<ReturnType<typeof curvesOf>>, quantity: Qua
   return curves.numbers[quantity.name];
 }
 
-/** Which event follows which; a click puts the cursor there. */
+/** Sequence of the events; a click moves the cursor to the event. */
 export class EventsTable {
   readonly element = h("div", {
     class: "scroll",
@@ -168,11 +168,11 @@ export class EventsTable {
 
 export interface Effect {
   readonly key: string;
-  /** What 1 % more of the key changes of the number, SI. */
+  /** Change of the number by 1 % of the key, SI. */
   readonly change: number;
 }
 
-/** The exact derivatives of a number with respect to each given parameter, times 1 % of it. */
+/** Exact derivatives of a number by each given parameter, times 1 % of the parameter. */
 export function effects(core: Core, values: Values, name: string, duration: number): Effect[] {
   const input = coreInput(values);
   return variedKeys(values).flatMap((key): Effect[] => {

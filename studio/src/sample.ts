@@ -40,7 +40,7 @@ export interface Curves {
   readonly certificate: Readonly<Record<string, number>>;
   readonly end: string;
   readonly status: number;
-  /** How long the motion is looked at for its numbers, s. */
+  /** Observation time of the numbers of the motion, s. */
   readonly duration: number;
   readonly compliant: boolean;
 }
@@ -58,7 +58,7 @@ interface Made {
   readonly events: readonly ContactEvent[];
 }
 
-/** Motions of several designs over one window: as long as the longest of them, unless given. */
+/** Motions of several designs over one window: the longest of their windows, unless given. */
 export function simulateAll(
   core: Core,
   designs: readonly Values[],
@@ -97,7 +97,9 @@ function begin(core: Core, values: Values): Made {
   return { motion, values, duration, events: eventsOf(motion, duration) };
 }
 
-/** What changes at the ends of modes, with the state right after it, as Python lists it; cycles expanded. */
+/**
+ * Changes at the ends of modes, with the state right after, in Python's order; cycles are expanded.
+ */
 function eventsOf(motion: Motion, until: number): ContactEvent[] {
   const found: ContactEvent[] = [];
   for (const { segment, next, shift } of expanded(motion, motion.segments(until), until)) {
@@ -116,7 +118,7 @@ function eventsOf(motion: Motion, until: number): ContactEvent[] {
   return found;
 }
 
-/** Modes in order with the one that follows each, those of a cycle again and again, later by `shift`. */
+/** Modes in order with their successors; modes of a cycle repeat, later by `shift`. */
 function* expanded<T extends Segment>(
   motion: Motion,
   segments: readonly T[],
@@ -136,7 +138,7 @@ function* expanded<T extends Segment>(
 
 interface Grid {
   readonly times: Float64Array;
-  /** Of these indices the left limit is taken. */
+  /** Indices with a left limit. */
   readonly left: readonly number[];
 }
 
@@ -192,7 +194,7 @@ function sampled({ motion, values, duration, events }: Made, grid: Grid, end: nu
   };
 }
 
-/** When the plate carries the pin, when it is at rest, on the finger, a plate that stands or a stop, when skin grips it. */
+/** Times of stick: on the moving plate, at rest on finger, plate or stop, and of sticking skin. */
 function phasesOf(motion: Motion, values: Values, end: number): Phase[] {
   const found: Phase[] = [];
   const add = (kind: PhaseKind, begin: number, until: number): void => {

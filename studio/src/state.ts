@@ -14,7 +14,7 @@ export interface Limit {
 export interface State {
   readonly designs: readonly Design[];
   readonly current: number;
-  /** Values whose curve is kept behind the others. */
+  /** Values of the curve in the background. */
   readonly ghost: Values | null;
   readonly map: { readonly x: string; readonly y: string };
   /** The number of which the map and the bars of derivatives are. */
@@ -48,7 +48,7 @@ export function withDesign(state: State, change: Partial<Design>, index = state.
   return { ...state, designs };
 }
 
-/** What was, what is, and what was undone; a slider that moves is one step. */
+/** Past, present and undone states; a moving slider is one step. */
 export class History {
   private past: State[] = [];
   private future: State[] = [];
@@ -57,7 +57,7 @@ export class History {
 
   constructor(public now: State) {}
 
-  /** A step; those of one kind within a second of each other are one. */
+  /** Step; steps of one kind within a second are merged. */
   change(next: State, kind: string, time: number): void {
     if (kind === "" || kind !== this.lastStep || time - this.lastTime > 1000) {
       this.past.push(this.now);

@@ -39,7 +39,7 @@ export interface Quantity {
   readonly line?: string;
 }
 
-/** What is known over time: a column of files. */
+/** Quantities over time: columns of files. */
 export interface Series extends Quantity {
   /** Its heading in a CSV, SI: "position [m]". */
   readonly heading: string;
@@ -53,30 +53,30 @@ interface Tables {
   readonly columns: Readonly<Record<string, readonly [string, string]>>;
   readonly numbers: readonly Quantity[];
   readonly series: readonly Series[];
-  /** What a recording of a release may hold over time. */
+  /** Columns of a recording of a release. */
   readonly channels: readonly Series[];
   readonly keys: readonly string[];
-  /** What keys that hold a quantity are called in Python. */
+  /** Python names of keys with a quantity. */
   readonly variables: Readonly<Record<string, string>>;
   /** Words that people write for the words of names. */
   readonly otherWords: Readonly<Record<string, string>>;
   readonly tables: readonly string[];
   readonly alone: readonly string[];
   readonly around: readonly string[];
-  /** What the slopes between the rows of a curve are. */
+  /** Quantity of the slopes between the points of a curve. */
   readonly slopes: Readonly<Record<string, string>>;
   /** The coefficient by which a friction force may be given instead, by key. */
   readonly coefficients: Readonly<Record<string, string>>;
-  /** What presses on each contact: keys, and how much each one does. */
+  /** Normal force on each contact: keys, and their factors. */
   readonly pressedBy: Readonly<Record<string, Readonly<Record<string, number>>>>;
-  /** What a release has over time, by name; which of that may have no steps, by key. */
+  /** Inputs of a release over time, by name; inputs without steps, by key. */
   readonly overTime: readonly string[];
   readonly continuous: readonly string[];
-  /** How a coil is made; what it must say, with its meaning; what says what a magnet does instead. */
+  /** Design of a coil; its mandatory keys, with their meanings; alternatives to a coil. */
   readonly coil: readonly string[];
   readonly coilNeeds: Readonly<Record<string, string>>;
   readonly magnet: readonly string[];
-  /** How many pins an array may have, and what a message calls them. */
+  /** Largest number of pins in an array, and its name in messages. */
   readonly pins: readonly [number, string];
   readonly studyKeys: readonly string[];
   readonly inputRows: number;
@@ -95,13 +95,13 @@ export const TABLES = generated as unknown as Tables;
 
 /** The keys of a device file that hold a quantity, in their order. */
 export const INPUTS: ReadonlyMap<string, Quantity> = new Map(TABLES.inputs.map((q) => [q.key, q]));
-/** Those that describe the drive and its release. */
+/** Keys of the drive and its release. */
 export const DRIVE: ReadonlyMap<string, Quantity> = new Map(
   TABLES.drive.map((key) => [key, INPUTS.get(key)!]),
 );
-/** What is found of a motion, by name. */
+/** Results of a motion, by name. */
 export const NUMBERS: ReadonlyMap<string, Quantity> = new Map(TABLES.numbers.map((q) => [q.name, q]));
-/** What is known of a motion at a time, by name. */
+/** State of a motion at a time, by name. */
 export const SERIES: ReadonlyMap<string, Series> = new Map(TABLES.series.map((q) => [q.name, q]));
 
 export function part(name: string): Quantity {
@@ -123,12 +123,12 @@ function within(value: number, of: Bounds): boolean {
   );
 }
 
-/** What a value (SI) must be, if it is not: "finite and greater than 0 kg"; else empty. */
+/** Requirement that a value (SI) violates: "finite and greater than 0 kg"; else empty. */
 export function required(quantity: Quantity, value: number): string {
   return quantity.bounds?.find((of) => !within(value, of))?.words ?? "";
 }
 
-/** Whether any such device has a value (SI), either way. */
+/** True if a value (SI) is plausible for a device. */
 export function plausible(quantity: Quantity, value: number): boolean {
   if (!quantity.seen || !Number.isFinite(value)) return true;
   const size = Math.abs(value);

@@ -5,7 +5,7 @@ export type Scheme = "auto" | "light" | "dark";
 
 export interface Look {
   readonly dark: boolean;
-  /** Of what is written in plots: a little smaller than the page's. */
+  /** Size of text in plots: a little smaller than on the page. */
   readonly font: string;
   readonly text: string;
   readonly muted: string;
@@ -18,7 +18,7 @@ export interface Look {
   readonly events: Readonly<Record<string, string>>;
 }
 
-/** The same hue, lighter: what is drawn on dark needs it. */
+/** Hue for dark backgrounds: lighter. */
 function lightened(color: string, part: number): string {
   const channels = [1, 3, 5].map((i) => parseInt(color.slice(i, i + 2), 16));
   return `rgb(${channels.map((c) => Math.round(c + (255 - c) * part)).join(" ")})`;

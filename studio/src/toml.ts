@@ -42,7 +42,7 @@ const ESCAPES: Readonly<Record<string, string>> = {
   "\\": "\\",
 };
 
-/** What may no longer be changed, by where it stands. */
+/** Tables that may no longer be changed, by their place. */
 class Marks {
   readonly nested = new Map<string, Marks>();
   declared = false;

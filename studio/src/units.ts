@@ -49,7 +49,7 @@ export function toSi(text: string, unit: string, example: string): number {
   return toNumber(times(decimal(number), factor));
 }
 
-/** What a unit has to be, in words, and that `written` is none where it is not known at all. */
+/** Description of the required unit; it mentions if the unit `written` is unknown. */
 export function expected(unit: string, written: string, otherwise = ""): string {
   const kind = unit === "1" ? `a plain number${otherwise}` : `in ${unit} or a unit alike`;
   return parseUnit(written) ? kind : `${kind} (${quoted(written)} is not a known unit)`;
@@ -62,7 +62,7 @@ function plainNumber(text: string): number {
 
 const conversions = new Map<string, Fraction | null>();
 
-/** How many of the SI unit `unit` one `written` is; null if they are not of a kind. */
+/** Number of units `unit` in one `written`; null for different dimensions. */
 function conversion(written: string, unit: string): Fraction | null {
   const key = `${written}\n${unit}`;
   let found = conversions.get(key);

@@ -4,7 +4,7 @@ import type { Recording } from "./recording";
 import type { ContactName, Curves, EventKind, Simulated } from "./sample";
 import { currentDesign, type State } from "./state";
 
-/** A curve of the plots: the current design first, the ghost, then the others that are shown. */
+/** Curve of the plots: the current design first, the ghost, then all other shown designs. */
 export interface Line {
   readonly name: string;
   readonly kind: "current" | "ghost" | "other";
@@ -31,7 +31,7 @@ export function curvesOf(line: Line | undefined): Curves | null {
   return line && "curves" in line.result ? line.result.curves : null;
 }
 
-/** Of the current design; null where it has no motion. */
+/** Motion of the current design; null without one. */
 export function currentCurves(view: View): Curves | null {
   return curvesOf(view.lines[0]);
 }

@@ -24,7 +24,7 @@ export function fieldText(quantity: Quantity, value: number): string {
   return general(value * quantity.displayScale, 6);
 }
 
-/** The device file of a design: the same keys, each with its meaning. */
+/** Device file of a design: its keys, each with its meaning. */
 export function deviceFile(design: Design): string {
   const lines = ["[device]", `name = ${JSON.stringify(design.name)}`];
   if (design.description) lines.push(`description = ${JSON.stringify(design.description)}`);

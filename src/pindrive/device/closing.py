@@ -20,7 +20,7 @@ from pindrive.quantities.refusal import refusal
 
 @dataclass(frozen=True, slots=True)
 class Closing:
-    """When the gap closes and opens, and what that makes of the inductance."""
+    """Closing and opening of the gap, and its effect on the inductance."""
 
     flux: float
     """The flux linkage at which it closes and opens, a part of that of the full current."""
@@ -30,7 +30,7 @@ class Closing:
     def piece(
         self, start: float, target: float, constant: float
     ) -> tuple[float, float, float, float]:
-        """How the flux linkage continues from `start` while the voltage stays.
+        """Return the continuation of the flux linkage from `start` at constant voltage.
 
         Args:
             start: the flux linkage, a part.

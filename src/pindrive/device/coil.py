@@ -1,4 +1,4 @@
-"""How an electromagnet is made, and what follows from that: currents, times, fields, power."""
+"""Coil of an electromagnet, and derived currents, times, fields and power."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pindrive.quantities.part import Number, OptionalNumber, Part, checked_by
 from pindrive.quantities.refusal import refusal
 
 TABLE: Final = Part(MAGNET + ROWS + MADE)
-"""What a magnet is described by."""
+"""Table of the device file with the keys of a magnet."""
 default: Final = TABLE.default
 
 MAGNETIC_CONSTANT: Final = 1.25663706127e-6
@@ -113,7 +113,7 @@ class Coil:
 
     @property
     def heat(self) -> Heat | None:
-        """What warms and cools it over time; None where its heat capacity is not known."""
+        """Heating and cooling of the coil; None without a heat capacity."""
         if self.heat_capacity is None:
             return None
         return Heat(self.power, self.thermal_resistance, self.heat_capacity)
@@ -126,7 +126,7 @@ class Coil:
 
 COIL: Final = tuple(field.name for field in fields(Coil))
 COIL_NEEDS: Final = tuple(field.name for field in fields(Coil) if field.default is MISSING)
-"""What a coil must say."""
+"""Mandatory keys of a coil."""
 
 
 def check_poles(coil: Coil | None, outer_diameter: float | None) -> None:

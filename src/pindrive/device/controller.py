@@ -20,11 +20,11 @@ class Decision:
     """The state of the control block for one coil."""
 
     on: bool = False
-    """What it decided last."""
+    """Last decision."""
     switched: bool = False
-    """What the coil does."""
+    """State of the coil."""
     pending: tuple[float, ...] = ()
-    """When it will be switched by what is decided already, s."""
+    """Time of the pending switching, s."""
 
 
 @checked
@@ -54,14 +54,14 @@ class ControlBlock:
         check_band(self.threshold, self.hysteresis)
 
     def looks(self, begin: float, end: float) -> NDArray[np.float64]:
-        """When it looks at the scene in [begin, end), s, shape (n,)."""
+        """Return the sampling instants in [begin, end), s, shape (n,)."""
         self.check_looks(begin, end)
         first, last = ceil(begin * self.sample_rate), ceil(end * self.sample_rate)
         times = np.arange(first - 1, last + 1, dtype=np.float64) / self.sample_rate
         return times[(times >= begin) & (times < end)]
 
     def check_looks(self, begin: float, end: float, pins: int = 1) -> None:
-        """Refuse to look too often at the spots of so many pins from `begin` to `end` (s)."""
+        """Reject too many samples of the pins from `begin` to `end` (s)."""
         each, lasts = ceil((end - begin) * self.sample_rate), end - begin
         of = f"{pins} pins, {lasts:g} s at {self.sample_rate:g} Hz"
         budgets.LOOKS.check(float(pins * each), of)

@@ -26,24 +26,24 @@ class CoilState:
     """All there is to know of a coil: its last switching, or closing or opening of its gap."""
 
     since: float = 0.0
-    """When that was, s."""
+    """Time of the last switching, s."""
     on: bool = False
-    """Whether it is on since then."""
+    """True if on since then."""
     flux: float = 0.0
     """The flux linkage then, a part of that of the full current."""
     pull: float | None = None
     """The pull then, as its rows have it, N; None: exactly that of the flux."""
     warming: float = 0.0
-    """Of the coil above 20 °C then, K."""
+    """Temperature of the coil above 20 °C at that time, K."""
     level: float = 1.0
     """The voltage across it while it is on since then, a part of the full one."""
     commanded: float = 0.0
-    """When it was commanded on, s, if it is."""
+    """Time of the command to switch on, s, if commanded."""
 
 
 Circuit = Callable[[bool, float], tuple[float, float]]
-"""Of a coil with a closed gap that is on or off, with its resistance over that at 20 °C: the flux
-linkage to which it tends at full voltage, a part, and its time constant, s."""
+"""Circuit of a coil with a closed gap, on or off, relative to its resistance at 20 °C: the flux
+linkage to which it tends at full voltage, as a fraction, and its time constant, s."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,11 +55,11 @@ class Current:
     """
 
     begins: NDArray[np.float64]
-    """When each piece begins, s, shape (n,), n >= 1."""
+    """Begin of each piece, s, shape (n,), n >= 1."""
     starts: NDArray[np.float64]
     """The flux linkage then, a part of that of the full current."""
     on: NDArray[np.bool_]
-    """Whether it is switched on from then on, or off."""
+    """True for pieces with the coil switched on."""
     levels: NDArray[np.float64]
     """The voltage across it while it is on, a part of the full one."""
     targets: NDArray[np.float64]
@@ -84,7 +84,7 @@ class Current:
         heat: Heat | None = None,
         levels: NDArray[np.float64] | None = None,
     ) -> Current:
-        """The current of a coil that is switched at `begins`, the first of them the last before.
+        """Return the current of a coil that is switched at `begins`, the first before the scan.
 
         `levels` are the voltages across it while it is on, parts of the full one: 1 unless given.
         """
@@ -182,7 +182,7 @@ class Pulses:
     def switchings(
         self, commands: Commands, before: CoilState, begin: float, end: float
     ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-        """When a coil is switched from `begin` until before `end` (s), and whether on.
+        """Return the switchings of a coil in [begin, end) (s), with their directions.
 
         Raises:
             ValueError: there would be too many.
@@ -278,7 +278,7 @@ class VoltageSteps:
     def switchings(
         self, commands: Commands, before: CoilState, begin: float, end: float
     ) -> tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[np.float64]]:
-        """When a coil is switched until before `end` (s), whether on, and to which level."""
+        """Return the switchings of a coil before `end` (s), with direction and level."""
         spans = commanded_spans(commands, before, begin, end)
         rows: list[tuple[float, bool, float]] = []
         if before.on and not commands.on(begin):  # switched off right there
@@ -307,7 +307,7 @@ def commanded_spans(
 
 
 def current_after(start: float, target: float, constants: float) -> float:
-    """A flux linkage that tends to `target`, so many time constants later."""
+    """Return a flux linkage that tends to `target`, a number of time constants later."""
     left = exp(-constants)
     return 1.0 - (1.0 - start) * left if target == 1.0 else target + (start - target) * left
 
@@ -317,12 +317,12 @@ class Commands:
     """On and off of one coil over time."""
 
     times: NDArray[np.float64]
-    """When it is switched, s, shape (n,), increasing."""
+    """Times of the switchings, s, shape (n,), increasing."""
     at_first: bool = False
-    """Whether it is on before the first."""
+    """True if on before the first switching."""
 
     def on(self, t: ArrayLike) -> NDArray[np.bool_]:
-        """Whether it is on at time t (s), any shape; at a switching, as switched."""
+        """Return True if on at time t (s), any shape; at a switching, the state after."""
         count = np.searchsorted(self.times, np.asarray(t, np.float64), "right")
         on: NDArray[np.bool_] = (count % 2 == 1) ^ self.at_first
         return on

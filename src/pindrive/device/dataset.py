@@ -97,7 +97,7 @@ def sample_count(path: HandPath) -> float:
 
 
 def check_samples(pins: int, times: float) -> None:
-    """Refuse too many samples of so many pins at so many times."""
+    """Reject too many samples of all pins and times."""
     budgets.SAMPLES.check(pins * times, f"{pins} pins at {times:.0f} times")
 
 
@@ -112,7 +112,7 @@ def write_netcdf(scan: Scan, path: Path) -> None:
 
 
 def inputs(scan: Scan) -> dict[str, float]:
-    """What was simulated, SI, by names of the table of quantities."""
+    """Return the simulated inputs, SI, by names of the table of quantities."""
     device = scan.device
     drive, magnet = device.drive, device.magnet
     values = {
@@ -141,12 +141,12 @@ def inputs(scan: Scan) -> dict[str, float]:
 
 
 def _given(coil: Coil) -> dict[str, float]:
-    """Its numbers, without those that are not given."""
+    """Return the given numbers."""
     return {name: value for name, value in asdict(coil).items() if value is not None}
 
 
 def numbers(pin: PinScan) -> dict[str, float]:
-    """What one pin did, SI, by the names of the table of quantities; exact, not from samples."""
+    """Return the numbers of one pin, SI, by the names of the table of quantities; exact."""
     motion = pin.motion
     used = motion.transient
     at_plate = [e for e in pin.events if e.contact in ("plate", "both")]
@@ -165,7 +165,7 @@ def numbers(pin: PinScan) -> dict[str, float]:
 
 
 def _columns(scan: Scan, pin: PinScan, t: NDArray[np.float64]) -> dict[str, NDArray[Any]]:
-    """What is known of one pin at times on the path's clock (s, shape (n,))."""
+    """Return the state of one pin at times on the path's clock (s, shape (n,))."""
     found: dict[str, NDArray[Any]] = columns(pin.motion, pin.since(t))
     del found["time"]
     found.pop("plate_velocity", None)  # that of all pins
@@ -185,7 +185,7 @@ def _over(
 
 
 def _middles(scan: Scan, axis: int) -> NDArray[np.float64]:
-    """Where the middles of the scene's rows (0) or columns (1) are on the page, m."""
+    """Return the centres of the scene's rows (0) or columns (1) on the page, m."""
     scene = scan.scene
     count, begin = scene.luminance.shape[axis], scene.origin[1 - axis]
     return np.asarray(begin + (np.arange(count) + 0.5) * scene.pixel, np.float64)
@@ -246,7 +246,7 @@ def _gaps(scan: Scan) -> dict[str, Any]:
 
 
 def gap_words(scan: Scan) -> list[str]:
-    """How close neighbouring pins and magnets come, and pins to the ends of their slots.
+    """Return the smallest gaps of neighbouring pins and magnets, and of pins and slot ends.
 
     A line each; of pins of which none stands ahead of another, and of sizes that are not known,
     nothing.
@@ -281,12 +281,12 @@ def peak_warming(scan: Scan) -> float | None:
 
 
 def scan_warnings(scan: Scan) -> tuple[str, ...]:
-    """What is doubtful about a scan, a line each; nothing where nothing is."""
+    """Return the doubts about a scan, a line each."""
     return (*_doubts(scan), *_overlaps(scan))
 
 
 def _doubts(scan: Scan) -> list[str]:
-    """What is doubtful about a scan, but for pins that overlap."""
+    """Return the doubts about a scan, without overlapping pins."""
     found = []
     device, scene, path, max_angle = scan.device, scan.scene, scan.path, scan.max_angle
     control, speed = device.control, path.peak_speed
@@ -333,7 +333,7 @@ def _doubts(scan: Scan) -> list[str]:
 
 
 def _beyond(scan: Scan) -> str:
-    """How long a pin's spot is beyond the page, where it sees blank paper; empty: never."""
+    """Return the time of a pin's spot beyond the page, on blank paper; "" for none."""
     worst, part = 0, 0.0
     for pin in scan.pins:
         off = 0
@@ -353,7 +353,7 @@ def _beyond(scan: Scan) -> str:
 
 
 def _overlaps(scan: Scan) -> list[str]:
-    """What would have to pass through something else: the motions know nothing of that."""
+    """Return the overlaps of parts, which the motions do not model."""
     found = [*doubts(scan.device)]
     array = scan.device.array
     for name, gaps in (("pins", scan.gaps), ("magnets", scan.magnet_gaps)):

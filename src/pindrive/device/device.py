@@ -56,12 +56,12 @@ class Device:
 
     @property
     def reach(self) -> float:
-        """How far a magnet carries a pin at most before the spring overcomes it, m, slowly."""
+        """Largest displacement of a carried pin before the spring wins over the magnet, m."""
         held = self.drive.plate.static_friction * self.load(self.magnet.sustained_pull)
         return max(0.0, held - self.drive.finger.kinetic) / self.drive.stiffness
 
     def excursion(self, speed: float) -> float:
-        """How far a pin can come from its rest at most, either way, m.
+        """Largest displacement of a pin from its rest in either direction, m.
 
         Carried to where the plate's friction ends against the spring, static or at the speeds at
         which it pulls outwards, it has the plate's velocity left. A hand that speeds up by a adds
@@ -78,7 +78,7 @@ class Device:
     def drag(
         self, angle: float = default("axis"), finger_load: float = default("finger_load")
     ) -> float:
-        """How far the plate drags a pin that is off, m, slowly; 0 where the finger holds it.
+        """Quasi-static drag of the plate on a pin that is off, m; 0 in stick on the finger.
 
         Args:
             angle: between the hand's motion and the drive axis, rad.
@@ -100,7 +100,7 @@ class Device:
 
 @checked
 class Criteria:
-    """What counts as felt, by the sources in the table of quantities.
+    """Criteria of the evaluation, by the sources in the table of quantities.
 
     Args:
         felt: motion that is felt as a pulse, m, greater than 0.

@@ -33,12 +33,12 @@ from pindrive.quantities.part import Number, OptionalNumber, checked_by
 from pindrive.quantities.refusal import refusal
 
 AT_ONCE: Final = 0.01
-"""How soon after a switching the pull is exact: when it can have changed by no more than twice this
-part of its deviation."""
+"""Relative change of the pull, over twice its deviation, below which it is exact after a switching.
+"""
 
 
 DIRECT: Final = ("hold_force", "rise_time", "fall_time", "saturation")
-"""What is said instead of a coil."""
+"""Source of the pull without a coil."""
 
 
 def check_one_way(given: set[str], table: str = "") -> None:
@@ -60,7 +60,7 @@ def check_one_way(given: set[str], table: str = "") -> None:
 
 @checked_by(TABLE)
 class Electromagnet:
-    """What an electromagnet does to the plate.
+    """Electromagnet and its pull on the plate.
 
     Every number may also be text with a unit, such as "5 ms"; a bare number is SI.
 
@@ -199,7 +199,7 @@ class Electromagnet:
 
     @cached_property
     def closing(self) -> Closing:
-        """When the gap under its poles closes and opens; without a lift it stays closed."""
+        """Closing and opening of the gap under its poles; without a lift it stays closed."""
         coil = self.coil
         if coil is None or coil.lift is None or coil.closing_force is None:
             return CLOSED
@@ -213,7 +213,7 @@ class Electromagnet:
 
     @property
     def fall_time(self) -> float:
-        """From switching off until 10 % of it, s."""
+        """Time from switching off until 10 % of the pull, s."""
         return self._falls(self.saturation * sqrt(0.1))
 
     @property
@@ -250,7 +250,7 @@ class Electromagnet:
 
     @property
     def pulses(self) -> Pulses | None:
-        """How it is switched while it is on; None: it stays on."""
+        """Pulses while the magnet is on; None: constant voltage."""
         if self.pwm_frequency is None or self.pwm_duty is None or self.pwm_duty == 1.0:
             return None
         return Pulses(self.pwm_frequency, self.pwm_duty)
@@ -377,7 +377,7 @@ class Electromagnet:
     def _rows_after(
         self, start: float, target: float
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """When rows are due after a switching, in time constants, and the currents then.
+        """Return the times after a switching, in time constants, and the currents then.
 
         At the switching, whose current is left out; a moment later; as the current passes its
         levels; and when it has reached its end within the deviation, where it stays.
@@ -399,7 +399,7 @@ class Electromagnet:
     def _rows_between(
         self, start: float, target: float
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """The same where the current tends to another than none or the full one.
+        """Return the times and currents of a partial switching.
 
         With c = A + C E, E = exp(−t/τ), the curvature of c² is 4C²E² + 2AC E, at its largest at
         first. A row is due where the iron comes to saturation, or out of it.
@@ -468,7 +468,7 @@ class Electromagnet:
 
 
 def check_pulses(frequency: float | None, duty: float | None) -> None:
-    """Refuse a frequency of pulses (Hz) without a duty, or that without the other."""
+    """Reject a pulse frequency (Hz) without a duty cycle, and the reverse."""
     if (frequency is None) != (duty is None):
         one, other = ("pwm_frequency", "pwm_duty")[:: 1 if duty is None else -1]
         raise ValueError(refusal(one, f"given with {other}", "it alone"))

@@ -1,4 +1,4 @@
-"""Whether a device can be built: what fits in what, what it weighs, how close pins come.
+"""Feasibility of a device: fits, masses, and clearances of the pins.
 
 How close neighbouring pins come along the drive axis is found with a certain bound.
 
@@ -55,7 +55,7 @@ def nearest_pins(places: Sequence[tuple[float, float]]) -> tuple[int, int, float
 
 
 def doubts(device: Device) -> Iterator[str]:
-    """What cannot be built so, a line each; nothing where all of it can, or sizes are not given."""
+    """Return the reasons for which a device cannot be built, a line each; none without sizes."""
     array, magnet = device.array, device.magnet
     nearest = nearest_pins(array.places)
     if nearest and magnet.outer_diameter is not None:
@@ -95,14 +95,14 @@ def doubts(device: Device) -> Iterator[str]:
 
 
 def heaviest(diameter: float | None, height: float | None) -> float | None:
-    """The mass of a solid cylinder of copper, kg, of these sizes (m); None if one is not given."""
+    """Return the mass of a solid copper cylinder with these sizes (m), kg; None if incomplete."""
     if diameter is None or height is None:
         return None
     return COPPER * pi / 4.0 * diameter**2 * height
 
 
 def _apart(places: Sequence[tuple[float, float]], behind: int, ahead: int) -> float:
-    """How far one pin stands ahead of the other along the drive axis, m."""
+    """Return the distance of one pin ahead of another along the drive axis, m."""
     return places[ahead][0] - places[behind][0]
 
 
@@ -112,7 +112,7 @@ def _apart(places: Sequence[tuple[float, float]], behind: int, ahead: int) -> fl
 CLOSE: Final = 1e-12
 """The smallest gap is found to within that, m."""
 CUTS: Final = 8
-"""A piece is cut into so many at once."""
+"""Number of parts into which a piece is cut at once."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,7 +125,7 @@ class Gap:
     size: float
     """m; negative where they would have to pass through each other."""
     time: float
-    """When it is so small first, s, on the path's clock."""
+    """Earliest time of the smallest gap, s, on the path's clock."""
 
 
 def smallest_gaps(
@@ -176,7 +176,7 @@ def _closest(behind: _Pieces, ahead: _Pieces) -> tuple[float, float]:
 
 
 class _Pieces:
-    """A motion by the pieces in each of which it is one closed form, or a step of a series."""
+    """Pieces of a motion, each with a closed form or a step of a series."""
 
     def __init__(self, motion: Motion) -> None:
         self.motion = motion
@@ -184,7 +184,7 @@ class _Pieces:
 
     @cached_property
     def knots(self) -> NDArray[np.float64]:
-        """Where the pieces begin, and the last one ends, s."""
+        """Begin of each piece, and end of the last, s."""
         duration = self.motion.duration
         ends = np.array([segment.end for segment in self.motion.segments])
         if ends[-1] < duration:  # of a cycle the segments hold one round
@@ -206,12 +206,12 @@ class _Pieces:
 
     @cached_property
     def _bounds(self) -> NDArray[np.float64]:
-        """What |x''| of each piece stays below, m/s²; NaN of a closed form."""
+        """Bounds of |x''| of each piece, m/s²; NaN for a closed form."""
         return self.motion.acceleration_bounds[self._segments]
 
     @cached_property
     def _closed_forms(self) -> NDArray[np.float64]:
-        """Of each piece in closed form c and κ over m, the slope g of its force over m, swings.
+        """Coefficients of each piece in closed form: c/m, κ/m, slope g of its force over m.
 
         Shape (4, pieces), the last 0 where the pin is stuck; all NaN of a step of a series.
         """
@@ -266,7 +266,7 @@ class _Pieces:
 def _slope(
     curve: Sequence[tuple[float, float]] | None, speed: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """How friction rises with sliding speed (m/s), N·s/m; beyond the last row as before it.
+    """Return the slope of friction over sliding speed (m/s), N·s/m; constant beyond the last point.
 
     Where it has fallen to zero it stays there.
     """

@@ -31,7 +31,7 @@ Point = tuple[float, float]
 @concise
 @dataclass(frozen=True, slots=True, eq=False)
 class HandPath:
-    """Where the hand is over time. Made by `strokes`, `lines`, `through` or `read_csv`.
+    """Path of the hand over time, made by `strokes`, `lines`, `through` or `read_csv`.
 
     Args:
         times: s, shape (n,), n >= 2, increasing.
@@ -78,12 +78,12 @@ class HandPath:
 
     @property
     def begin(self) -> float:
-        """When it begins, s."""
+        """Begin of the path, s."""
         return float(self.times[0])
 
     @property
     def end(self) -> float:
-        """When it ends, s."""
+        """End of the path, s."""
         return float(self.times[-1])
 
     @property
@@ -110,7 +110,7 @@ class HandPath:
     def _locate(
         self, t: NDArray[np.float64]
     ) -> tuple[NDArray[np.intp], NDArray[np.float64], NDArray[np.float64]]:
-        """The stretch that holds each time, the time since it began, and the part of it past."""
+        """Return the stretch of each time, the time since its begin, and the elapsed fraction."""
         if not ((t >= self.times[0]) & (t <= self.times[-1])).all():
             required = f"from {self.begin!r} s to {self.end!r} s"
             raise ValueError(refusal("t", required, f"{float(t.min())!r} to {float(t.max())!r} s"))
@@ -165,7 +165,7 @@ class HandPath:
         return float(angle.max()), float((angle * way).sum() / way.sum())
 
     def between(self, begin: float, end: float) -> HandPath:
-        """The part of it from one time to another, s, at the same times."""
+        """Return the path from one time to another, s, on its own clock."""
         if not self.begin <= begin < end <= self.end:
             required = f"increasing and within {self.begin!r} s to {self.end!r} s"
             raise ValueError(refusal("begin and end", required, f"{begin!r} s and {end!r} s"))

@@ -1,4 +1,4 @@
-"""How a coil warms: one lump of copper and iron that its current heats and the air cools.
+"""Heating of a coil: one lump of copper and iron, heated by its current and cooled by air.
 
 Its resistance grows with its temperature. Electrical times are so much shorter than thermal ones
 that the resistance is taken from one switching to the next as it was at the first of both; the
@@ -21,7 +21,7 @@ COPPER_RISE: Final = 3.93e-3
 
 @dataclass(frozen=True, slots=True)
 class Heat:
-    """What warms and what cools a coil."""
+    """Heating and cooling of a coil."""
 
     power: float
     """At full current and 20 °C, W."""

@@ -41,7 +41,7 @@ NEAR: Final = 1e-9
 AT_ONCE: Final = 1 << 18
 """Looks at the page that are taken together: more take memory and save no time."""
 FINER: Final = 4.0
-"""A scene is looked at for lines so many times in each pixel of the way."""
+"""Samples of a scene per pixel of the path in the search for lines."""
 
 
 @equal_by_value
@@ -90,7 +90,7 @@ class Scene:
         return x, x + columns * self.pixel, y, y + rows * self.pixel
 
     def contains(self, x: ArrayLike, y: ArrayLike) -> NDArray[np.bool_]:
-        """Whether places (m, any shape) are on the page, its border and rounding included."""
+        """Return True for places (m, any shape) on the page, including its border and rounding."""
         left, right, top, bottom = self.extent
         left, right, top, bottom = left - NEAR, right + NEAR, top - NEAR, bottom + NEAR
         px, py = np.asarray(x, np.float64), np.asarray(y, np.float64)
@@ -115,7 +115,7 @@ class Scene:
         return np.where(inside, above * (1.0 - w) + below * w, 1.0)
 
     def dark(self, threshold: float | str = default("threshold")) -> NDArray[np.bool_]:
-        """Which pixels hold information: darker than the threshold, in [0, 1]."""
+        """Return True for pixels with information: darker than the threshold, in [0, 1]."""
         return self.luminance < check("threshold", threshold)
 
     # ---- where scenes come from ------------------------------------------------------------------
@@ -244,7 +244,7 @@ def _between(
 def _covered(
     borders: NDArray[Any], begins: Sequence[float], ends: Sequence[float]
 ) -> NDArray[np.float64]:
-    """How much (m) of the stretch between each border and the next lies on lines.
+    """Return the length (m) of lines between each border and the next.
 
     Args:
         borders: m, shape (n + 1,), increasing.
@@ -265,7 +265,7 @@ def _opened(file: str) -> Image.Image:
 
 
 def _check_size(across: float, down: float, where: str = "", less: str = "a smaller page") -> None:
-    """Refuse a page of too many pixels; take `less` of it."""
+    """Reject a page with too many pixels; the remedy is less of `less`."""
     of = f"{across:.6g} by {down:.6g}; take larger pixels or {less}"
     budgets.PIXELS.check(across * down, of, where=where)
 
@@ -324,7 +324,7 @@ PLAIN_SCRIPTS: Final = (
     *("FULLWIDTH", "HALFWIDTH KATAKANA", "SUPERSCRIPT", "SUBSCRIPT", "DOUBLE-STRUCK", "SCRIPT"),
     *("KELVIN", "OHM", "ANGSTROM", "TURNED"),
 )
-"""How the names of letters begin that stand after it and are set one after the other too."""
+"""Name prefixes of scripts whose letters are set in sequence."""
 
 
 @cache
@@ -396,7 +396,7 @@ def draw(
 
 
 def _engine(text: str) -> ImageFont.Layout:
-    """How text is laid out: letter by letter, alike on every machine, or shaped by Raqm.
+    """Return the layout engine: letter by letter, equal on all machines, or Raqm.
 
     Raises:
         ValueError: it takes shaping, and this machine has none.
@@ -414,7 +414,7 @@ def _engine(text: str) -> ImageFont.Layout:
 
 
 def _takes_shaping(character: str) -> bool:
-    """Whether a character joins, moves or goes with others, or runs from right to left."""
+    """Return True for a character that joins, moves, combines, or runs from right to left."""
     kind = category(character)
     if kind in ("Mn", "Mc", "Me", "Cf") or bidirectional(character) in ("R", "AL", "AN"):
         return True

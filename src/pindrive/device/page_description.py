@@ -1,4 +1,4 @@
-"""What a user says is on a page, what it is made of, and the hand's path over it."""
+"""Description of a page: content, size, and the hand's path over it."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def recorded(file: str | PathLike[str], reading: Reading) -> HandPath:
 @concise
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Page:
-    """What is on a page, one of `text`, `image` and `grating`, and how the hand moves over it.
+    """Content of a page, `text`, `image` or `grating`, and the movement of the hand.
 
     Args:
         text: one or more lines.
@@ -69,7 +69,7 @@ class Page:
             object.__setattr__(self, name, None if file is None else Path(file))
 
     def check(self, label: str, where: str = "") -> None:
-        """Refuse none or several of them, and a font without text.
+        """Reject zero or several contents, and a font without text.
 
         Args:
             label: how a part is called where it was given, like "--{}".
@@ -96,7 +96,7 @@ class Page:
 
     @property
     def words(self) -> str:
-        """What it is, for a title."""
+        """Description of the page for a title."""
         if self.text is not None:
             shown = in_words(self.text)
         elif self.image is not None:
@@ -114,7 +114,7 @@ class Page:
         return " ".join(f'--{name} "{part}"' for name, part in given.items() if part is not None)
 
     def scene(self, reading: Reading, array: PinArray) -> Scene:
-        """What is on it, in a fitting size; errors as for `Reading`'s text, image and grating."""
+        """Return the scene of the page in a fitting size; errors as for `Reading`."""
         if self.text is not None:
             return reading.text(self.text, array, self.font)
         if self.image is not None:
@@ -124,5 +124,5 @@ class Page:
         return reading.grating(self.grating, array)
 
     def hand(self, reading: Reading, scene: Scene, array: PinArray) -> HandPath:
-        """How the hand moves over it; errors as for `Reading.strokes` and `read_csv`."""
+        """Return the hand's path over the page; errors as for `Reading.strokes` and `read_csv`."""
         return reading.strokes(scene, array) if self.path is None else recorded(self.path, reading)

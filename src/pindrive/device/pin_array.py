@@ -1,4 +1,4 @@
-"""Where the pins stand in the mouse, and which spot of the scene each of them shows."""
+"""Positions of the pins in the mouse, and of their sensing spots."""
 
 from __future__ import annotations
 
@@ -23,15 +23,14 @@ Row = list[tuple[float, int]]
 
 @dataclass(frozen=True, slots=True)
 class Neighbours:
-    """Two pins, one next to the other along the drive axis, that would meet if one moved far."""
+    """Pair of pins that would meet along the drive axis if one moved far enough."""
 
     behind: int
     """The number of the one with the smaller place along the drive axis."""
     ahead: int
-    """That of the other."""
+    """Index of the pin ahead."""
     clearance: float
-    """How much room there is between them at rest, along the drive axis, m; negative where they
-    overlap."""
+    """Clearance of the pins at rest, along the drive axis, m; negative if they overlap."""
 
 
 @concise
@@ -135,7 +134,7 @@ class PinArray:
         return cls(stands, _scaled(stands, spot_scale), axis, pin_diameter, slot_length)
 
     def __len__(self) -> int:
-        """How many pins there are."""
+        """Return the number of pins."""
         return len(self.places)
 
     @property
@@ -145,7 +144,7 @@ class PinArray:
 
     @property
     def travel(self) -> float | None:
-        """How far a pin can go from its rest in its slot, either way, m; None without a slot."""
+        """Largest displacement of a pin in its slot, either way, m; None without a slot."""
         return None if self.slot_length is None else 0.5 * (self.slot_length - self.pin_diameter)
 
     @property
@@ -158,7 +157,7 @@ class PinArray:
         return self.neighbours_of(self.pin_diameter)
 
     def neighbours_of(self, diameter: float) -> tuple[Neighbours, ...]:
-        """The same of what is so wide (m) and moves with each pin, such as its magnet."""
+        """Return the pairs of parts of a width (m) that move with the pins, such as magnets."""
         found = []
         for row, ahead, across in self._rows_apart(-diameter, diameter):
             touching = sqrt(diameter**2 - across**2)

@@ -1,4 +1,4 @@
-"""How a hand reads a page: its size, and the strokes or the recorded path that lead over it."""
+"""Reading of a page: its size, and the strokes or the recorded path over it."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ RUN_IN: Final = 0.005
 
 @checked
 class Reading:
-    """How a hand reads.
+    """Reading hand: lines, strokes and speeds.
 
     Args:
         hand_speed: peak speed of a reading stroke, m/s, greater than 0.
@@ -107,7 +107,7 @@ class Reading:
         )
 
     def _rows(self, top: float, bottom: float) -> list[float]:
-        """The lines that a hand reads between two heights: as many as find room, in the middle."""
+        """Return the centred reading lines that fit between two heights."""
         middle = 0.5 * (top + bottom)
         if self.line_pitch is None:
             return [middle]

@@ -35,7 +35,7 @@ from pindrive.quantities.rows import check_increasing
 from pindrive.quantities.table import QUANTITIES, check, default
 
 COUNTS: Final = ("count", "counts")
-"""How a header calls the steps of a mouse."""
+"""Units of mouse counts in a header."""
 INCH: Final = 0.0254
 TWO_PASSES: Final = (sqrt(2.0) - 1.0) ** 0.25
 """Cut-off of both passes over that of one (Winter 2009, Biomechanics and Motor Control)."""
@@ -111,7 +111,7 @@ class HandRecording:
         check_increasing(self.t.tolist(), "s", where=self.where, label=self._time)
 
     def _time(self, i: int) -> str:
-        """What a message calls the time of a place."""
+        """Return the time of a place for messages."""
         return f"t[{i}]" if self.rows is None else f"row {self.rows[i]}: time"
 
     @classmethod
@@ -175,7 +175,7 @@ class HandRecording:
         return step if whole.all() and len(counts) > 0.5 * len(ways) else None
 
     def raw(self, acceleration: float = default("hand_acceleration")) -> bool:
-        """Whether it is in steps so coarse that differences of its places are no speed.
+        """True for steps so coarse that differences of places are no speed.
 
         So it is where it is in counts; or where all places are whole numbers of one step, which
         changes from row to row, and that step within an interval is a fifth of the acceleration of
@@ -197,7 +197,7 @@ class HandRecording:
         return float((way / np.diff(self.t)).max())
 
     def smoothed(self, cutoff: float = default("smoothing_cutoff")) -> HandRecording:
-        """The same at even times, without what is faster than a cut-off (Hz), as stated above.
+        """Return the recording at even times, low-pass filtered at a cut-off (Hz), as stated above.
 
         Raises:
             ValueError: the cut-off is not below a fifth of the rate, or there are too many rows.
@@ -278,7 +278,7 @@ class HandRecording:
         acceleration: float = default("hand_acceleration"),
         cutoff: float = default("smoothing_cutoff"),
     ) -> str:
-        """What it is and what is made of it, in a sentence or two."""
+        """Return the recording and its processing in one or two sentences."""
         step, speed = self.resolved, QUANTITIES["hand_speed"]
         lasts = float(self.t[-1] - self.t[0])
         said = f"The recording: {len(self.t)} rows over {lasts:.4g} s, {self.rate:.4g} Hz"

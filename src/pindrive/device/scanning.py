@@ -61,11 +61,12 @@ class PinState:
     velocity: float | None = 0.0
     """In the housing, m/s; None: carried by the plate."""
     skin_stretch: float | None = None
-    """Of a compliant finger that grips, or under a pin at rest, m; None: it slides, or is rigid."""
+    """Stretch of a compliant finger in stick, or under a pin at rest, m; None: in slip, or rigid.
+    """
     coil: CoilState | None = None
     """The coil's last switching; None: it is off, without current."""
     decision: Decision = field(default_factory=Decision)
-    """Where the control block stands."""
+    """State of the control block."""
 
 
 @equal_by_value
@@ -82,13 +83,13 @@ class PinScan:
     drive: Drive
     begin: float
     end: float
-    """Of the scan, s."""
+    """End of the scan, s."""
     looks: NDArray[np.float64]
-    """When the control block looked, s, shape (n,)."""
+    """Sampling instants of the control block, s, shape (n,)."""
     luminance: NDArray[np.float64]
-    """What it saw at the pin's spot, shape (n,)."""
+    """Luminance at the pin's spot, shape (n,)."""
     commands: Commands
-    """What it made of it: when the coil was switched."""
+    """Switchings of the coil by the control block."""
     current: Current
     """The current in the coil, a part of the full one, over time."""
     release: Release
@@ -96,7 +97,7 @@ class PinScan:
     coil: CoilState
     """The coil's last switching."""
     decision: Decision
-    """Where the control block stands at the end."""
+    """State of the control block at the end."""
 
     @property
     def motion(self) -> Motion:
@@ -156,7 +157,7 @@ class PinScan:
 
     @property
     def events(self) -> tuple[Event, ...]:
-        """What happened at its contacts, in order, on the path's clock."""
+        """Events at the contacts, in order, on the path's clock."""
         return tuple(
             Event(self.begin + e.time, e.contact, e.kind, e.position, e.velocity)
             for e in self.motion.events
@@ -178,7 +179,7 @@ class PinScan:
 
     @property
     def state(self) -> PinState:
-        """Where it stands at the end."""
+        """Return the state at the end."""
         last, lasts = self.motion.segments[-1], self.end - self.begin
         drive = self.motion.drive
         position = self.motion.position(lasts, "left")
@@ -198,7 +199,7 @@ class PinScan:
 
 @dataclass(frozen=True, slots=True)
 class SlotRoom:
-    """How close a pin comes to the end of its slot in a scan."""
+    """Smallest distance of a pin from the end of its slot in a scan."""
 
     pin: int
     """Its number."""
@@ -209,7 +210,7 @@ class SlotRoom:
 @equal_by_value
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Scan(lazy.NotebookHtml):
-    """What a device did while a hand moved it over a scene."""
+    """Motion of a device that a hand moved over a scene."""
 
     device: Device
     scene: Scene
@@ -220,15 +221,15 @@ class Scan(lazy.NotebookHtml):
     touch: float | Profile | None = None
     """Touch force on each pin over the path's clock, N; None: that of the drive."""
     criteria: Criteria | None = None
-    """What counts as felt unless `evaluate` is given other ones; None: the literature's."""
+    """Criteria of `evaluate` unless given; None: values of the literature."""
 
     def __repr__(self) -> str:
-        """What was scanned, for how long, by how many pins, in a line."""
+        """Return the scanned page, the duration and the number of pins in a line."""
         pins, lasts = counted(len(self.pins), "pin"), self.path.end - self.path.begin
         return f"<Scan of {self.scene.title} by {pins} in {lasts:.6g} s, {self.status.name}>"
 
     def evaluate(self, criteria: Criteria | None = None) -> Any:
-        """What the finger was shown against what is printed, line by line.
+        """Evaluate the shown lines against the printed lines.
 
         Args:
             criteria: what counts as felt; those of the device
@@ -243,7 +244,7 @@ class Scan(lazy.NotebookHtml):
         return evaluate(self, chosen)
 
     def plot(self, pin: int | None = None) -> mpl_figure.Figure:
-        """What the device read and what the pins did, as a figure that a notebook shows.
+        """Plot the scanned page and the motions of the pins.
 
         Args:
             pin: the one drawn in detail, from 0; one that reads a line unless given.
@@ -255,7 +256,7 @@ class Scan(lazy.NotebookHtml):
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
-        """What is doubtful about it, in words with numbers."""
+        """Doubts about the scan, in words with numbers."""
         from pindrive.device.dataset import scan_warnings
 
         return scan_warnings(self)
@@ -267,7 +268,7 @@ class Scan(lazy.NotebookHtml):
 
     @cached_property
     def magnet_gaps(self) -> tuple[Gap, ...]:
-        """The same of neighbouring magnets; none where their diameter is not known."""
+        """Smallest gaps of neighbouring magnets; empty without diameters."""
         return self._gaps_of(self.device.magnet_neighbours)
 
     def _gaps_of(self, neighbours: Sequence[Neighbours]) -> tuple[Gap, ...]:
@@ -300,7 +301,7 @@ class Scan(lazy.NotebookHtml):
 
     @property
     def status(self) -> Status:
-        """Whether all pins were followed to the scan's end: the largest of their codes."""
+        """Largest status code of all pins: complete, or the reason for the end."""
         return max(pin.motion.status for pin in self.pins)
 
     @property
@@ -310,20 +311,20 @@ class Scan(lazy.NotebookHtml):
 
     @property
     def smallest_magnet_gap(self) -> Gap | None:
-        """The smallest of those of magnets; None where there is none."""
+        """Smallest gap between magnets; None without one."""
         return min(self.magnet_gaps, key=lambda gap: gap.size, default=None)
 
     @property
     def state(self) -> tuple[PinState, ...]:
-        """Where each pin stands at the end."""
+        """Return the state of each pin at the end."""
         return tuple(pin.state for pin in self.pins)
 
     def spots(self, t: ArrayLike) -> NDArray[np.float64]:
-        """Where each pin's spot is on the page at times t (s, shape (n,)), m, (pins, n, 2)."""
+        """Return the spots of all pins on the page at times t (s, shape (n,)), m, (pins, n, 2)."""
         return np.stack([self.spot(pin.number, t) for pin in self.pins])
 
     def spot(self, pin: int, t: ArrayLike) -> NDArray[np.float64]:
-        """Where the spot of one pin, by its number, is on the page at times t (s, (n,)), (n, 2)."""
+        """Return the spot of one pin, by number, on the page at times t (s, (n,)), (n, 2)."""
         return _spot(self.device, self.path, pin, t)
 
     def to_csv(self, path: str | PathLike[str], rate: float | str = default("rate")) -> Path:
@@ -366,7 +367,7 @@ def scan(
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> Scan:
-    """Move a device over a page, and follow each of its pins exactly.
+    """Simulate a device that moves over a page, with each pin exact.
 
     Args:
         device: as `load_device` reads it; or a `Device`, whose hand reads as `Reading` has it.
@@ -552,7 +553,7 @@ def _load(
 
 
 def _spot(device: Device, path: HandPath, pin: int, t: ArrayLike) -> NDArray[np.float64]:
-    """Where the spot of one pin is on the page at the times t (s, shape (n,)), m, shape (n, 2)."""
+    """Return the spot of one pin on the page at the times t (s, shape (n,)), m, shape (n, 2)."""
     hand = np.stack(path.position(t), axis=-1)
     return np.asarray(hand + device.array.on_page(device.array.spots[pin : pin + 1]))
 
@@ -560,7 +561,7 @@ def _spot(device: Device, path: HandPath, pin: int, t: ArrayLike) -> NDArray[np.
 def _seen(
     device: Device, scene: Scene, path: HandPath, looks: NDArray[np.float64], pin: int
 ) -> NDArray[np.float64]:
-    """What the control block sees at one pin's spot, shape (looks,)."""
+    """Return the luminance samples at one pin's spot, shape (samples,)."""
     luminance = np.empty_like(looks)
     for begin in range(0, len(looks), AT_ONCE):
         part = slice(begin, begin + AT_ONCE)

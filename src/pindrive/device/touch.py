@@ -1,4 +1,4 @@
-"""How the finger presses over a scan: the load on its friction, and when it touches the pins."""
+"""Touch of the finger during a scan: load of its friction, and times of contact."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def spans(load: float | Profile) -> list[tuple[float, float]]:
 
 
 def held_stretch(stretch: float, finger: Contact, load: float | Profile) -> float:
-    """What a finger keeps of its skin's stretch (m) as a load begins: beyond it, the skin slips."""
+    """Return the skin stretch (m) kept as a load begins: beyond it, the skin slips."""
     pressed = initial(load)
     if abs(stretch) <= finger.static_friction * pressed / finger.stiffness:
         return stretch

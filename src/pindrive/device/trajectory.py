@@ -23,8 +23,8 @@ from pindrive.quantities import budgets
 from pindrive.quantities.status import Side
 
 PIECES: Final = 64
-"""Into so many pieces together, at least two each, brackets are cut at once: a call of what is
-searched costs as much as some hundred of its values."""
+"""Number of parts into which all brackets together are cut at once, at least two each: a call of
+the function costs as much as some hundred of its values."""
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
 
 
@@ -44,13 +44,13 @@ class Signal:
         return self.sign * np.asarray(self.of(t, side))
 
     def __neg__(self) -> Signal:
-        """The same, counted backwards."""
+        """Return the signal counted backwards."""
         return Signal(self.of, -self.sign)
 
 
 @dataclass(frozen=True, eq=False)
 class Trajectory:
-    """Where a pin goes, piece by piece; times are since the motion's begin, s."""
+    """Trajectory of a pin, piece by piece; times are since the motion's begin, s."""
 
     motion: Motion
 
@@ -65,7 +65,7 @@ class Trajectory:
         return np.unique(np.concatenate([[0.0], ends, events, turns, [lasts]]))
 
     def within(self, begin: float, end: float) -> NDArray[np.float64]:
-        """The knots from `begin` to `end`, both of these included."""
+        """Return the knots from `begin` to `end`, with both ends."""
         first, last = np.searchsorted(self.knots, (begin, end), ("right"))
         inner = self.knots[first:last]
         return np.concatenate([[begin], inner[inner < end], [end]])
@@ -113,12 +113,12 @@ class Trajectory:
         return root(lambda s: band - np.abs(values(s) - middle), t[i], t[i + 1])
 
     def climbs(self, values: Signal, height: float, begin: float, end: float) -> bool:
-        """Whether the values ever come to be `height` above their lowest since `begin`."""
+        """Return True if the values ever exceed their lowest since `begin` by `height`."""
         y = values(self.within(begin, end))
         return bool((y - np.minimum.accumulate(y) >= height).any())
 
     def climb(self, values: Signal, height: float, begin: float, end: float) -> tuple[float, float]:
-        """When values that do not jump are first `height` above their lowest since `begin`.
+        """Return the first time at which continuous values exceed their lowest by `height`.
 
         Returns:
             That time, NaN if they never are; and the time of that lowest value.
@@ -152,7 +152,7 @@ class Trajectory:
         return held
 
     def rests(self, t: float) -> bool:
-        """Whether the finger holds the pin still just before a time."""
+        """Return True if the finger holds the pin just before a time."""
         i = int(np.searchsorted(self._ends, t))
         segments = self.motion.segments
         segment = segments[min(i, len(segments) - 1)]
@@ -164,7 +164,7 @@ class Trajectory:
 
 
 def check_vibration(drive: Drive, duration: float, pins: int = 1) -> None:
-    """Refuse more turning points of so many pins over a duration (s) than the budget.
+    """Reject more turning points of all pins over a duration (s) than the budget.
 
     Raises:
         ValueError: too many: the skin makes them vibrate too fast.
@@ -235,7 +235,7 @@ class Way:
         self._lengths = np.concatenate([[0.0], np.cumsum(self._length(times[:-1], times[1:]))])
 
     def _length(self, begin: NDArray[np.float64], end: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Of stretches of time in which the velocity is linear: exact where it is straight."""
+        """Return the length of stretches with linear velocity: exact on straight paths."""
         half = 0.5 * (end - begin)
         t = begin[:, None] + half[:, None] * (1.0 + NODES)
         speed = np.hypot(*self.path.velocity(np.clip(t, self.path.begin, self.path.end)))
@@ -248,7 +248,7 @@ class Way:
         return self._lengths[i] + self._length(self.path.times[i], at)
 
     def between(self, begin: float, end: float) -> float:
-        """The length gone between two times, m; NaN if one of them is."""
+        """Return the path length between two times, m; NaN for a NaN."""
         if not begin <= end:
             return nan if begin != begin or end != end else -self.between(end, begin)
         first, last = self((begin, end))

@@ -1,4 +1,4 @@
-"""What a scan showed the finger, against what is printed: by lines, by pitch, as an image.
+"""Evaluation of scans against the printed page: by lines, by pitch, as an image.
 
 - `Echo`: a swing of a pin that feels like a line and is none
 - `Edge`: one end of a printed line, and what became of it

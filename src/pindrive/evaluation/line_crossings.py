@@ -18,7 +18,7 @@ from pindrive.quantities import budgets
 from pindrive.quantities.value import concise, equal_by_value
 
 GRAZED: Final = 0.5
-"""What is shorter than this part of a pixel is an edge that the way grazes, no line and no gap."""
+"""Fraction of a pixel below which a crossing is a grazed edge, neither line nor gap."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,11 +26,11 @@ class Printed:
     """A line printed across a pin's way, while its spot was on it."""
 
     begin: float
-    """When the spot came upon it, s."""
+    """Time at which the spot entered the line, s."""
     end: float
-    """When it left it, s."""
+    """Time at which the spot left the line, s."""
     whole: bool
-    """Whether it did both: the way neither begins nor ends on the line, nor turns back there."""
+    """True for a whole crossing: no begin, end or turn of the path on the line."""
 
 
 def printed(device: Device, path: HandPath, scene: Scene) -> list[list[Printed]]:
@@ -87,7 +87,7 @@ def _edges(
     lightness: Callable[[NDArray[np.float64]], NDArray[np.float64]],
     looks: Iterator[NDArray[np.float64]],
 ) -> tuple[NDArray[np.float64], bool, bool]:
-    """When it changes between dark and light, s, and whether it is dark at first and at last.
+    """Return the changes between dark and light, s, and the darkness at both ends.
 
     Args:
         lightness: luminance above the threshold at times, s.
@@ -110,7 +110,7 @@ def _edges(
 
 
 def _looks(path: HandPath, counts: NDArray[np.int64]) -> Iterator[NDArray[np.float64]]:
-    """When the page is looked at, s, in order: so often in each row of a path, and at its end."""
+    """Return the sampling times of the page, s, in order: several per row of a path."""
     starts = np.concatenate([[0], np.cumsum(counts)])
     lasts = np.diff(path.times)
     for first in range(0, int(starts[-1]), AT_ONCE):
@@ -121,7 +121,7 @@ def _looks(path: HandPath, counts: NDArray[np.int64]) -> Iterator[NDArray[np.flo
 
 
 def turnings(path: HandPath, axis: float) -> NDArray[np.float64]:
-    """When the hand comes to a stop or turns back along an axis (rad) of the page, s, in order."""
+    """Return the stops and turns of the hand along an axis (rad) of the page, s, in order."""
     along = path.vx * cos(axis) + path.vy * sin(axis)
     along[np.abs(along) < 1e-9 * np.abs(along).max()] = 0.0  # across the axis except for rounding
     still = path.times[1:-1][(along[1:-1] == 0.0) & ((along[:-2] != 0.0) | (along[2:] != 0.0))]
@@ -145,23 +145,23 @@ FATES: Final[tuple[Fate, ...]] = ("shown", "unseen", "merged", "faint")
 @concise
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Edge:
-    """One end of a printed line under one pin, and what became of it. NaN: it did not."""
+    """One end of a printed line under one pin, with its response. NaN: no response."""
 
     time: float
-    """When it passed under the spot, s."""
+    """Time of its passage under the spot, s."""
     x: float
     y: float
-    """Where that is on the page, m."""
+    """Height of the passage on the page, m."""
     command: float
-    """When the magnet was switched for it, s."""
+    """Time of the switching of the magnet, s."""
     response: float
-    """When the finger was shown it, s."""
+    """Time of the response at the finger, s."""
     lag: float
-    """What the hand went from `time` to `response`, m."""
+    """Distance of the hand from `time` to `response`, m."""
     skin: float
-    """How far the skin moved for it, m."""
+    """Displacement of the skin, m."""
     cue: Cue
-    """What the finger makes of that: nothing, a pulse, its direction, its direction for sure."""
+    """Perceived cue: nothing, a pulse, its direction, its direction with certainty."""
 
     @property
     def latency(self) -> float:
@@ -182,23 +182,23 @@ class Line:
     """Shown; or missed: unseen by the control block, merged into the line before, or too faint: the
     pin did not go along, or the skin did not move enough to be felt."""
     stroke: float
-    """How far it moved the pin, m."""
+    """Displacement of the pin, m."""
     height: float
     """The pin's highest deflection for it, m."""
     returned: float
-    """How far the pin came back from there, before the next line or the hand's stop, m."""
+    """Return of the pin before the next line or the hand's stop, m."""
     release: float
-    """When the pin broke away from the plate, s."""
+    """Time of the pin's break-away from the plate, s."""
     settled: float
-    """When the pin had settled after it, s; NaN: it did not."""
+    """Settling time of the pin, s; NaN: not settled."""
     smear: float
-    """What the hand went from release to settled, m."""
+    """Distance of the hand from release to settling, m."""
     overshoot: float
     contrast: float
 
     @property
     def numbers(self) -> dict[str, float]:
-        """What was found, SI, by the names of the table of quantities."""
+        """Results, SI, by the names of the table of quantities."""
         return {
             "line.latency_on": self.begin.latency,
             "line.latency_off": self.end.latency,
@@ -222,9 +222,9 @@ class Echo:
 
     pin: int
     time: float
-    """When it was highest, s."""
+    """Time of the highest position, s."""
     x: float
     y: float
-    """Where the pin's spot was then, m."""
+    """Height of the pin's spot at that time, m."""
     stroke: float
-    """How high it was, m."""
+    """Height of the swing, m."""

@@ -1,4 +1,4 @@
-"""How fast a hand may move over a page: what becomes of its lines at each of many speeds."""
+"""Largest hand speed over a page: fate of its lines at many speeds."""
 
 from __future__ import annotations
 
@@ -26,16 +26,16 @@ from pindrive.quantities.value import equal_by_value
 TRIED: Final = 12
 """Speeds in the grid."""
 PRECISION: Final = 1e-2
-"""Of a border, a part of it."""
+"""Relative precision of a border."""
 _MOST: Final = TRIED + 14
-"""Trials at most: the grid, and two bisections of one of its intervals."""
+"""Largest number of trials: the grid, and two bisections of an interval."""
 COUNTED: Final = ("crossed", "shown", "unsettled", "sure", "false")
 
 
 @equal_by_value
 @dataclass(frozen=True, eq=False, repr=False)
 class PageSpeeds(lazy.NotebookHtml):
-    """What becomes of the lines of a page, by the speed of the hand.
+    """Fate of the lines of a page, by the speed of the hand.
 
     Attributes:
         title: of the page.
@@ -99,12 +99,12 @@ class PageSpeeds(lazy.NotebookHtml):
 
 
 def all_shown(counts: Mapping[str, int]) -> bool:
-    """Whether all lines are shown and none is false."""
+    """Return True if all lines are shown and none is false."""
     return counts["lines.shown"] == counts["lines.crossed"] and not counts["lines.false"]
 
 
 def all_settled(counts: Mapping[str, int]) -> bool:
-    """Whether the pin also settles after each line."""
+    """Return True if the pin also settles after each line."""
     return all_shown(counts) and not counts["lines.unsettled"]
 
 

@@ -1,4 +1,4 @@
-"""What the finger was shown in a scan, against what is printed: line by line, edge by edge.
+"""Evaluation of a scan against the printed page: line by line, edge by edge.
 
 All times are roots of closed forms, never samples. Deflections are counted forward: the way the
 plate passes under the mouse while the line is read.
@@ -67,7 +67,7 @@ from pindrive.quantities.value import equal_by_value
 @equal_by_value
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Evaluation(lazy.NotebookHtml):
-    """What the finger was shown in a scan."""
+    """Evaluation of a scan."""
 
     scan: Scan
     criteria: Criteria
@@ -77,7 +77,7 @@ class Evaluation(lazy.NotebookHtml):
     """False lines."""
 
     def __repr__(self) -> str:
-        """What became of the lines, in a line."""
+        """Return the counts of the lines in a line."""
         lines, missed = len(self.lines), len(self.lines) - len(self.shown)
         shown = f"{lines - missed} of {counted(lines, 'line')} shown"
         return f"<Evaluation of {self.scan.scene.title}: {shown}, {len(self.echoes)} false>"
@@ -88,7 +88,7 @@ class Evaluation(lazy.NotebookHtml):
         return self.scan.status
 
     def plot(self, pin: int | None = None) -> mpl_figure.Figure:
-        """The scan and one pin of it, from 0, as `Scan.plot` draws them."""
+        """Plot the scan and one pin, from 0, as `Scan.plot`."""
         from pindrive.plot.scan import plot_scan
 
         return plot_scan(self, pin)
@@ -148,7 +148,7 @@ class Evaluation(lazy.NotebookHtml):
 
     @property
     def counts(self) -> dict[str, int]:
-        """How many lines, and what became of them, by the names of the table of quantities."""
+        """Counts of the lines, by the names of the table of quantities."""
         shown = self.shown
         cues = [CUES.index(line.begin.cue) for line in shown]
         return {
@@ -174,7 +174,7 @@ class Evaluation(lazy.NotebookHtml):
 
     @property
     def numbers(self) -> dict[str, float]:
-        """What a study keeps of a scan, SI, by the names there; NaN where one does not exist."""
+        """Numbers of a scan for studies, SI, by their names there; NaN for missing ones."""
         counts, path = self.counts, self.scan.path
         lines, duration = counts["lines.crossed"], path.end - path.begin
         on = max(sum(end - begin for begin, end in pin.energised) for pin in self.scan.pins)
@@ -220,13 +220,13 @@ class _Pull:
     on: float
     off: float
     begin: float
-    """When the pin came forward; NaN: never."""
+    """Time at which the pin came forward; NaN: never."""
     dip: float
-    """When it was lowest before that."""
+    """Time of the lowest position before that."""
     release: float
-    """When it broke away from the plate."""
+    """Time of the break-away from the plate."""
     sign: float
-    """Of the plate's velocity."""
+    """Sign of the plate's velocity."""
 
 
 class EvaluatedPin:
@@ -278,16 +278,16 @@ class EvaluatedPin:
         return pulls
 
     def _sign(self, t: float) -> float:
-        """Which way the plate goes at a time; forward where it stands."""
+        """Return the direction of the plate at a time; forward at rest."""
         return -1.0 if self.plate(t) < 0.0 else 1.0
 
     def _stop(self, t: float) -> float:
-        """When the hand stops or turns back after a time, or the scan ends."""
+        """Return the next stop or turn of the hand after a time, or the scan's end."""
         i = int(np.searchsorted(self.stops, t, "right"))
         return min(float(self.stops[i]), self.end) if i < len(self.stops) else self.end
 
     def _until(self, k: int) -> float:
-        """How long pull k has the pin to itself: until the next one moves it, or the hand stops."""
+        """Return the end of pull k: the next pull, or the stop of the hand."""
         stop = max(self._stop(self.pulls[k].off), self.pulls[k].off)
         later = self.pulls[k + 1 : k + 2]
         return min([stop, *(p.dip if p.begin == p.begin else p.on for p in later)])
@@ -312,7 +312,7 @@ class EvaluatedPin:
         return found
 
     def _goes_on(self, k: int, i: int) -> bool:
-        """Whether the magnet stays on from line i into the next."""
+        """Return True if the magnet stays on from line i into the next."""
         later = self.passed[i + 1 : i + 2]
         return any(self.pulls[k].off - self.latency >= line.begin for line in later)
 
@@ -381,12 +381,12 @@ class EvaluatedPin:
         )
 
     def _spot(self, t: float) -> tuple[float, float]:
-        """Where the pin's spot is on the page."""
+        """Return the place of the pin's spot on the page."""
         x, y = self.scan.spot(self.pin.number, [min(self.begin + t, self.pin.end)])[0].tolist()
         return x, y
 
     def _still_held(self, k: int) -> bool:
-        """Whether the pin had not gone back from the pull before when pull k moved it on."""
+        """Return True if the pin had not come back from the pull before when pull k moved it on."""
         before, pull = self.pulls[max(k - 1, 0)], self.pulls[k]
         if k == 0 or before.sign != pull.sign or before.begin != before.begin:
             return False  # nothing before it, or nothing that had moved the pin
@@ -397,18 +397,18 @@ class EvaluatedPin:
     # ---- numbers -----------------------------------------------------------------------------
 
     def _skin(self, sign: float) -> Signal:
-        """How far the skin is moved; of a rigid finger, the pin."""
+        """Return the position of the skin; for a rigid finger, of the pin."""
         motion = self.pin.motion
         return Signal(motion.position if motion.drive.finger.rigid else motion.stretch, sign)
 
     def _moved(self, skin: Signal, begin: float, end: float) -> tuple[float, Cue]:
-        """How far the skin moves forward between two times, and what the finger makes of it."""
+        """Return the forward displacement of the skin between two times, and the perceived cue."""
         times = [(max(begin, touch), min(end, lift)) for touch, lift in self.touching]
         moved = [self._moved_in(skin, touch, lift) for touch, lift in times if touch < lift]
         return max(moved, key=lambda found: (CUES.index(found[1]), found[0]), default=(0.0, "none"))
 
     def _moved_in(self, skin: Signal, begin: float, end: float) -> tuple[float, Cue]:
-        """The same between two times from one to the other of which the finger touches."""
+        """Return displacement and cue between two times of one touch."""
         limits = self.criteria
         base = float(skin(begin, "left"))
         way = self.trajectory.highest(skin, begin, end)[1] - base
@@ -424,7 +424,7 @@ class EvaluatedPin:
     def _settling(
         self, x: Signal, release: float, peak: float, low: float, limit: float
     ) -> tuple[float, float]:
-        """When the pin has settled after a release, and how far it swings over."""
+        """Return the settling time of the pin after a release, and its overshoot."""
         if not limit > release:
             return nan, nan
         end = float(x(limit))
@@ -439,7 +439,7 @@ class EvaluatedPin:
 
     @property
     def _patience(self) -> float:
-        """How long a pin must stay within its band to be believed that it has settled, s."""
+        """Time within its band after which a pin counts as settled, s."""
         drive = self.pin.motion.drive
         half = pi / drive.natural_frequency
         return max(half, 1.0 / drive.slowest_rate) if drive.damping_ratio > 1.0 else half
@@ -456,7 +456,7 @@ class EvaluatedPin:
         return found
 
     def _echoes(self, begin: float, end: float) -> list[Echo]:
-        """Those of one stroke of the hand."""
+        """Return the false lines of one stroke of the hand."""
         sign = self._sign(0.5 * (begin + end))
         x, skin = Signal(self.pin.motion.position, sign), self._skin(sign)
         swings = [

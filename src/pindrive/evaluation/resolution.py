@@ -1,4 +1,4 @@
-"""How fast the hand may move before two lines run into one.
+"""Largest hand speed at which two neighbouring lines are distinct.
 
 Two lines, black, stand `pitch` apart; an even hand goes straight over them, at the angle of the
 drive axis (`array.axis`) to the drive. They are **distinct** at its
@@ -56,14 +56,14 @@ _TRIALS: Final = 3 * TRIED
 STUDIED: Final[Band] = (0.020, 0.100)
 """Hand speeds in finger studies, m/s (arXiv 2505.11162)."""
 PRECISION: Final = 1e-3
-"""Of a border, a part of it."""
+"""Relative precision of a border."""
 FINE: Final = 40.0
 """Pixels in the thinner of line and gap."""
 MOMENT: Final = 0.002
 """From the begin of a trial to the first line, s, and a look more."""
 
 LONGEST: Final = 200.0
-"""A transient is followed for so many radians of its natural frequency at most."""
+"""Longest simulated transient, in radians of its natural frequency."""
 
 
 @equal_by_value
@@ -77,12 +77,12 @@ class Trial:
     back: float
     """Part of its way that the pin comes back between the lines; 0 where they merge."""
     skin: float
-    """How far the fainter line moves the skin, m."""
+    """Displacement of the skin by the fainter line, m."""
     until: tuple[float, ...]
-    """When the second line takes the pin along, for each phase, s since the trial's begin."""
+    """Time at which the second line takes the pin along, per phase, s since the trial's begin."""
 
     def distinct(self, part: float, direction: float) -> bool:
-        """Whether two lines are felt; direction is in m."""
+        """Return True if two lines are felt; direction is in m."""
         return self.back >= part and self.skin >= direction
 
 
@@ -90,11 +90,11 @@ class Trial:
 @concise
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SpeedLimit:
-    """How fast a hand may go over two lines."""
+    """Largest hand speed over two lines."""
 
     pitch: float
     width: float
-    """Of the lines, m."""
+    """Width of the lines, m."""
     tried: Band
     """The slowest hand and the fastest, m/s."""
     distinct: tuple[Band, ...]
@@ -102,7 +102,7 @@ class SpeedLimit:
     settled: tuple[Band, ...]
     """From which to which they are distinct and the pin settles in between."""
     beyond: Trial | None
-    """What a hand just faster than the limit finds; None: there is none so fast."""
+    """Failure of a hand just faster than the limit; None: no hand is that fast."""
 
     @property
     def speed(self) -> float:
@@ -122,7 +122,7 @@ class SpeedLimit:
 @equal_by_value
 @dataclass(frozen=True, eq=False, repr=False)
 class SpeedLimits(lazy.NotebookHtml, Sequence[SpeedLimit]):
-    """How fast a hand may go over two lines of each of several pitches; a sequence of limits.
+    """Largest hand speeds over two lines of several pitches; a sequence of limits.
 
     Attributes:
         limits: of each pitch, in the order in which they were given.
@@ -143,7 +143,7 @@ class SpeedLimits(lazy.NotebookHtml, Sequence[SpeedLimit]):
         return self.limits[index]
 
     def __len__(self) -> int:
-        """How many pitches there are."""
+        """Return the number of pitches."""
         return len(self.limits)
 
     def __repr__(self) -> str:
@@ -254,7 +254,7 @@ def check_tried(slowest: float, fastest: float) -> Band:
 def check_work(
     device: Device, pitches: Sequence[float], widths: Sequence[float], tried: Band
 ) -> None:
-    """Refuse trials whose counts are beyond the budgets, before the first of them.
+    """Reject trials beyond the budgets, before the first trial.
 
     Args:
         device: as for `largest_speeds`.
@@ -289,7 +289,7 @@ def check_work(
 
 
 def _followed(drive: Drive) -> float:
-    """How long a transient is followed for it to settle, s."""
+    """Return the simulated time of a transient until it settles, s."""
     return 8.0 / max(drive.slowest_rate, 8.0 / LONGEST * drive.natural_frequency)
 
 
@@ -384,7 +384,7 @@ def two_lines(
 
 
 def settles(device: Device, pitch: float, width: float, trial: Trial, criteria: Criteria) -> bool:
-    """Whether the first line of a trial, alone, would leave the pin settled before the second.
+    """Return True if the pin settles after the first line alone before the second line.
 
     Args:
         device: as in the trial.
@@ -437,7 +437,7 @@ def _clear(device: Device) -> float:
 
 
 def steady(device: Device) -> PinState:
-    """How a pin stands under a hand that has gone evenly for long: dragged, and at rest."""
+    """Return the state of a pin under a hand in long uniform motion: dragged, and at rest."""
     finger, along = device.drive.finger, cos(device.array.axis)
     position = copysign(device.drag(device.array.axis), along)
     if finger.rigid:
@@ -465,13 +465,13 @@ def _back(device: Device, line: Line) -> float:
 
 
 def _skin(line: Line) -> float:
-    """How far a line moves the skin, forward or back, m."""
+    """Return the displacement of the skin by a line, forward or back, m."""
     moves = [edge.skin for edge in (line.begin, line.end) if not isnan(edge.skin)]
     return max(moves, default=0.0)
 
 
 def criterion(part: float, direction: float) -> str:
-    """When two lines are distinct, in a sentence."""
+    """Criterion of distinct lines, in a sentence."""
     return (
         f"Two lines are distinct where the pin comes back at least {part:.0%} of its way between "
         f"them, and each moves the skin {1e3 * direction:g} mm or more."
