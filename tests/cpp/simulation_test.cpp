@@ -132,27 +132,27 @@ void hard_drives() {
   const auto starts = [](const Segments& s, ContactState plate, ContactState finger) {
     return !s.empty() && s[0].end > 0 && s[0].mode.plate == plate && s[0].mode.finger == finger;
   };
-  expect(starts(hard("plate-at-its-limit-as-the-mouse-sets-off"), ContactState::slip_forward,
+  expect(starts(hard("plate-at-stick-limit-at-mouse-start"), ContactState::slip_forward,
                 ContactState::stick),
          "the plate, at its limit, would hold for no time: the finger holds");
-  expect(starts(hard("finger-can-hold-where-the-plate-cannot"), ContactState::slip_backward,
+  expect(starts(hard("finger-stick-with-inadmissible-plate-stick"), ContactState::slip_backward,
                 ContactState::stick),
          "the finger can hold where the plate cannot");
-  const Segments turns = hard("skin-turns-at-its-limit-by-rounding");
+  const Segments turns = hard("skin-turn-at-stick-limit-within-rounding");
   expect(turns.size() > 10 && std::none_of(turns.begin() + 1, turns.end(),
                                            [](const auto& s) {
                                              return is_slip(s.mode.finger) &&
                                                     s.end - s.begin < 1e-6 && s.begin > 1.5;
                                            }),
          "skin whose vibration reaches its limit by rounding turns there");
-  const Segments row = hard("finger-at-its-limit-as-a-load-falls-to-a-row");
+  const Segments row = hard("finger-at-stick-limit-under-load-falling-to-breakpoint");
   expect(!row.empty() && std::all_of(row.begin(), row.end(),
                                      [](const auto& s) {
                                        return s.mode.finger == ContactState::stick &&
                                               s.end > s.begin;
                                      }),
          "what a load that falls to its row would break loose to rounding holds on there");
-  const Segments instant = hard("finger-lets-go-at-a-curve-row-under-a-rising-load");
+  const Segments instant = hard("finger-breakaway-at-curve-point-under-rising-load");
   expect(std::any_of(instant.begin(), instant.end(),
                      [](const auto& s) {
                        return !(s.end > s.begin) && s.flow.acceleration().start < -1e-6;

@@ -215,7 +215,7 @@ class PackRound {
 
 /// Simulates a round of `count` slots: from a list, or the first slots.
 template <class V, bool Later, bool Measured>
-#if defined(__GNUC__) && !defined(__CUDACC__) && !defined(__SANITIZE_ADDRESS__)
+#if defined(__GNUC__) && !defined(__SANITIZE_ADDRESS__)
 // A pack that is handed over in memory costs more than what is done with it.
 __attribute__((flatten, noinline))
 #endif

@@ -1,16 +1,8 @@
 /// Storage of a pack: a vector register if the compiler targets one, else two halves.
 #pragma once
 
-#ifndef __CUDACC__
 #include <cmath>
 #include <cstdint>
-#include <cstring>
-#else
-namespace std {
-using int64_t = long long;
-using uint64_t = unsigned long long;
-}  // namespace std
-#endif
 
 #ifdef PINDRIVE_PLAIN_PACKS  // numbers alone, as for a compiler without vector extensions
 #elif defined(__AVX512F__) && defined(__GNUC__)
@@ -22,7 +14,7 @@ using uint64_t = unsigned long long;
 #elif defined(__SSE2__) && defined(__GNUC__)
 #include <emmintrin.h>
 #define PINDRIVE_VECTOR_LANES 2
-#elif defined(__GNUC__) && !defined(__CUDACC__)
+#elif defined(__GNUC__)
 #define PINDRIVE_VECTOR_LANES 2
 #endif
 

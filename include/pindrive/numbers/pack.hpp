@@ -135,13 +135,7 @@ Pack<N> select(const Mask<N>& which, const Pack<N>& a, const Pack<N>& b) {
   return Pack<N>::of(Pack<N>::Lanes::choose(which.held, a.held, b.held));
 }
 
-inline double root(double a) {
-#ifdef __CUDACC__
-  return sqrt(a);
-#else
-  return std::sqrt(a);
-#endif
-}
+inline double root(double a) { return std::sqrt(a); }
 template <int N>
 Pack<N> root(const Pack<N>& a) {
   return Pack<N>::of(Pack<N>::Lanes::root(a.held));
@@ -152,11 +146,7 @@ template <class To, class From>
 To same_bits(const From& from) {
   static_assert(sizeof(To) == sizeof(From), "nothing may be left out");
   To to;
-#ifdef __CUDACC__
-  memcpy(&to, &from, sizeof to);
-#else
   std::memcpy(&to, &from, sizeof to);
-#endif
   return to;
 }
 template <class V>
@@ -172,11 +162,7 @@ V from_bits(const BitsOf<V>& a) {
 template <class V>
 V load(const double* from) {
   V a;
-#ifdef __CUDACC__
-  memcpy(&a, from, sizeof a);
-#else
   std::memcpy(&a, from, sizeof a);
-#endif
   return a;
 }
 /// Loads a pack from given places of a column.
@@ -189,11 +175,7 @@ V gather(const double* column, const int* places) {
 }
 template <class V>
 void store(const V& a, double* to) {
-#ifdef __CUDACC__
-  memcpy(to, &a, sizeof a);
-#else
   std::memcpy(to, &a, sizeof a);
-#endif
 }
 
 /// Result of a comparison for one number of a pack.
