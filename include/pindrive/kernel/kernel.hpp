@@ -1,6 +1,5 @@
 /// Kernel for many standard releases at once: rigid Coulomb contacts at both surfaces, constant
-/// mouse velocity, less than critical damping. One text serves a drive, a pack of drives, and a GPU
-/// thread.
+/// mouse velocity, less than critical damping. One text serves a drive and a pack of drives.
 ///
 /// Between two events the pin oscillates about a fixed centre: c_A, c_B or c_C = (∓F_p ∓ F_f)/k
 /// while the pin is faster than the plate, between plate and finger, or moves backward. From one

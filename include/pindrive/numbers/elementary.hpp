@@ -1,8 +1,7 @@
 /// Elementary functions sin, cos, exp, expm1, log, log1p and atan2 from + − × ÷ and the bits of
 /// numbers.
 ///
-/// One text for a number, for packs of numbers and for a GPU thread gives identical bits
-/// everywhere, unlike the libraries of systems and compilers. Each function is within 2 units in
+/// One text for a number and for packs of numbers gives identical bits everywhere, unlike the libraries of systems and compilers. Each function is within 2 units in
 /// the last place over its stated range. The coefficients are minimax polynomials from
 /// tests/oracle/make_polynomials.py.
 #pragma once

@@ -2,9 +2,12 @@
 /// number.
 ///
 /// A pack is a vector register if the compiler targets one, else two halves. Every operation rounds
-/// like that of a double, so that one text gives identical bits for a number, for a pack of any
-/// width, and for a GPU thread.
+/// like that of a double, so that one text gives identical bits for a number and for a pack of any
+/// width.
 #pragma once
+
+#include <cmath>
+#include <cstring>
 
 #include "pindrive/numbers/lanes.hpp"
 
