@@ -22,7 +22,7 @@ from pindrive.files.keys import (
     AROUND,
     DRIVE,
     KEYS,
-    NUMBERS,
+    NUMERIC_KEYS,
     STUDY_KEYS,
     TABLES,
     line,
@@ -117,7 +117,7 @@ def checked(quantity: Quantity) -> dict[str, Any]:
             "mayBeConstant": quantity.may_be_constant,
             "usual": quantity.usual,
             "usualRows": usual_rows(quantity) if quantity.rows else "",
-            "line": line(quantity) if quantity.key in NUMBERS else "",
+            "line": line(quantity) if quantity.key in NUMERIC_KEYS else "",
         }
     )
 
@@ -152,7 +152,7 @@ def tables() -> dict[str, Any]:
     """All that the page knows."""
     return {
         "version": __version__,
-        "inputs": [checked(quantity) for quantity in NUMBERS.values()],
+        "inputs": [checked(quantity) for quantity in NUMERIC_KEYS.values()],
         "drive": [*DRIVE],
         "parts": {name: checked(QUANTITIES[name]) for name in PARTS},
         "columns": COLUMNS,
@@ -160,7 +160,7 @@ def tables() -> dict[str, Any]:
         "series": [column(quantity) for quantity in MOTION],
         "channels": [column(quantity) for quantity in CHANNELS.values()],
         "keys": KEYS,
-        "variables": {key: quantity.variable for key, quantity in NUMBERS.items()},
+        "variables": {key: quantity.variable for key, quantity in NUMERIC_KEYS.items()},
         "otherWords": OTHER_WORDS,
         "tables": TABLES,
         "alone": ALONE,

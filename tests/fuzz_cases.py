@@ -14,12 +14,12 @@ import numpy as np
 
 from pindrive.device.coil import COIL, COIL_NEEDS
 from pindrive.device.electromagnet import DIRECT
-from pindrive.files.keys import DRIVE, NUMBERS
+from pindrive.files.keys import DRIVE, NUMERIC_KEYS
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import Quantity
 from pindrive.quantities.table import QUANTITIES
 
-KEYS = tuple(NUMBERS)
+KEYS = tuple(NUMERIC_KEYS)
 COMMANDS = ("check", "simulate", "scan", "speed", "sweep", "sensitivity", "robustness")
 WEIGHTS = (0.06, 0.2, 0.36, 0.14, 0.12, 0.05, 0.07)
 INTERRUPTED = 0.04
@@ -58,7 +58,7 @@ class Case:
         around = [key for key in keys if key not in DRIVE]
         if command == "sensitivity" or (command == "simulate" and rng.random() < 0.8):
             keys = [key for key in keys if key in DRIVE] or [keys[0]]
-        values = {key: written(NUMBERS[key], rng) for key in keys}
+        values = {key: written(NUMERIC_KEYS[key], rng) for key in keys}
         study = command in ("sweep", "sensitivity", "robustness")
         varied = dict(list(values.items())[: int(rng.integers(1, 3))]) if study else {}
         fixed = {key: value for key, value in values.items() if key not in varied}
@@ -189,7 +189,7 @@ def device(given: dict[str, str], varied: dict[str, str]) -> str:
     coil = [*(f"magnet.{name}" for name in COIL), "magnet.voltage"]
     if any(key in coil for key in (*given, *varied)):
         for name in COIL_NEEDS:
-            quantity = NUMBERS[f"magnet.{name}"]
+            quantity = NUMERIC_KEYS[f"magnet.{name}"]
             values[quantity.key] = text(float(quantity.example or 1.0), quantity.unit)
         direct = [f"magnet.{name}" for name in DIRECT]
         given = {key: value for key, value in given.items() if key not in direct}
@@ -226,7 +226,7 @@ def study_file(varied: dict[str, str], scans: bool, rng: np.random.Generator) ->
         lines.append(f"chunk = {rng.choice(COUNTS)}")
     axes, tolerances, sampled = [], [], False
     for key in varied:
-        quantity = NUMBERS[key]
+        quantity = NUMERIC_KEYS[key]
         pair = [text(x, quantity.unit) for x in sorted(number(quantity, rng) for _ in range(2))]
         ends = f"[{', '.join(pair)}]"
         way = rng.choice(("list", "lin", "log", "uniform", "normal", "lognormal"))

@@ -9,14 +9,14 @@ from pathlib import Path
 import pytest
 
 from fuzz_cases import KEYS, Case, device
-from pindrive.files.keys import NUMBERS
+from pindrive.files.keys import NUMERIC_KEYS
 
 FUZZ = Path(__file__).parent / "fuzz" / "files.py"
 
 
 def test_every_key_has_its_turn() -> None:
     cases = [Case.of(1, number) for number in range(8 * len(KEYS))]
-    assert {case.keys[0] for case in cases} == {*NUMBERS}
+    assert {case.keys[0] for case in cases} == {*NUMERIC_KEYS}
     assert Case.of(1, 7) == Case.of(1, 7) != Case.of(2, 7)
 
 

@@ -17,7 +17,7 @@ from typer.main import get_command
 from typer.testing import CliRunner
 
 from pindrive.cli.app import app
-from pindrive.files.keys import NUMBERS
+from pindrive.files.keys import NUMERIC_KEYS
 from pindrive.files.keys import template as device_template
 from pindrive.quantities.quantity import Quantity
 from pindrive.quantities.results import DESIGNED, LINE, LINE_COUNTS, OUTPUTS, SCANNED, SERIES
@@ -53,7 +53,7 @@ def commands() -> str:
 def device_file() -> str:
     """Each key of a device file, by its table."""
     groups: dict[str, list[Quantity]] = {}
-    for key, quantity in NUMBERS.items():
+    for key, quantity in NUMERIC_KEYS.items():
         groups.setdefault(key.partition(".")[0], []).append(quantity)
     headings = ("key", "unit", "meaning", "values", "unless given", "source")
     parts = []

@@ -20,7 +20,7 @@ from pindrive.device.electromagnet import DIRECT
 from pindrive.device.geometry import COPPER, doubts, nearest_pins
 from pindrive.device.reading import Reading
 from pindrive.evaluation import evaluate
-from pindrive.files.keys import NUMBERS, line, template
+from pindrive.files.keys import NUMERIC_KEYS, line, template
 from pindrive.plot.scan import plot_reliefs, plot_scan
 from pindrive.quantities.device import READER
 
@@ -214,12 +214,12 @@ def test_the_picture_says_it() -> None:
 
 def test_the_device_that_is_written_can_be_built_with_end_stops_and_a_coil(tmp_path: Path) -> None:
     """As its comments have them."""
-    given = replace(NUMBERS["drive.travel"], **READER["drive.travel"])
+    given = replace(NUMERIC_KEYS["drive.travel"], **READER["drive.travel"])
     text = template(whole=True).replace(f"# {line(given)}", line(given))
     for key in COIL_NEEDS:
-        row = line(NUMBERS[f"magnet.{key}"])
+        row = line(NUMERIC_KEYS[f"magnet.{key}"])
         text = text.replace(f"# {row}", row)
-    direct = [line(NUMBERS[f"magnet.{name}"]) for name in DIRECT]
+    direct = [line(NUMERIC_KEYS[f"magnet.{name}"]) for name in DIRECT]
     text = "\n".join(row for row in text.splitlines() if row not in direct)
     file = tmp_path / "device.toml"
     file.write_text(text)

@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pindrive.files.device import ConfigError, load_device
-from pindrive.files.keys import KEYS, NUMBERS, template
-from pindrive.quantities.drive import INPUTS
+from pindrive.files.keys import KEYS, NUMERIC_KEYS, template
+from pindrive.quantities.drive import DRIVE_QUANTITIES
 from pindrive.quantities.units import UnitError, to_si
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "tactile-mouse.toml"
@@ -62,14 +62,14 @@ def test_example_loads() -> None:
 
 def test_example_is_what_init_writes() -> None:
     values = load_device(EXAMPLE).values()
-    for quantity in INPUTS:
+    for quantity in DRIVE_QUANTITIES:
         if quantity.default is not None:
             assert values[quantity.key] == quantity.default
 
 
 def test_template_loads_with_the_defaults_of_the_table(write: Write) -> None:
     device = load_device(write(new=template()))
-    given = {q.key: q.default for q in INPUTS if q.default is not None}
+    given = {q.key: q.default for q in DRIVE_QUANTITIES if q.default is not None}
     assert device.values() | given == device.values()
 
 
@@ -119,7 +119,7 @@ def test_every_commented_line_of_the_template_works(write: Write, table: str, li
     lines.insert(lines.index(f"[{table}]") + 1, line)
     device = load_device(write(new="\n".join(lines)))
     if table != "device":
-        quantity = NUMBERS[f"{table}.{name}"]
+        quantity = NUMERIC_KEYS[f"{table}.{name}"]
         given = quantity.rows if " = [" in line else quantity.example
         assert device.values()[quantity.key] == given
 

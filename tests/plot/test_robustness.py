@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
 from figure_reading import collisions, legend_of, lines, patch_spans, points
-from pindrive.plot.robustness import plot_robustness
+from pindrive.plot.robustness import plot_designs, plot_robustness
 from pindrive.plot.style import PALETTE
 from pindrive.study.robustness import Robustness, robustness
 from pindrive.study.study import load_study
@@ -142,3 +143,19 @@ def test_missing_numbers_are_told(found: Robustness) -> None:
     assert "25 % without" in {text.get_text() for text in of(figure, "swing").texts}
     assert collisions(figure) == []
     assert figure.texts[0].get_window_extent().x1 < figure.bbox.x1
+
+
+def test_drawn_values_are_in_the_bars_of_their_outcome(found: Robustness) -> None:
+    """Blue bars count the designs that meet the specification; red bars on top count all others."""
+    figure = plot_designs(found, "a name")
+    scales = {"drive.mass": 1e3, "motion.mouse_velocity": 1e3, "plate.kinetic": 1e3}
+    assert found.drawn.keys() == scales.keys()
+    for axes, (key, values) in zip(figure.axes, found.drawn.items(), strict=True):
+        drawn = scales[key] * values
+        bars: list[Any] = [*axes.patches]
+        edges = [-np.inf, *(bar.get_x() for bar in bars[1 : len(bars) // 2]), np.inf]
+        for color, chosen in (("curve", found.feasible), ("stick", ~found.feasible)):
+            of_color = [b for b in bars if to_hex(b.get_facecolor()) == to_hex(PALETTE[color])]
+            heights = [bar.get_height() for bar in of_color]
+            assert heights == np.histogram(drawn[chosen], edges)[0].tolist()
+    assert [*legend_of(figure)] == ["meets the specification", "violates the specification"]

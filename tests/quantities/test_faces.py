@@ -14,7 +14,7 @@ import pytest
 from pindrive import Contact, Drive, Profile, Release, simulate, simulate_batch
 from pindrive.device import Coil, ControlBlock, Criteria, Electromagnet, PinArray
 from pindrive.device.reading import Reading
-from pindrive.files.keys import NUMBERS, variable
+from pindrive.files.keys import NUMERIC_KEYS, variable
 from pindrive.motion.batch import _ARGUMENTS
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import Quantity
@@ -111,7 +111,7 @@ def test_a_contact_is_its_part_of_the_table() -> None:
 
 
 def test_what_a_batch_varies_has_the_names_of_device_files() -> None:
-    in_files = {variable(key) for key in NUMBERS if key.partition(".")[0] != "scan"}
+    in_files = {variable(key) for key in NUMERIC_KEYS if key.partition(".")[0] != "scan"}
     assert {*_ARGUMENTS} <= in_files
     for name, quantity in _ARGUMENTS.items():
         assert quantity.name.replace(".", "_") == name

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import pindrive as pd
-from pindrive.files.keys import NAMES, NUMBERS
+from pindrive.files.keys import NAMES, NUMERIC_KEYS
 from pindrive.optimisation import Effort
 from pindrive.quantities.names import Names
 
@@ -68,7 +68,7 @@ def test_the_words_of_others_find_a_name(written: str, meant: str) -> None:
 
 
 def test_every_python_name_is_a_name_of_its_key() -> None:
-    for key, quantity in NUMBERS.items():
+    for key, quantity in NUMERIC_KEYS.items():
         assert NAMES.matches(key) == NAMES.matches(key.replace(".", "_")) == (key,)
         assert NAMES.matches(quantity.variable) == (key,), "no other key has it"
 

@@ -7,14 +7,16 @@ import pytest
 
 from pindrive import Contact, Drive, Release, simulate
 from pindrive._core import settling_band
-from pindrive.quantities.drive import INPUTS, PARTS
+from pindrive.quantities.drive import DRIVE_QUANTITIES, PARTS
 from pindrive.quantities.quantity import Bounds, Quantity, significant
 from pindrive.quantities.results import CERTIFICATE, DESIGNED, FINAL, OUTPUTS, RATE
 from pindrive.quantities.table import DEVICE, QUANTITIES, check
 
 
 def test_names_are_unique() -> None:
-    assert len(QUANTITIES) == len((*INPUTS, *PARTS, *OUTPUTS, *FINAL, RATE, *DEVICE, *DESIGNED))
+    assert len(QUANTITIES) == len(
+        (*DRIVE_QUANTITIES, *PARTS, *OUTPUTS, *FINAL, RATE, *DEVICE, *DESIGNED)
+    )
 
 
 @pytest.mark.parametrize("quantity", QUANTITIES.values(), ids=lambda q: q.name)
@@ -28,7 +30,7 @@ def test_every_quantity_is_described(quantity: Quantity) -> None:
             assert value in quantity.bounds
 
 
-@pytest.mark.parametrize("quantity", INPUTS, ids=lambda q: q.name)
+@pytest.mark.parametrize("quantity", DRIVE_QUANTITIES, ids=lambda q: q.name)
 def test_a_device_file_can_show_every_input(quantity: Quantity) -> None:
     assert "." in quantity.key
     shown = [value for value in (quantity.default, quantity.example) if value is not None]

@@ -13,7 +13,7 @@ import pytest
 
 from pindrive import Profile
 from pindrive.files.device import ConfigError, DeviceFile, load_device
-from pindrive.files.keys import DRIVE, NUMBERS, template
+from pindrive.files.keys import DRIVE, NUMERIC_KEYS, template
 from studio_cases import Ask, as_input
 
 EXAMPLES = [
@@ -389,7 +389,7 @@ def test_every_key_of_the_table_is_known_to_the_page(node: Ask) -> None:
     (found,) = read(node, [template()])
     keys = {
         key
-        for key in NUMBERS
+        for key in NUMERIC_KEYS
         if key.partition(".")[2] in tomllib.loads(template()).get(key.partition(".")[0], {})
     }
     assert found["values"].keys() == keys

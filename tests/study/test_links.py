@@ -15,7 +15,7 @@ from pindrive import Contact, Drive, Release, simulate
 from pindrive.cli.app import app
 from pindrive.files.device import ConfigError, load_device
 from pindrive.motion.simulate import motion_of
-from pindrive.quantities.drive import INPUTS
+from pindrive.quantities.drive import DRIVE_QUANTITIES
 from pindrive.study.design import Plan
 from pindrive.study.distributions import Linked
 from pindrive.study.evaluate import evaluate
@@ -76,7 +76,7 @@ def run(*arguments: str) -> str:
 
 
 def test_the_table_says_what_follows_what() -> None:
-    follows = {quantity.key: quantity.follows for quantity in INPUTS if quantity.follows}
+    follows = {quantity.key: quantity.follows for quantity in DRIVE_QUANTITIES if quantity.follows}
     assert follows == {
         "plate.static": ("plate.kinetic",),
         "plate.curve": ("plate.kinetic",),

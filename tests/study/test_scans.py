@@ -28,7 +28,7 @@ from pindrive.device.page_description import Page
 from pindrive.device.reading import Reading
 from pindrive.evaluation import Evaluation
 from pindrive.evaluation import evaluate as evaluate_scan
-from pindrive.files.keys import NUMBERS
+from pindrive.files.keys import NUMERIC_KEYS
 from pindrive.files.output import OutputError
 from pindrive.plot.sensitivity import plot_sobol_indices
 from pindrive.plot.slices import plot_study
@@ -231,7 +231,7 @@ OPENING = 'lift = "0.05 mm"\nclosing_force = "20 mN"\n'
 @pytest.mark.parametrize("table", ["drive", "plate", "finger", "magnet", *AROUND])
 def test_every_number_of_the_device_file_may_be_varied(table: str) -> None:
     """At a usual value and at another there is a scan."""
-    for key, quantity in NUMBERS.items():
+    for key, quantity in NUMERIC_KEYS.items():
         if not key.startswith(f"{table}.") or not quantity.may_be_constant:
             continue
         base = quantity.default or quantity.example or 0.01

@@ -154,6 +154,12 @@ def test_robustness_as_data(mouse: DeviceFile) -> None:
     assert 0.0 < met[0] < 1.0
     assert_array_equal(data.met, met)
     assert data.attrs["yield"] == float(((times <= 0.118) & (times >= 0.1)).mean())
+    assert_array_equal(data.feasible, (times <= 0.118) & (times >= 0.1))
+    ratio = mouse.drive.damping_ratio
+    again = pd.simulate_batch(
+        mouse.drive, mouse.release, mass=data.mass.values, damping_ratio=ratio
+    )
+    assert_array_equal(again.transient_settling_time, times)
     assert (data.met_low <= data.met).all()
     assert (data.met <= data.met_high).all()
     assert f"{data.attrs['yield']:.3%}".replace("%", " %") in repr(found)

@@ -9,7 +9,7 @@ import numpy as np
 from rich.console import Group, RenderableType
 
 from pindrive.cli.tables import new_table, whole_lines
-from pindrive.files.keys import NUMBERS as KEYS
+from pindrive.files.keys import NUMERIC_KEYS
 from pindrive.optimisation.catalogue import short_keys
 from pindrive.optimisation.results import shown
 from pindrive.quantities.names import label
@@ -44,7 +44,7 @@ def _values(found: Design) -> Table:
     of = {key: v for v in found.problem.variables for key in v.axes}
     ends = dict(found.at_ends)
     for key, value in found.values.items():
-        quantity, old = KEYS[key], before.get(key)
+        quantity, old = NUMERIC_KEYS[key], before.get(key)
         variable = of.get(key)
         if variable is None:
             how = "follows"
@@ -90,7 +90,7 @@ def _relaxed(required: ConstraintResult) -> str:
 
 
 def _case(case: Mapping[str, float]) -> str:
-    return ", ".join(KEYS[key].text(value) for key, value in case.items())
+    return ", ".join(NUMERIC_KEYS[key].text(value) for key, value in case.items())
 
 
 def _front(found: Design, front: Front) -> Table:
@@ -103,7 +103,7 @@ def _front(found: Design, front: Front) -> Table:
     for i in np.union1d(rows, [front.chosen]):
         table.add_row(
             *(shown(name, value) for name, value in zip(names, front.goals[i], strict=True)),
-            *(KEYS[key].text(front.columns[key][i]) for key in keys),
+            *(NUMERIC_KEYS[key].text(front.columns[key][i]) for key in keys),
             "the design" if i == front.chosen else "",
         )
     return table

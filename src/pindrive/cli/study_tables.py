@@ -12,8 +12,7 @@ import typer
 from rich.console import Group
 
 from pindrive.cli.tables import new_table, whole_lines
-from pindrive.files.keys import NAMES
-from pindrive.files.keys import NUMBERS as KEYS
+from pindrive.files.keys import NAMES, NUMERIC_KEYS
 from pindrive.lazy import h5py
 from pindrive.quantities.names import label
 from pindrive.quantities.quantity import counted, significant
@@ -167,7 +166,7 @@ def _by_key(
     title: str, keys: Sequence[str], names: Sequence[str], cell: Callable[[str, int], str]
 ) -> Table:
     """A line for each number, a column for each key."""
-    heads = [KEYS[key].symbol for key in keys]
+    heads = [NUMERIC_KEYS[key].symbol for key in keys]
     made = new_table(title, "number", *(f">{head}" for head in heads))
     for name in names:
         made.add_row(label(name), *(cell(name, i) for i in range(len(keys))))
@@ -210,7 +209,7 @@ def _notes(found: SobolIndices) -> list[str]:
     if constant:
         lines.append(f"The same everywhere: {', '.join(constant)}.")
     lines += [
-        f"{KEYS[key].symbol}: some derivatives do not exist, {why}."
+        f"{NUMERIC_KEYS[key].symbol}: some derivatives do not exist, {why}."
         for key, why in (found.near.gaps.items() if found.near else ())
     ]
     return lines
@@ -273,7 +272,7 @@ def _worst_cases(plan: Plan, found: Robustness) -> Table:
     heads = (f">{label(case.constraint.name)}" for case in found.worst)
     made = new_table("The worst found for", "key", ">design", *heads, "unit")
     for key in found.worst[0].keys:
-        quantity, own = KEYS[key], base_value(plan.device, key)
+        quantity, own = NUMERIC_KEYS[key], base_value(plan.device, key)
         values = [quantity.digits(case.keys[key]) for case in found.worst]
         shown = quantity.digits(own) if isinstance(own, float) else "-"
         made.add_row(key, shown, *values, quantity.display_unit)
@@ -302,7 +301,10 @@ def _draws(plan: Plan, found: Robustness) -> list[str]:
         given = " ".join(
             [
                 *(f"--set {key}={shlex.quote(text)}" for key, text in _set_besides(plan, case)),
-                *(f'--set {key}="{KEYS[key].written(value)}"' for key, value in case.keys.items()),
+                *(
+                    f'--set {key}="{NUMERIC_KEYS[key].written(value)}"'
+                    for key, value in case.keys.items()
+                ),
             ]
         )
         command = (

@@ -23,7 +23,7 @@ from pindrive.files.keys import (
     DRIVE,
     KEYS,
     NAMES,
-    NUMBERS,
+    NUMERIC_KEYS,
     STUDY_KEYS,
     TABLES,
     names_in_file,
@@ -289,7 +289,7 @@ def device_of(
     if hand:  # a single release is at the hand's speed then
         values["motion.mouse_velocity"] = values.get("scan.hand_speed")
     found += contact_problems(values, place)
-    complete = all(key in values for key in NUMBERS if key.partition(".")[0] in names)
+    complete = all(key in values for key in NUMERIC_KEYS if key.partition(".")[0] in names)
     around = Whole(values) if whole and complete and not found else None
     if complete and not found:
         found += drive_problems(values, place)
@@ -397,7 +397,12 @@ def settings_of(
         keys = NAMES.matches(given)
         if len(keys) == 1 and is_file(keys[0], text):
             value = str(Path(text).absolute())
-        elif len(keys) == 1 and keys[0] in NUMBERS and NUMBERS[keys[0]].rows and text[:1] == "[":
+        elif (
+            len(keys) == 1
+            and keys[0] in NUMERIC_KEYS
+            and NUMERIC_KEYS[keys[0]].rows
+            and text[:1] == "["
+        ):
             try:
                 value = _rows_as_toml(text)
             except (ValueError, RecursionError) as error:
@@ -410,7 +415,7 @@ def settings_of(
 def _setting(given: str, value: object) -> Setting:
     """A value from Python: a number is SI."""
     keys = NAMES.matches(given)
-    if len(keys) == 1 and keys[0] in NUMBERS and isinstance(value, Real):
+    if len(keys) == 1 and keys[0] in NUMERIC_KEYS and isinstance(value, Real):
         value = written(keys[0], float(value))
     elif len(keys) == 1 and is_file(keys[0], value):
         value = str(Path(str(value)).absolute())

@@ -20,7 +20,7 @@ from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
 from pindrive.device.electromagnet import DIRECT
 from pindrive.files.device import DeviceFile
-from pindrive.files.keys import NUMBERS
+from pindrive.files.keys import NUMERIC_KEYS
 from pindrive.motion.friction import COEFFICIENTS
 from pindrive.motion.profile import Profile
 from pindrive.motion.release import INPUTS
@@ -143,7 +143,7 @@ def _parameters(device: DeviceFile) -> Iterator[Variable]:
     for key, value in values.items():
         if value is None or key in left_out or key.partition(".")[0] in ELSEWHERE:
             continue
-        row = NUMBERS[key]
+        row = NUMERIC_KEYS[key]
         if not isinstance(value, tuple):
             yield _given(key, row, value)
             continue

@@ -9,7 +9,7 @@ from typing import Any, Final, cast
 
 from pindrive.motion.friction import COEFFICIENT_OF, PRESSED_BY
 from pindrive.quantities.device import READER
-from pindrive.quantities.drive import COLUMNS, INPUTS
+from pindrive.quantities.drive import COLUMNS, DRIVE_QUANTITIES
 from pindrive.quantities.names import Names
 from pindrive.quantities.quantity import Quantity
 from pindrive.quantities.refusal import quoted, refusal
@@ -19,11 +19,11 @@ from pindrive.quantities.units import UnitError, to_si
 Tables = Mapping[str, Any]
 """The tables of a device file as TOML has them: text with units."""
 
-DRIVE: Final[dict[str, Quantity]] = {quantity.key: quantity for quantity in INPUTS}
+DRIVE: Final[dict[str, Quantity]] = {quantity.key: quantity for quantity in DRIVE_QUANTITIES}
 """The keys of a device file that describe the drive and its motion, in their order."""
 WHOLE: Final[dict[str, Quantity]] = {quantity.key: quantity for quantity in DEVICE_INPUTS}
 """The keys that describe the whole device around it, in their order."""
-NUMBERS: Final[dict[str, Quantity]] = DRIVE | WHOLE
+NUMERIC_KEYS: Final[dict[str, Quantity]] = DRIVE | WHOLE
 """The keys of a device file that hold a quantity."""
 
 STUDY_KEYS: Final = (
@@ -31,14 +31,14 @@ STUDY_KEYS: Final = (
     *("axes", "sample", "tolerances", "specification"),
 )
 """Top-level keys of a study file beside the tables of a device and the name."""
-KEYS: Final = ("device.name", "device.description", *NUMBERS)
+KEYS: Final = ("device.name", "device.description", *NUMERIC_KEYS)
 AROUND: Final = ("magnet", "control", "array", "scan", "criteria")
 ALONE: Final = ("device", "drive", "plate", "finger", "motion")
 TABLES: Final = (*ALONE, *AROUND)
 
 
 def _spellings(key: str) -> tuple[str, ...]:
-    return (NUMBERS[key].variable,) if key in NUMBERS else ()
+    return (NUMERIC_KEYS[key].variable,) if key in NUMERIC_KEYS else ()
 
 
 _LISTED: Final = "docs/reference/device-file.md"
@@ -79,7 +79,7 @@ def number(
 
 def written(key: str, value: float) -> str | float:
     """A value in SI as a device file has it, to the last bit."""
-    unit = NUMBERS[key].unit
+    unit = NUMERIC_KEYS[key].unit
     return value if unit == "1" else f"{value!r} {unit}"
 
 
@@ -90,7 +90,7 @@ def has_part(key: str, scans: bool) -> bool:
 
 def variable(key: str) -> str:
     """Return the name of a key of the device file in Python and in a NetCDF file."""
-    return NUMBERS[key].variable
+    return NUMERIC_KEYS[key].variable
 
 
 def friction_parts(key: str) -> tuple[str, ...]:
@@ -140,7 +140,7 @@ def template(whole: bool = False) -> str:
         '# description = "what is special about it"',
     ]
     table = "device"
-    for key, usual_one in (NUMBERS if whole else DRIVE).items():
+    for key, usual_one in (NUMERIC_KEYS if whole else DRIVE).items():
         quantity = replace(usual_one, **READER.get(key, {})) if whole else usual_one
         if key.partition(".")[0] != table:
             table = key.partition(".")[0]

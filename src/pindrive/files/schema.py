@@ -17,7 +17,7 @@ from pindrive.device.electromagnet import DIRECT, Electromagnet, check_holds, ch
 from pindrive.device.pin_array import PinArray, check_apart, check_count, check_pins, check_slot
 from pindrive.files.keys import (
     DRIVE,
-    NUMBERS,
+    NUMERIC_KEYS,
     WHOLE,
     Tables,
     friction_parts,
@@ -98,7 +98,7 @@ def read_values(
     """
     values: dict[str, Value] = {}
     problems = []
-    for key, quantity in NUMBERS.items():
+    for key, quantity in NUMERIC_KEYS.items():
         table, _, name = key.partition(".")
         if table not in names:
             continue
@@ -122,7 +122,7 @@ def read_value(value: object, key: str, place: str) -> float | Rows:
     Raises:
         ValueError: it is malformed or out of the key's bounds.
     """
-    quantity = NUMBERS[key]
+    quantity = NUMERIC_KEYS[key]
     if quantity.rows and (isinstance(value, list | tuple) or not quantity.may_be_constant):
         return _rows(value, quantity, key, place)
     return number(value, quantity, quantity.usual, key, place)

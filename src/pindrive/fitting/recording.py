@@ -22,7 +22,7 @@ from pindrive.quantities.value import equal_by_value
 
 __all__ = ["Recording", "read_recording"]
 
-INPUTS: Final = ("mouse_velocity", "plate_load")
+RECORDED_INPUTS: Final = ("mouse_velocity", "plate_load")
 """Inputs of a release that a recording may contain."""
 EXAMPLE: Final = f"{SERIES['time'].heading}, {CHANNELS['position'].heading}"
 FEWEST: Final = 8
@@ -186,7 +186,9 @@ def read_recording(
         if name in table
     }
     inputs: dict[str, Any] = {
-        name: np.array(table.column(name, QUANTITIES[name])) for name in INPUTS if name in table
+        name: np.array(table.column(name, QUANTITIES[name]))
+        for name in RECORDED_INPUTS
+        if name in table
     }
     if mouse_velocity is not None:
         if "mouse_velocity" in inputs:

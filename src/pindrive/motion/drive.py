@@ -9,7 +9,7 @@ from math import inf, isinf, nan, sqrt
 from typing import Any, Final
 
 from pindrive.motion.friction import COEFFICIENTS, normal_force
-from pindrive.quantities.drive import INPUTS, PARTS
+from pindrive.quantities.drive import DRIVE_QUANTITIES, PARTS
 from pindrive.quantities.part import Part
 from pindrive.quantities.quantity import brief
 from pindrive.quantities.refusal import refusal
@@ -18,7 +18,7 @@ from pindrive.quantities.value import concise
 
 __all__ = ["Contact", "Drive"]
 
-_TABLE: Final = Part((*INPUTS, *PARTS))
+_TABLE: Final = Part((*DRIVE_QUANTITIES, *PARTS))
 check: Final = _TABLE.check
 default: Final = _TABLE.default
 

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pindrive import _core, lazy
 from pindrive.lazy import mpl_figure, xr
+from pindrive.motion.core_numbers import CoreNumbers
 from pindrive.motion.drive import Drive
 from pindrive.motion.friction import COEFFICIENTS, PRESSED_BY
 from pindrive.motion.profile import Profile
@@ -68,21 +69,22 @@ class Motion(lazy.NotebookHtml):
         self,
         drive: Drive,
         release: Release,
-        duration: float | None = None,
-        settling_band: float = _core.settling_band,
+        numbers: CoreNumbers,
+        core: _core.Motion,
+        settling_band: float,
     ) -> None:
         self.drive = drive
         self.release = release
+        self.core_numbers = numbers
+        self._core = core
         self.settling_band = settling_band
-        self.core_numbers = core_numbers(drive, release, duration)
-        self._core = core = _core.simulate(*self.core_numbers)
         self.duration: float = core.duration(settling_band)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickled as what was simulated: the rest follows from it."""
+        """Pickle the arguments of the simulation, which is repeated."""
         asked = self.core_numbers[-1]
         duration = None if asked == inf else asked
-        return Motion, (self.drive, self.release, duration, self.settling_band)
+        return solve, (self.drive, self.release, duration, self.settling_band)
 
     def __eq__(self, other: object) -> bool:
         """Return True if drive, release and duration are equal."""
@@ -489,3 +491,16 @@ def _times(t: ArrayLike) -> NDArray[np.float64]:
         return np.asarray(t, dtype=np.float64)
     except (TypeError, ValueError):
         raise ValueError(refusal("t", "numbers, in seconds", repr(t))) from None
+
+
+def solve(drive: Drive, release: Release, duration: float | None, settling_band: float) -> Motion:
+    """Simulate a pin with checked arguments.
+
+    Args:
+        drive: Drive of the pin.
+        release: Initial state and inputs, which fit the drive.
+        duration: End of the simulation, s. None: until the ending is known.
+        settling_band: Half width of the settling band, as a fraction of |x(0) - x_end|.
+    """
+    numbers = core_numbers(drive, release, duration)
+    return Motion(drive, release, numbers, _core.simulate(*numbers), settling_band)

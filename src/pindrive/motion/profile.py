@@ -13,14 +13,14 @@ from typing import Any, Final, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pindrive.quantities.drive import INPUTS, PARTS
+from pindrive.quantities.drive import DRIVE_QUANTITIES, PARTS
 from pindrive.quantities.part import Part
 from pindrive.quantities.refusal import quoted, refusal
 from pindrive.quantities.rows import check_slopes, check_times
 from pindrive.quantities.units import UnitError, to_si
 from pindrive.quantities.value import concise
 
-_TABLE: Final = Part((*INPUTS, *PARTS))
+_TABLE: Final = Part((*DRIVE_QUANTITIES, *PARTS))
 
 
 @concise

@@ -9,14 +9,14 @@ import pindrive
 from pindrive import _core
 from pindrive.motion.core_numbers import CoreNumbers
 from pindrive.motion.drive import Drive
-from pindrive.motion.motion import Motion
+from pindrive.motion.motion import Motion, solve
 from pindrive.motion.release import Release, check_fits
-from pindrive.quantities.drive import INPUTS
+from pindrive.quantities.drive import DRIVE_QUANTITIES
 from pindrive.quantities.quantity import brief
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.table import QUANTITIES, check, warn_of
 
-_SEEN = {quantity.name: quantity.seen for quantity in INPUTS if quantity.seen}
+_SEEN = {quantity.name: quantity.seen for quantity in DRIVE_QUANTITIES if quantity.seen}
 _GLANCE = (
     *(end for name in ("mass", "stiffness") for end in (_SEEN[name].lower, _SEEN[name].upper)),
     *(_SEEN[name].upper for name in ("damping", "plate.static", "finger.static")),
@@ -84,7 +84,7 @@ def simulated(
     end = None if duration is None else check("duration", duration)
     if end is not None:
         check_phase(end, drive.natural_frequency)
-    return Motion(drive, release, end, check("settling_band", settling_band))
+    return solve(drive, release, end, check("settling_band", settling_band))
 
 
 def motion_of(device: pindrive.DeviceFile) -> Motion:

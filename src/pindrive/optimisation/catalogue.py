@@ -10,7 +10,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from pindrive.files.keys import NAMES, NUMBERS
+from pindrive.files.keys import NAMES, NUMERIC_KEYS
 from pindrive.quantities.csv_table import CsvTable
 from pindrive.quantities.refusal import quoted, refusal
 from pindrive.quantities.table import QUANTITIES
@@ -84,7 +84,7 @@ def read_catalogue(name: str, path: Path, place: str, scans: bool) -> Catalogue:
     table.check_rows("the parts", 1)
     columns = {}
     for key, column in keys.items():
-        columns[key] = table.column(column, NUMBERS[key])
+        columns[key] = table.column(column, NUMERIC_KEYS[key])
     prices = (
         table.column("price", QUANTITIES["design.price"], 1.0)
         if "price" in table

@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 from pindrive import lazy
 from pindrive.files.device import DeviceFile
 from pindrive.files.device_text import device_text
-from pindrive.files.keys import NUMBERS as KEYS
-from pindrive.files.keys import variable
+from pindrive.files.keys import NUMERIC_KEYS, variable
 from pindrive.lazy import mpl_figure, xr
 from pindrive.motion.motion import Motion
 from pindrive.optimisation.effort import Count
@@ -250,7 +249,8 @@ class Design(lazy.NotebookHtml):
             the axes of each map its goal and whether the constraints are met.
         """
         data: dict[str, Any] = {
-            variable(key): ((), value, KEYS[key].attributes) for key, value in self.values.items()
+            variable(key): ((), value, NUMERIC_KEYS[key].attributes)
+            for key, value in self.values.items()
         }
         for reached in self.goals:
             data[reached.goal.name] = ((), reached.value, attributes(reached.goal.name))
@@ -271,7 +271,7 @@ class Design(lazy.NotebookHtml):
             data[f"limit_{name}"] = ("limit", np.array(values, np.float64))
         if self.front:
             for key, column in self.front.columns.items():
-                data[f"front_{variable(key)}"] = ("front", column, KEYS[key].attributes)
+                data[f"front_{variable(key)}"] = ("front", column, NUMERIC_KEYS[key].attributes)
             for reached, column in zip(self.goals, self.front.goals.T, strict=True):
                 name = reached.goal.name
                 data[f"front_{name}"] = ("front", column, attributes(name))
@@ -281,7 +281,7 @@ class Design(lazy.NotebookHtml):
             data[f"map_{i}_goal"] = (dims, drawn.goal, attributes(goal))
             data[f"map_{i}_met"] = (dims, drawn.met)
             for dim, key, along in zip(reversed(dims), drawn.keys, drawn.along, strict=True):
-                data[dim] = (dim, along, {**KEYS[key].attributes, "key": key})
+                data[dim] = (dim, along, {**NUMERIC_KEYS[key].attributes, "key": key})
         coords = {
             "limit": [d.constraint.text() for d in self.constraints],
             "limit_unit": ("limit", [NUMBERS[d.constraint.name].unit for d in self.constraints]),

@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from pindrive.files.keys import variable
 from pindrive.plot.style import PALETTE, SMALL, STYLE, Figure, new_figure, plain
 from pindrive.quantities.quantity import counted
 from pindrive.study.slices import QUANTITY, axis_label, ranges
@@ -49,6 +50,38 @@ def plot_robustness(found: Robustness, name: str) -> Figure:
         title = plain(f"{name}: {_outcome(found)}", _WIDTH)
         lines = filter(None, (title, _left_out(found), ranges(found.ranges.scatter)))
         figure.head("\n".join(lines))
+    return figure
+
+
+def plot_designs(found: Robustness, name: str) -> Figure:
+    """Draw the drawn values of each key, of designs that meet and that violate the specification.
+
+    Args:
+        found: Result of `robustness`.
+        name: Name of the study, for the title.
+    """
+    with matplotlib.style.context(STYLE, after_reset=True):
+        columns = min(len(found.drawn), 3)
+        rows = -(-len(found.drawn) // columns)
+        figure = new_figure(180, 30 + 45 * rows)
+        grid = figure.subplots(rows, columns, squeeze=False)
+        bins = min(_BINS // 2, 1 + int(np.sqrt(found.designs)))
+        for axes, (key, values) in zip(grid.flat, found.drawn.items(), strict=False):
+            drawn = QUANTITY[variable(key)].display_scale * values
+            parts = [drawn[found.feasible], drawn[~found.feasible]]
+            colors = [PALETTE["curve"], PALETTE["stick"]]
+            axes.hist(parts, bins, stacked=True, color=colors, lw=0.0)
+            axes.set_xlabel(axis_label(variable(key)))
+        for axes in list(grid.flat)[len(found.drawn) :]:
+            axes.set_axis_off()
+        for axes in grid[:, 0]:
+            axes.set_ylabel(f"designs of {found.designs:,}".replace(",", " "))
+        handles = [Patch(color=PALETTE["curve"], lw=0.0, label="meets the specification")]
+        handles += [Patch(color=PALETTE["stick"], lw=0.0, label="violates the specification")]
+        figure.legend(handles=handles, loc="outside lower left", ncols=2)
+        figure.head(
+            "\n".join(filter(None, (plain(f"{name}: {_outcome(found)}", _WIDTH), _left_out(found))))
+        )
     return figure
 
 

@@ -436,7 +436,9 @@ _MOTION: Final = (
         absent=0.05,
     ),
 )
-INPUTS: Final = _computed(in_table("drive", *_DRIVE), _CONTACTS, in_table("motion", *_MOTION))
+DRIVE_QUANTITIES: Final = _computed(
+    in_table("drive", *_DRIVE), _CONTACTS, in_table("motion", *_MOTION)
+)
 """Keys of a device file, in order."""
 
 _PARTS: Final = (

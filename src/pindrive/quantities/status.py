@@ -10,7 +10,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from pindrive.quantities.drive import INPUTS, PARTS
+from pindrive.quantities.drive import DRIVE_QUANTITIES, PARTS
 
 __all__ = ["OUTCOMES", "End", "Side", "SimulationError", "Status", "outcome_attributes"]
 
@@ -67,7 +67,7 @@ class Status(IntEnum):
         """Explanation of the status, with the remedy."""
         if self > Status.refused:
             bad = self.name.removeprefix("bad_")
-            known = {quantity.name: quantity.meaning for quantity in (*INPUTS, *PARTS)}
+            known = {quantity.name: quantity.meaning for quantity in (*DRIVE_QUANTITIES, *PARTS)}
             name = bad if bad in known else bad.replace("_", ".", 1)
             return f"{name} is out of its range: {known[name]}"
         return _EXPLANATIONS[self]

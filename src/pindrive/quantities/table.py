@@ -10,7 +10,7 @@ import warnings
 from typing import Final, TypeVar, dataclass_transform
 
 from pindrive.quantities.device import ARRAY, CONTROL, DEVICE_PARTS, PIN, SCAN
-from pindrive.quantities.drive import INPUTS, PARTS
+from pindrive.quantities.drive import DRIVE_QUANTITIES, PARTS
 from pindrive.quantities.electromagnet import COIL, MADE, MAGNET
 from pindrive.quantities.part import Part, checked_class
 from pindrive.quantities.quantity import Quantity, Rows
@@ -25,7 +25,7 @@ DEVICE_INPUTS: Final = MAGNET + COIL + CONTROL + ARRAY + SCAN + CRITERIA
 DEVICE: Final[tuple[Quantity, ...]] = DEVICE_INPUTS + MADE + DEVICE_PARTS + PIN + JUDGE
 """Additional quantities of a whole device."""
 
-_ALL: Final = Part((*INPUTS, *PARTS, *OUTPUTS, *FINAL, RATE, *DEVICE, *DESIGNED))
+_ALL: Final = Part((*DRIVE_QUANTITIES, *PARTS, *OUTPUTS, *FINAL, RATE, *DEVICE, *DESIGNED))
 QUANTITIES: Final = _ALL.rows
 check: Final = _ALL.check
 default: Final = _ALL.default

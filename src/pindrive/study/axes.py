@@ -8,7 +8,7 @@ from math import inf
 from numbers import Integral, Real
 from typing import Any, Final, cast
 
-from pindrive.files.keys import DRIVE, NAMES, NUMBERS, TABLES, has_part, number
+from pindrive.files.keys import DRIVE, NAMES, NUMERIC_KEYS, TABLES, has_part, number
 from pindrive.quantities import budgets
 from pindrive.quantities.quantity import Quantity
 from pindrive.quantities.refusal import quoted, refusal
@@ -35,7 +35,7 @@ def sweepable(given: str, place: str, scans: bool) -> str:
         ValueError: it is unknown, may mean two, is no number or has no part.
     """
     key = NAMES.find(given, place)
-    if key not in NUMBERS or not NUMBERS[key].may_be_constant:
+    if key not in NUMERIC_KEYS or not NUMERIC_KEYS[key].may_be_constant:
         raise ValueError(f"{place}: {key} is no single number, it cannot be varied")
     if not has_part(key, scans):
         why = (
@@ -57,7 +57,7 @@ class AxisReader:
         self, file: str, table: str, key: str, base: float | None, *, scans: bool, si: bool
     ) -> None:
         self._file, self._label, self._key = file, f"{table}.{key}", key
-        self._quantity: Quantity = NUMBERS[key]
+        self._quantity: Quantity = NUMERIC_KEYS[key]
         self._base, self._scans, self._si = base, scans, si
         self._tolerance = table == "tolerances"
 
@@ -142,7 +142,7 @@ class AxisReader:
                 self._refusal('the key that it follows, like of = "plate.kinetic"', of, ".of")
             )
         key = sweepable(of, f"{self._file}: {self._label}.of", self._scans)
-        if key == self._key or NUMBERS[key].unit != self._quantity.unit:
+        if key == self._key or NUMERIC_KEYS[key].unit != self._quantity.unit:
             unit = self._quantity.unit
             required = f"another key {'without a unit' if unit == '1' else f'in {unit}'}"
             raise ValueError(self._refusal(required, of, ".of"))

@@ -37,7 +37,7 @@ from pindrive.study.outputs import Constraint
 
 Columns = dict[str, NDArray[np.float64]]
 
-KEYS: Final = ("text", "image", "grating", "font", "path")
+PAGE_KEYS: Final = ("text", "image", "grating", "font", "path")
 _KEPT: Final = 2
 """Scenes and recorded paths that are kept, of up to 320 MB each: a sweep comes back to the one
 before."""
@@ -112,8 +112,8 @@ def read_page(table: Any, file: Path) -> Page:
     if not isinstance(table, dict):
         raise ValueError(refusal("page", "a table, [page]", quoted(table), str(file)))
     for key in table:
-        if key not in KEYS:
-            raise ValueError(f"{file}: unknown key page.{key}; there are {', '.join(KEYS)}")
+        if key not in PAGE_KEYS:
+            raise ValueError(f"{file}: unknown key page.{key}; there are {', '.join(PAGE_KEYS)}")
     parts: dict[str, Any] = {}
     for key, given in table.items():
         if key == "grating":

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from pindrive import lazy
 from pindrive.device.scanning import Progress
+from pindrive.files.keys import NUMERIC_KEYS, variable
 from pindrive.lazy import mpl_figure, optimize, xr
 from pindrive.motion.motion import Motion
 from pindrive.motion.simulate import motion_of
@@ -62,6 +63,10 @@ class Robustness(lazy.NotebookHtml):
     seed: int
     own: Mapping[str, float]
     """Numbers of the design itself."""
+    drawn: Mapping[str, NDArray[np.float64]]
+    """Drawn values of the varied keys of every existing design, SI."""
+    feasible: NDArray[np.bool_]
+    """True for the existing designs that meet all constraints; all without a specification."""
     values: Mapping[str, NDArray[np.float64]]
     """Watched numbers of every design that exists; NaN where it has none."""
     refusals: tuple[RefusedPoints, ...]
@@ -92,18 +97,29 @@ class Robustness(lazy.NotebookHtml):
 
         return plot_robustness(self, self.name)
 
+    def plot_designs(self) -> mpl_figure.Figure:
+        """Plot the drawn values of the designs that meet and that violate the specification."""
+        from pindrive.plot.robustness import plot_designs
+
+        return plot_designs(self, self.name)
+
     def to_dataset(self) -> xr.Dataset:
-        """The watched numbers of every design, and the yield.
+        """Return the designs with their drawn values and numbers, and the yield.
 
         Returns:
-            A variable over `design` for each watched number, SI, NaN where a design has none; over
-            `limit`: `met`, `met_low` and `met_high`, the part of the designs that meets each limit
-            of the specification and its 95 % confidence interval, and `worst`, the worst value
-            found.
+            Over `design`: the drawn value of each varied key, SI, each watched number, SI (NaN for
+            a design without the number), and `feasible`, true for a design that meets all
+            constraints. Over `limit`: `met`, `met_low` and `met_high`, the fraction of the designs
+            that meets each limit of the specification with its 95 % confidence interval, and
+            `worst`, the worst value found.
         """
         data: dict[str, Any] = {
-            name: ("design", values, attributes(name)) for name, values in self.values.items()
+            variable(key): ("design", values, NUMERIC_KEYS[key].attributes)
+            for key, values in self.drawn.items()
         }
+        words = {"long_name": "true if the design meets all constraints"}
+        data["feasible"] = ("design", self.feasible, words)
+        data |= {name: ("design", values, attributes(name)) for name, values in self.values.items()}
         shares = [share for _, share in self.shares]
         for name, parts in (
             ("met", [share.met / share.of for share in shares]),
@@ -199,6 +215,8 @@ def robustness(
         count,
         seed,
         _own(plan, watched),
+        dict(zip(ranges.scatter, points, strict=True)),
+        np.ones(size, np.bool_) if every is None else every,
         {name: table[name] for name in watched},
         refused,
         int(np.count_nonzero(table["status"])),

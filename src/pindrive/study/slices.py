@@ -13,8 +13,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from pindrive.files.keys import NUMBERS as KEYS
-from pindrive.files.keys import WHOLE, variable
+from pindrive.files.keys import NUMERIC_KEYS, WHOLE, variable
 from pindrive.lazy import xr
 from pindrive.quantities.names import Names, label
 from pindrive.quantities.quantity import Quantity
@@ -32,7 +31,9 @@ from pindrive.study.outputs import (
     known_output,
 )
 
-QUANTITY: Final[dict[str, Quantity]] = {variable(key): q for key, q in KEYS.items()} | NUMBERS
+QUANTITY: Final[dict[str, Quantity]] = {
+    variable(key): q for key, q in NUMERIC_KEYS.items()
+} | NUMBERS
 """Inputs and numbers by the names of their variables."""
 
 _WORDS: Final = {

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from pindrive.device.coil import COIL
 from pindrive.device.electromagnet import DIRECT
-from pindrive.files.keys import NUMBERS, variable
+from pindrive.files.keys import NUMERIC_KEYS, variable
 from pindrive.files.output import OutputError, naming
 from pindrive.lazy import h5netcdf, h5py
 from pindrive.study import outputs
@@ -131,12 +131,12 @@ def lay_out(path: Path, plan: Plan) -> None:
         for dimension in plan.dimensions:
             for key, axis in dimension.axes.items():
                 made = _variable(file, variable(key), (dimension.name,), "<f8")
-                made.attrs.update(NUMBERS[key].attributes, key=key)
+                made.attrs.update(NUMERIC_KEYS[key].attributes, key=key)
                 if getattr(axis, "log", False):
                     made.attrs["spacing"] = "log"
         for key, value in _fixed(plan).items():
             made = file.create_variable(variable(key), (), "<f8", data=value)
-            made.attrs.update(NUMBERS[key].attributes, key=key)
+            made.attrs.update(NUMERIC_KEYS[key].attributes, key=key)
         names = tuple(dimension.name for dimension in plan.dimensions)
         for name in plan.outputs:
             made = _variable(file, name, names, outputs.dtype(name), outputs.missing(name))

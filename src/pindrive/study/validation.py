@@ -10,7 +10,7 @@ import numpy as np
 from pindrive.device.electromagnet import check_one_way
 from pindrive.device.pin_array import check_count
 from pindrive.files.device import DeviceFile
-from pindrive.files.keys import NUMBERS
+from pindrive.files.keys import NUMERIC_KEYS
 from pindrive.motion.coefficients import KINETIC, within
 from pindrive.motion.drive import check_one_kind
 from pindrive.motion.friction import COEFFICIENTS, normal_force
@@ -143,7 +143,7 @@ def _static_below_kinetic(plan: Plan, axes: Mapping[str, Axis], static: str, kin
     largest, smallest = _span(plan, axes, static)[1], _span(plan, axes, kinetic)[0]
     if largest >= smallest and not _below_along(plan, static, kinetic):
         return ""
-    unit = NUMBERS[static]
+    unit = NUMERIC_KEYS[static]
     return (
         f"{static} is below {kinetic} at every point: at most {unit.written(largest)}, "
         f"{kinetic} at least {unit.written(smallest)}"
