@@ -33,7 +33,6 @@ from pindrive.optimisation.goals import Goal
 from pindrive.optimisation.line_speed import speeds
 from pindrive.optimisation.problem import problem_of
 from pindrive.optimisation.search import Population, non_dominated
-from pindrive.study.design import device_at
 
 Array = NDArray[np.float64]
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
@@ -51,7 +50,7 @@ def tables_of(name: str) -> tuple[pd.files.DeviceFile, dict[str, Any]]:  # type:
     tables.get("specification", {}).pop("yield", None)
     for key in ("tolerances", "base", "set"):
         tables.pop(key, None)
-    return problem.plan.device, tables
+    return problem.study.device, tables
 
 
 def timed(device: Any, tables: dict[str, Any]) -> Design:
@@ -68,11 +67,11 @@ def timed(device: Any, tables: dict[str, Any]) -> Design:
 def space_of(problem: DesignProblem, cases: Array) -> DesignSpace:
     """What designs are worth at these conditions."""
     return DesignSpace(
-        plan=problem.plan,
+        study=problem.study,
         variables=problem.variables,
         conditions=problem.conditions,
         cases=cases,
-        links=problem.plan.links,
+        links=problem.study.links,
         constraints=problem.constraints,
         goals=problem.goals,
         line_speeds=speeds,
@@ -159,7 +158,7 @@ def reader() -> None:
     found = timed(device, tables)
     reached = found.goals[0].value
     problem = problem_of(device, tables)
-    (pitch,) = problem.plan.page.page.grating  # type: ignore[union-attr, misc]
+    (pitch,) = problem.study.page.page.grating  # type: ignore[union-attr, misc]
     for levels in LEVELS:
         meets, points = grid_that_meets(problem, levels)
         best = 0.0
@@ -196,7 +195,7 @@ def grid_that_meets(problem: DesignProblem, levels: int) -> tuple[int, list[dict
 
 def climb_of(problem: DesignProblem, at: dict[str, float], pitch: float) -> line_speed.Climb:
     """The way to the hand speed of a device."""
-    file = device_at(problem.plan, at)
+    file = problem.study.device_at(at)
     return line_speed.Climb(file.device, pitch, file.criteria)
 
 

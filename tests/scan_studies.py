@@ -6,9 +6,9 @@ from pathlib import Path
 
 import xarray as xr
 
-from pindrive.study.design import Plan
 from pindrive.study.runner import on_threads, sweep
-from pindrive.study.study import load_study
+from pindrive.study.spec import load_study
+from pindrive.study.study import Study
 
 DEVICE = """
 [drive]
@@ -38,12 +38,12 @@ supply_voltage = "3 V"
 GRATING = '[page]\ngrating = ["4 mm"]\n'
 
 
-def study(text: str, page: str = GRATING, device: str = DEVICE, name: str = "study.toml") -> Plan:
+def study(text: str, page: str = GRATING, device: str = DEVICE, name: str = "study.toml") -> Study:
     Path(name).write_text(text + "\n" + page + device)
     return load_study(name)
 
 
-def swept(plan: Plan, target: str = "study.nc") -> xr.Dataset:
+def swept(plan: Study, target: str = "study.nc") -> xr.Dataset:
     sweep(plan, Path(target), work=on_threads(1))
     with xr.open_dataset(target) as data:
         return data.load()

@@ -7,9 +7,9 @@ from pathlib import Path
 from typer.testing import CliRunner, Result
 
 from pindrive.cli.app import app
-from pindrive.study.design import Plan
 from pindrive.study.runner import sweep
-from pindrive.study.study import load_study
+from pindrive.study.spec import load_study
+from pindrive.study.study import Study
 
 HERE = Path(__file__).parent
 BASE = f'base = "{(HERE / "minimal.toml").as_posix()}"\n'
@@ -27,7 +27,7 @@ count = 2048
 """
 
 
-def plan(text: str = SAMPLED, name: str = "study.toml") -> Plan:
+def plan(text: str = SAMPLED, name: str = "study.toml") -> Study:
     Path(name).write_text(BASE + text)
     return load_study(name)
 

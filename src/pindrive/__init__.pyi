@@ -26,7 +26,7 @@ from .study.local_sensitivity import local_sensitivity as local_sensitivity
 from .study.robustness import robustness as robustness
 from .study.sensitivity import sobol as sobol
 from .study.study import Study as Study
-from .study.study import load_study as load_study
+from .study.spec import load_study as load_study
 
 __all__: list[str]
 __version__: str

@@ -19,7 +19,7 @@ from pindrive.quantities.quantity import counted
 from pindrive.quantities.table import check
 from pindrive.study.outputs import Share
 from pindrive.study.sensitivity import sobol
-from pindrive.study.study import load_study
+from pindrive.study.spec import load_study
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
 

@@ -16,12 +16,12 @@ from pindrive.cli.study_tables import (
     sobol_report,
 )
 from pindrive.quantities.names import label
-from pindrive.study.design import Plan
 from pindrive.study.outputs import NUMBERS
 from pindrive.study.robustness import Robustness, robustness
 from pindrive.study.sensitivity import SobolIndices, sobol
 from pindrive.study.slices import elasticity
-from pindrive.study.study import load_study
+from pindrive.study.spec import load_study
+from pindrive.study.study import Study
 from table_reading import numbers, printed, table
 
 STUDY = Path(__file__).parents[2] / "examples" / "tactile-mouse-study.toml"
@@ -34,7 +34,7 @@ def found() -> SobolIndices:
 
 
 @pytest.fixture(scope="module")
-def plan(tmp_path_factory: pytest.TempPathFactory) -> Plan:
+def plan(tmp_path_factory: pytest.TempPathFactory) -> Study:
     file = tmp_path_factory.mktemp("tables") / "study.toml"
     file.write_text(
         f'base = "{(Path(__file__).parents[1] / "minimal.toml").as_posix()}"\n'
@@ -45,7 +45,7 @@ def plan(tmp_path_factory: pytest.TempPathFactory) -> Plan:
 
 
 @pytest.fixture(scope="module")
-def scattered(plan: Plan) -> Robustness:
+def scattered(plan: Study) -> Robustness:
     return robustness(plan, count=1000)
 
 
@@ -89,7 +89,7 @@ def test_indices_stand_under_their_order(found: SobolIndices, order: str, title:
     assert compared > 30
 
 
-def test_quantiles_of_the_designs(scattered: Robustness, plan: Plan) -> None:
+def test_quantiles_of_the_designs(scattered: Robustness, plan: Study) -> None:
     heads, *rows = table(robustness_report(plan, scattered), "How the designs scatter")
     assert heads == ["number", "design", "1 %", "5 %", "50 %", "95 %", "99 %", "unit", "exists in"]
     for row in rows:
@@ -105,7 +105,7 @@ def test_quantiles_of_the_designs(scattered: Robustness, plan: Plan) -> None:
         assert row[8] == "all"
 
 
-def test_the_yield(scattered: Robustness, plan: Plan) -> None:
+def test_the_yield(scattered: Robustness, plan: Study) -> None:
     _, *rows, total = table(robustness_report(plan, scattered), "Yield: of 1 000 designs")
     limits = {"swing ≥ 0.9 mm": True, "swing ≤ 0.95 mm": False, "settling_time ≤ 100 ms": False}
     values = scattered.values
@@ -124,7 +124,7 @@ def test_the_yield(scattered: Robustness, plan: Plan) -> None:
     assert float(total[1].removesuffix(" %")) == pytest.approx(100.0 * every.mean())
 
 
-def test_worst_cases(scattered: Robustness, plan: Plan) -> None:
+def test_worst_cases(scattered: Robustness, plan: Study) -> None:
     heads, *rows = table(robustness_report(plan, scattered), "The worst found for")
     assert heads == ["key", "design", "swing", "swing", "settling_time", "unit"]
     found = {row[0]: row for row in rows}

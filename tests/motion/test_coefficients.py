@@ -16,7 +16,7 @@ from pindrive import Contact, Drive, Profile, Release, load_device, simulate, si
 from pindrive.device import Device, Electromagnet
 from pindrive.motion.coefficients import Coefficients
 from pindrive.study.evaluate import evaluate, follow
-from pindrive.study.study import load_study
+from pindrive.study.spec import load_study
 from pindrive.study.validation import coefficient_range
 
 G = 9.80665

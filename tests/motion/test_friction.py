@@ -11,7 +11,7 @@ from command import GOOD, run
 from pindrive import Contact, Drive
 from pindrive.device import Device
 from pindrive.motion.coefficients import Coefficients
-from pindrive.study.study import load_study
+from pindrive.study.spec import load_study
 from pindrive.study.validation import coefficient_range
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")

@@ -18,7 +18,7 @@ from pindrive.files.device import load_device
 from pindrive.motion.simulate import motion_of
 from pindrive.study.robustness import robustness
 from pindrive.study.sensitivity import sobol
-from pindrive.study.study import load_study
+from pindrive.study.spec import load_study
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
 

@@ -52,7 +52,7 @@ def test_a_fit_with_profiles_from_a_cluster_is_that_found_here(address: str) -> 
 def test_whole_devices_go_to_workers_and_come_back_in_order(address: str) -> None:
     plan = read_problem(
         EXAMPLES / "tactile-reader-problem.toml", ["control.sample_rate=250 Hz"]
-    ).plan
+    ).study
     asked = [Asked({"drive.stiffness": k}, 0.2, 1.0) for k in (150.0, 600.0)]
     with crew(address) as workers:
         found = [*workers.spread(speeds, plan, [asked[:1], asked[1:]])]

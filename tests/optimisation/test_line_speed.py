@@ -14,30 +14,30 @@ from pindrive.evaluation.resolution import TRIED, SpeedLimit, Trial, largest_spe
 from pindrive.optimisation import Effort, line_speed, read_problem
 from pindrive.optimisation.goals import Asked
 from pindrive.optimisation.line_speed import speeds
-from pindrive.study.design import Plan
+from pindrive.study.study import Study
 
 PROBLEM = EXAMPLES / "tactile-reader-problem.toml"
 
 
 @pytest.fixture(scope="module")
-def plan() -> Plan:
-    return read_problem(PROBLEM, ["control.sample_rate=250 Hz"]).plan
+def plan() -> Study:
+    return read_problem(PROBLEM, ["control.sample_rate=250 Hz"]).study
 
 
 @pytest.fixture(scope="module")
-def limit(plan: Plan) -> SpeedLimit:
+def limit(plan: Study) -> SpeedLimit:
     file = plan.device
     (found,) = largest_speeds(file.device, [3e-3], criteria=file.criteria)
     return found
 
 
-def test_a_confirmed_speed_is_that_of_the_whole_grid(plan: Plan, limit: SpeedLimit) -> None:
+def test_a_confirmed_speed_is_that_of_the_whole_grid(plan: Study, limit: SpeedLimit) -> None:
     ((speed, trials),) = speeds(plan, [Asked({}, confirmed=True)])
     assert speed == limit.speed
     assert trials <= TRIED + 10
 
 
-def test_a_bracket_takes_few_trials(plan: Plan, limit: SpeedLimit) -> None:
+def test_a_bracket_takes_few_trials(plan: Study, limit: SpeedLimit) -> None:
     """To a hundredth, or of a device that is slower than another to a twentieth."""
     guesses = [
         Asked({}),
@@ -52,7 +52,7 @@ def test_a_bracket_takes_few_trials(plan: Plan, limit: SpeedLimit) -> None:
         assert (1.0 - precision) * limit.speed <= speed <= 1.012 * limit.speed
 
 
-def test_a_device_that_cannot_exist_has_no_speed(plan: Plan) -> None:
+def test_a_device_that_cannot_exist_has_no_speed(plan: Study) -> None:
     at = {"plate.kinetic": 0.02, "plate.static": 0.01}
     ((speed, trials),) = speeds(plan, [Asked(at)])
     assert isnan(speed) and trials == 0
@@ -91,7 +91,9 @@ def test_a_search_takes_a_twentieth_of_the_trials_of_a_grid(
     assert reached.value >= max(grid)
 
 
-def test_a_gap_below_a_speed_ends_the_interval(plan: Plan, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_gap_below_a_speed_ends_the_interval(
+    plan: Study, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Lines that are distinct again at a faster hand are so by chance, and do not count."""
 
     def trial(device: pd.Device, pitch: float, width: float, speed: float, _: object) -> Trial:

@@ -41,7 +41,7 @@ def test_the_catalogue_that_stands_in_a_comment_is_right_too() -> None:
 def test_a_design_problem_for_a_whole_device() -> None:
     assert run("init", "problem.toml", "--problem", "--device").exit_code == 0
     problem = read_problem("problem.toml")
-    assert problem.plan.page and [goal.text() for goal in problem.goals] == [
+    assert problem.study.page and [goal.text() for goal in problem.goals] == [
         "maximise distinct_speed"
     ]
 

@@ -16,7 +16,7 @@ from figure_reading import collisions, legend_of, lines, patch_spans, points
 from pindrive.plot.robustness import plot_designs, plot_robustness
 from pindrive.plot.style import PALETTE
 from pindrive.study.robustness import Robustness, robustness
-from pindrive.study.study import load_study
+from pindrive.study.spec import load_study
 
 BASE = f'base = "{(Path(__file__).parents[1] / "minimal.toml").as_posix()}"\n'
 TOLERANCES = """

@@ -16,7 +16,7 @@ from pindrive.plot.sensitivity import _BAR, _FIRST, _TOTAL, plot_sobol_indices
 from pindrive.plot.style import PALETTE
 from pindrive.study.sensitivity import SobolIndices, sobol
 from pindrive.study.slices import symbol, words
-from pindrive.study.study import load_study
+from pindrive.study.spec import load_study
 
 STUDY = Path(__file__).parents[2] / "examples" / "tactile-mouse-study.toml"
 KEYS = ("plate_kinetic", "finger_kinetic", "mass", "stiffness", "damping_ratio", "mouse_velocity")

@@ -24,7 +24,7 @@ from pindrive.plot.contours import draw_contours, find_jumps, jump_key, line_col
 from pindrive.plot.slices import _flattened, plot_study
 from pindrive.study.runner import sweep
 from pindrive.study.slices import Slice, quantiles
-from pindrive.study.study import load_study
+from pindrive.study.spec import load_study
 
 Values = NDArray[np.float64]
 BASE = f'base = "{(Path(__file__).parents[1] / "minimal.toml").as_posix()}"\n'

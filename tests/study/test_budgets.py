@@ -8,7 +8,7 @@ import pytest
 
 from command import GOOD, run
 from pindrive.files.device import ConfigError
-from pindrive.study.study import load_study
+from pindrive.study.spec import load_study
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
 

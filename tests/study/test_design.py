@@ -14,18 +14,18 @@ from scipy import stats
 
 from pindrive.files.device import ConfigError
 from pindrive.quantities.status import Status
-from pindrive.study.design import Plan
 from pindrive.study.distributions import BLOCK, Distribution, Even, Sample
 from pindrive.study.evaluate import evaluate, follow, is_slow, refusals
 from pindrive.study.outputs import MEASURED, OUTPUTS
-from pindrive.study.study import load_study
+from pindrive.study.spec import load_study
+from pindrive.study.study import Study
 
 HERE = Path(__file__).parents[1]
 BASE = f'base = "{(HERE / "minimal.toml").as_posix()}"\n'
 INLINE = (HERE / "minimal.toml").read_text()
 
 
-def study(folder: Path, text: str, base: str = BASE) -> Plan:
+def study(folder: Path, text: str, base: str = BASE) -> Study:
     path = folder / "study.toml"
     path.write_text(base + text)
     return load_study(path)

@@ -16,14 +16,14 @@ from pindrive.cli.app import app
 from pindrive.files.device import ConfigError, load_device
 from pindrive.motion.simulate import motion_of
 from pindrive.quantities.drive import DRIVE_QUANTITIES
-from pindrive.study.design import Plan
 from pindrive.study.distributions import Linked
 from pindrive.study.evaluate import evaluate
 from pindrive.study.local_sensitivity import elasticities
 from pindrive.study.outputs import MEASURED
 from pindrive.study.robustness import robustness
 from pindrive.study.sensitivity import sobol
-from pindrive.study.study import load_study
+from pindrive.study.spec import load_study
+from pindrive.study.study import Study
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
 
@@ -60,7 +60,7 @@ displacement = "2 mm"
 """
 
 
-def study(text: str, device: str = PLAIN) -> Plan:
+def study(text: str, device: str = PLAIN) -> Study:
     Path("device.toml").write_text(device, "utf-8")
     Path("study.toml").write_text(f'base = "device.toml"\n{text}', "utf-8")
     return load_study("study.toml")

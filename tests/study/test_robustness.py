@@ -11,10 +11,10 @@ from typer.testing import CliRunner
 
 from pindrive import Contact, Drive, Release, simulate_batch
 from pindrive.cli.app import app
-from pindrive.study.design import Plan
 from pindrive.study.outputs import Share
 from pindrive.study.robustness import robustness
-from pindrive.study.study import load_study
+from pindrive.study.spec import load_study
+from pindrive.study.study import Study
 
 HERE = Path(__file__).parents[1]
 STUDY = HERE.parent / "examples" / "tactile-mouse-study.toml"
@@ -26,7 +26,7 @@ mouse_velocity = { uniform = ["80 mm/s", "130 mm/s"] }
 """
 
 
-def study(folder: Path, text: str) -> Plan:
+def study(folder: Path, text: str) -> Study:
     path = folder / "study.toml"
     path.write_text(f'base = "{(HERE / "minimal.toml").as_posix()}"\n{text}')
     return load_study(path)

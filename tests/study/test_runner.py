@@ -17,9 +17,9 @@ import xarray as xr
 from pindrive import Contact, Drive, Release, simulate
 from pindrive.files.output import OutputError
 from pindrive.study import runner
-from pindrive.study.design import Plan
+from pindrive.study.spec import load_study
 from pindrive.study.store import Journal, Piece, Store
-from pindrive.study.study import load_study
+from pindrive.study.study import Study
 from studies import HERE, SAMPLED, files, plan, run, uninterrupted
 
 
@@ -306,7 +306,7 @@ def test_one_process_at_a_time() -> None:
 
 
 def test_a_failure_before_the_first_chunk_leaves_nothing() -> None:
-    def broken(plan: Plan, chunks: list[int]) -> Iterator[tuple[int, list[Piece]]]:
+    def broken(plan: Study, chunks: list[int]) -> Iterator[tuple[int, list[Piece]]]:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     with pytest.raises(OutputError, match="No space left on device; no chunk was finished yet"):

@@ -39,7 +39,7 @@ from pindrive.study.robustness import robustness
 from pindrive.study.runner import on_threads, sweep
 from pindrive.study.sensitivity import sobol
 from pindrive.study.slices import Slice
-from pindrive.study.study import load_study
+from pindrive.study.spec import load_study
 from scan_studies import COILED, DEVICE, GRATING, study, swept
 
 AROUND = ("control", "array", "scan", "criteria")

@@ -20,7 +20,7 @@ from pindrive.study.design import ranges_of
 from pindrive.study.distributions import Distribution, Linked
 from pindrive.study.local_sensitivity import elasticities
 from pindrive.study.sensitivity import sobol, sobol_indices
-from pindrive.study.study import load_study
+from pindrive.study.spec import load_study
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 STUDY = EXAMPLES / "tactile-mouse-study.toml"

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from command import GOOD, refused, run
-from pindrive.study.study import load_study
+from pindrive.study.spec import load_study
 from pindrive.study.template import study_template
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")

@@ -37,10 +37,10 @@ def design_report(found: Design) -> RenderableType:
 
 
 def _values(found: Design) -> Table:
-    name = found.problem.plan.name or found.device.name
+    name = found.problem.study.name or found.device.name
     title = f"Design: {name}" if found.feasible else f"No design meets the constraints of {name}"
     table = new_table(title, "key", ">value", "unit", ">before", "chosen")
-    before = found.problem.plan.device.values()
+    before = found.problem.study.device.values()
     of = {key: v for v in found.problem.variables for key in v.axes}
     ends = dict(found.at_ends)
     for key, value in found.values.items():

@@ -40,20 +40,20 @@ def robustness(
     """
     from pindrive.study.robustness import Robustness
     from pindrive.study.robustness import robustness as analyse
-    from pindrive.study.study import load_study
+    from pindrive.study.spec import load_study
 
     with refusing():
-        plan = load_study(study, overrides or ())
+        loaded = load_study(study, overrides or ())
         targets = pictures(plot, Robustness.plot)
         title = "Draws within the tolerances"
         targets += datasets(output, title, ("design",), Robustness.to_dataset)
-        with results(targets, plan.inputs, force=force) as write:
+        with results(targets, loaded.inputs, force=force) as write:
             with points_bar() as tell:
-                found = analyse(plan, count=draws, seed=seed, threads=threads, progress=tell)
+                found = analyse(loaded, count=draws, seed=seed, threads=threads, progress=tell)
             write(found)
     from pindrive.cli.study_tables import robustness_report, say_coefficient
     from pindrive.cli.tables import show
 
-    show(robustness_report(plan, found))
-    say_coefficient(plan, tolerances=True)
+    show(robustness_report(loaded, found))
+    say_coefficient(loaded, tolerances=True)
     say_written(targets)

@@ -57,18 +57,18 @@ def sensitivity(
     """
     from pindrive.study.outputs import known_output
     from pindrive.study.sensitivity import SobolIndices, askable, sobol
-    from pindrive.study.study import load_study
+    from pindrive.study.spec import load_study
 
     with refusing():
-        plan = load_study(study, overrides or ())
+        loaded = load_study(study, overrides or ())
         targets = pictures(plot, SobolIndices.plot)
         title = "Sobol' indices"
         targets += datasets(output, title, ("number", "key"), SobolIndices.to_dataset)
-        with results(targets, plan.inputs, force=force) as write:
-            among = askable(plan)
+        with results(targets, loaded.inputs, force=force) as write:
+            among = askable(loaded)
             with points_bar() as tell:
                 found = sobol(
-                    plan,
+                    loaded,
                     tolerances=tolerances,
                     numbers=[known_output(name, "--number", among) for name in number or ()],
                     rows=rows,
@@ -82,5 +82,5 @@ def sensitivity(
     from pindrive.cli.tables import show
 
     show(sobol_report(found))
-    say_coefficient(plan, tolerances=tolerances)
+    say_coefficient(loaded, tolerances=tolerances)
     say_written(targets)

@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
     from rich.table import Table
 
-    from pindrive.study.design import Plan
     from pindrive.study.evaluate import RefusedPoints
     from pindrive.study.local_sensitivity import Elasticities
     from pindrive.study.outputs import Share
@@ -40,17 +39,18 @@ if TYPE_CHECKING:
     from pindrive.study.runner import Sweep
     from pindrive.study.sensitivity import SobolIndices
     from pindrive.study.slices import Panel
+    from pindrive.study.study import Study
 
 QUANTILES = (0.01, 0.05, 0.5, 0.95, 0.99)
 _SLICE = 1 << 24
 """Points of which the status is read at a time."""
 
 
-def sweep_report(plan: Plan, done: Sweep) -> list[str]:
+def sweep_report(study: Study, done: Sweep) -> list[str]:
     """The result of a sweep, in lines."""
     points, size = counted(done.points, "point"), human_bytes(done.path.stat().st_size)
     if not done.complete:
-        of = counted(plan.size, "point")
+        of = counted(study.size, "point")
         lines = [f"Stopped at {count(done.points)} of {of}; --resume continues"]
     elif done.worked_out:
         speed = count(round(done.worked_out / done.seconds))
@@ -71,7 +71,7 @@ def sweep_report(plan: Plan, done: Sweep) -> list[str]:
         lines += compliance_words(done.path)
     if done.refused and done.complete:
         lines.append(f"without numbers: {percent(done.refused, done.points)}, by their status")
-        lines += [_why_without(plan, done, *status) for status in _statuses(done)]
+        lines += [_why_without(study, done, *status) for status in _statuses(done)]
     return lines
 
 
@@ -84,11 +84,11 @@ def compliance_words(path: Path) -> list[str]:
     return [f"specification met: {percent(*counts)} of {of} that exist"]
 
 
-def _why_without(plan: Plan, done: Sweep, status: str, number: int, first: int) -> str:
+def _why_without(study: Study, done: Sweep, status: str, number: int, first: int) -> str:
     """Return the number of points with a status, and the reason of the first one."""
-    columns = plan.columns(first, first + 1)
+    columns = study.columns(first, first + 1)
     at = {key: float(values.ravel()[0]) for key, values in columns.items()}
-    reason = why(plan, at)
+    reason = why(study, at)
     shown = f"{'' if number == 1 else ', the first'}: {reason}" if reason else ""
     return f"  {percent(number, done.points)} {status}{shown}"
 
@@ -228,13 +228,13 @@ def _refused(found: Sequence[RefusedPoints], of: int, what: str) -> list[str]:
     return lines
 
 
-def robustness_report(plan: Plan, found: Robustness) -> RenderableType:
+def robustness_report(study: Study, found: Robustness) -> RenderableType:
     """Spread of the watched numbers, yield, and the worst cases."""
     tables: list[RenderableType] = [_spread(found)]
     if found.all_met:
         tables.append(_yield(found, found.all_met))
-        tables.append(_worst_cases(plan, found))
-    lines = whole_lines(_draws(plan, found))
+        tables.append(_worst_cases(study, found))
+    lines = whole_lines(_draws(study, found))
     return Group(*tables, *lines)  # a command that is broken into lines cannot be copied
 
 
@@ -267,12 +267,12 @@ def _share(share: Share) -> tuple[str, str]:
     return share.text, f"{low:.3f} to {high:.3f} %"
 
 
-def _worst_cases(plan: Plan, found: Robustness) -> Table:
+def _worst_cases(study: Study, found: Robustness) -> Table:
     """The values at which each constraint is missed by the most, beside the design's own."""
     heads = (f">{label(case.constraint.name)}" for case in found.worst)
     made = new_table("The worst found for", "key", ">design", *heads, "unit")
     for key in found.worst[0].keys:
-        quantity, own = NUMERIC_KEYS[key], base_value(plan.device, key)
+        quantity, own = NUMERIC_KEYS[key], base_value(study.device, key)
         values = [quantity.digits(case.keys[key]) for case in found.worst]
         shown = quantity.digits(own) if isinstance(own, float) else "-"
         made.add_row(key, shown, *values, quantity.display_unit)
@@ -289,7 +289,7 @@ def _worst_cases(plan: Plan, found: Robustness) -> Table:
     return made
 
 
-def _draws(plan: Plan, found: Robustness) -> list[str]:
+def _draws(study: Study, found: Robustness) -> list[str]:
     lines = [f"{counted(found.draws, 'independent random draw')}, seed {found.seed}."]
     lines += _refused(found.refusals, found.draws, "draw")
     if any(share.without for _, share in found.shares):
@@ -297,10 +297,10 @@ def _draws(plan: Plan, found: Robustness) -> list[str]:
     if found.stopped:
         stopped = counted(found.stopped, "design was", "designs were")
         lines.append(f"{stopped} followed only up to the largest number of events.")
-    for case in found.worst if plan.device.path != plan.path else ():
+    for case in found.worst if study.device.path != study.path else ():
         given = " ".join(
             [
-                *(f"--set {key}={shlex.quote(text)}" for key, text in _set_besides(plan, case)),
+                *(f"--set {key}={shlex.quote(text)}" for key, text in _set_besides(study, case)),
                 *(
                     f'--set {key}="{NUMERIC_KEYS[key].written(value)}"'
                     for key, value in case.keys.items()
@@ -308,9 +308,9 @@ def _draws(plan: Plan, found: Robustness) -> list[str]:
             ]
         )
         command = (
-            f"scan {plan.device.path} {plan.page.page.options}"
-            if plan.page
-            else f"simulate {plan.device.path}"
+            f"scan {study.device.path} {study.page.page.options}"
+            if study.page
+            else f"simulate {study.device.path}"
         )
         lines.append(f"Worst {label(case.constraint.name)}: pindrive {command} {given}")
     if not found.all_met:
@@ -318,18 +318,18 @@ def _draws(plan: Plan, found: Robustness) -> list[str]:
     return lines
 
 
-def _set_besides(plan: Plan, case: WorstCase) -> Iterator[tuple[str, str]]:
+def _set_besides(study: Study, case: WorstCase) -> Iterator[tuple[str, str]]:
     """Return the settings of the study beside the case, as the command line takes them."""
-    for setting in plan.device.settings:
+    for setting in study.device.settings:
         (key,) = NAMES.matches(setting.key)
         if key not in case.keys:
             value = setting.value
             yield key, value if isinstance(value, str) else json.dumps(value)
 
 
-def say_coefficient(plan: Plan, *, tolerances: bool = False) -> None:
+def say_coefficient(study: Study, *, tolerances: bool = False) -> None:
     """Print what becomes of the plate's friction coefficient, where the study changes it."""
-    found = coefficient_words(plan, tolerances=tolerances)
+    found = coefficient_words(study, tolerances=tolerances)
     if found:
         words, doubtful = found
         typer.echo(f"warning: {words}" if doubtful else words, err=doubtful)

@@ -40,7 +40,7 @@ def sweep(
     """
     from pindrive.study.runner import on_cluster, on_threads
     from pindrive.study.runner import sweep as compute
-    from pindrive.study.study import load_study
+    from pindrive.study.spec import load_study
 
     target = output or study.with_suffix(".nc")
 
@@ -54,12 +54,12 @@ def sweep(
             raise ValueError("give --resume or --force, not both")
         if threads and cluster:
             raise ValueError("give --threads or --cluster, not both: workers have their own")
-        plan = load_study(study, overrides or ())
-        if not plan.dimensions:
+        loaded = load_study(study, overrides or ())
+        if not loaded.dimensions:
             raise ValueError(f"{study}: has no axes; write what to vary in [axes]")
         with points_bar() as tell:
             done = compute(
-                plan,
+                loaded,
                 target,
                 resume=resume,
                 force=force,
@@ -69,6 +69,6 @@ def sweep(
             )
     from pindrive.cli.study_tables import say_coefficient, sweep_report
 
-    for line in sweep_report(plan, done):
+    for line in sweep_report(loaded, done):
         typer.echo(line)
-    say_coefficient(plan)
+    say_coefficient(loaded)

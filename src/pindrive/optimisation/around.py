@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import combinations
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pindrive.optimisation.design_space import DesignSpace
 from pindrive.optimisation.goals import Variable
 from pindrive.optimisation.results import Alternative, Map
+
+if TYPE_CHECKING:
+    from pindrive.optimisation.design_space import DesignSpace
 
 Array = NDArray[np.float64]
 MAPPED: Final = 3

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import product
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,11 +17,13 @@ from pindrive.optimisation.goals import PRICE, SPEED, Asked, Goal, Variable
 from pindrive.optimisation.scanned import Scanned
 from pindrive.optimisation.search import Population
 from pindrive.quantities.budgets import worker_count
-from pindrive.study.design import Plan
 from pindrive.study.distributions import Linked, with_links
 from pindrive.study.evaluate import evaluate, exist, is_slow
 from pindrive.study.outputs import DESIGN_OUTPUTS, NUMBERS, Constraint
 from pindrive.study.workers import Cluster, standing
+
+if TYPE_CHECKING:
+    from pindrive.study.study import Study
 
 Array = NDArray[np.float64]
 POINTS: Final = 1 << 18
@@ -45,7 +47,7 @@ class DesignSpace:
     """Designs as points of the unit cube, and what they are worth under conditions.
 
     Attributes:
-        plan: the device and its page.
+        study: the device and its page.
         variables: of a design; a point has a part from 0 to 1 for each.
         conditions: under which it is followed, likewise.
         cases: the conditions at which designs are compared, shape (c, conditions).
@@ -60,14 +62,14 @@ class DesignSpace:
         tell: called after each part of the work.
     """
 
-    plan: Plan
+    study: Study
     variables: tuple[Variable, ...]
     conditions: tuple[Variable, ...]
     cases: Array
     links: Mapping[str, Linked]
     constraints: tuple[Constraint, ...]
     goals: tuple[Goal, ...]
-    line_speeds: Callable[[Plan, Sequence[Asked]], list[tuple[float, int]]]
+    line_speeds: Callable[[Study, Sequence[Asked]], list[tuple[float, int]]]
     threads: int | None = None
     crew: Cluster | None = None
     """Workers elsewhere, which take scans, and motions by the ten thousand; None: none are."""
@@ -98,12 +100,12 @@ class DesignSpace:
     def slow(self) -> bool:
         """True if motions are simulated one by one."""
         swept = {key: 0 for v in (*self.variables, *self.conditions) for key in v.axes}
-        return self.plan.page is None and is_slow(self.plan.device, swept)
+        return self.study.page is None and is_slow(self.study.device, swept)
 
     @property
     def scans(self) -> bool:
         """True if a page is scanned."""
-        return self.plan.page is not None
+        return self.study.page is not None
 
     # ---- points ----------------------------------------------------------------------------------
 
@@ -117,7 +119,7 @@ class DesignSpace:
         for condition, parts in zip(self.conditions, cases.T, strict=True):
             for key, values in condition.columns(parts).items():
                 found[key] = np.tile(values, n)
-        linked = with_links(self.plan.device, found, self.links)
+        linked = with_links(self.study.device, found, self.links)
         return {key: np.broadcast_to(values, (n * c,)) for key, values in linked.items()}
 
     def prices(self, points: Array) -> Array:
@@ -269,13 +271,13 @@ class DesignSpace:
         """The outputs at points, by the workers elsewhere where there are any."""
         each = PORTION if self.scans or self.slow else SENT
         if self.crew is None or size <= each:
-            return evaluate(self.plan, columns, size, outputs, self.threads)
+            return evaluate(self.study, columns, size, outputs, self.threads)
         portions = []
         for begin in range(0, size, each):
             end = min(begin + each, size)
             part = {key: values[begin:end] for key, values in columns.items()}
             portions.append((part, end - begin, outputs))
-        done = [*self.crew.spread(_evaluate, self.plan, portions)]
+        done = [*self.crew.spread(_evaluate, self.study, portions)]
         return {name: np.concatenate([table[name] for table in done]) for name in outputs}
 
     def _speeds(
@@ -290,11 +292,11 @@ class DesignSpace:
         each = min(PORTION, -(-len(asked) // processes)) or 1
         portions = [asked[i : i + each] for i in range(0, len(asked), each)]
         if self.crew is not None:
-            rows = [*self.crew.spread(self.line_speeds, self.plan, portions)]
+            rows = [*self.crew.spread(self.line_speeds, self.study, portions)]
         elif processes == 1 or len(portions) == 1:
-            rows = [self.line_speeds(self.plan, portion) for portion in portions]
+            rows = [self.line_speeds(self.study, portion) for portion in portions]
         else:
-            rows = standing(processes).spread(self.line_speeds, self.plan, portions)
+            rows = standing(processes).spread(self.line_speeds, self.study, portions)
         every = [row for portion in rows for row in portion]
         self.count.scans += sum(trials for _, trials in every)
         return np.array([speed for speed, _ in every])
@@ -343,10 +345,12 @@ class DesignSpace:
         return Population(points, *self(points))
 
 
-def _evaluate(plan: Plan, portion: tuple[dict[str, Array], int, tuple[str, ...]]) -> dict[str, Any]:
+def _evaluate(
+    study: Study, portion: tuple[dict[str, Array], int, tuple[str, ...]]
+) -> dict[str, Any]:
     """The outputs at a portion of points, with one thread."""
     columns, size, outputs = portion
-    return evaluate(plan, columns, size, outputs, 1)
+    return evaluate(study, columns, size, outputs, 1)
 
 
 def first_cases(conditions: tuple[Variable, ...]) -> Array:

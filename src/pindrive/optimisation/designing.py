@@ -30,7 +30,6 @@ from pindrive.optimisation.scan_search import search_scans
 from pindrive.optimisation.search import Population, non_dominated, search
 from pindrive.optimisation.tolerance import excess_as_built, reserves, share_of
 from pindrive.quantities.refusal import check_whole
-from pindrive.study.design import device_at
 from pindrive.study.distributions import with_links
 from pindrive.study.outputs import Constraint
 from pindrive.study.workers import Cluster, crew
@@ -127,11 +126,11 @@ class _Optimisation:
         self.problem, self.seed = problem, seed
         self.rng = np.random.default_rng(seed)
         self.space = DesignSpace(
-            plan=problem.plan,
+            study=problem.study,
             variables=problem.variables,
             conditions=problem.conditions,
             cases=first_cases(problem.conditions),
-            links=problem.plan.links,
+            links=problem.study.links,
             constraints=problem.constraints,
             goals=problem.goals,
             line_speeds=speeds,
@@ -202,7 +201,7 @@ class _Optimisation:
     def _as_built(self, found: Population, chosen: int) -> tuple[Array, DeviceFile, Array | None]:
         """Return the chosen design, its device file, and the excess of toleranced devices."""
         point = found.points[chosen]
-        device = device_at(self.problem.plan, self._values(point))
+        device = self.problem.study.device_at(self._values(point))
         if not self.problem.tables.get("tolerances") or not self.problem.constraints:
             return point, device, None
         space = replace(self.space, constraints=self.problem.constraints)
@@ -411,8 +410,8 @@ class _Optimisation:
         found: dict[str, Array] = {}
         for variable, part in zip(self.space.variables, point, strict=True):
             found |= variable.columns(np.asarray(part))
-        plan = self.problem.plan
-        linked = with_links(plan.device, found, plan.links)
+        study = self.problem.study
+        linked = with_links(study.device, found, study.links)
         return {key: float(value) for key, value in linked.items()}
 
     def _parts(self, point: Array) -> dict[str, str]:

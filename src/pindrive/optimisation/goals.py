@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from pindrive.optimisation.catalogue import Catalogue
 from pindrive.quantities.names import label
 from pindrive.quantities.value import concise
-from pindrive.study.design import Plan
 from pindrive.study.distributions import Distribution, Grid
 from pindrive.study.outputs import Constraint
+from pindrive.study.study import Study
 
 Array = NDArray[np.float64]
 
@@ -106,7 +106,7 @@ class DesignProblem:
     """Design problem.
 
     Attributes:
-        plan: the device, what follows what, and the page; its axes are variables and conditions.
+        study: the device, what follows what, and the page; its axes are variables and conditions.
         tables: as they were written.
         variables: what may be chosen.
         conditions: under which each constraint must be met, and each goal counts by its worst.
@@ -118,7 +118,7 @@ class DesignProblem:
         si: whether bare numbers in `tables` are SI, as from Python.
     """
 
-    plan: Plan
+    study: Study
     tables: Mapping[str, Any]
     variables: tuple[Variable, ...]
     conditions: tuple[Variable, ...]
@@ -131,7 +131,7 @@ class DesignProblem:
     @property
     def inputs(self) -> tuple[Path, ...]:
         """The files that it was read from."""
-        return (*self.plan.inputs, *(catalogue.path for catalogue in self.catalogues))
+        return (*self.study.inputs, *(catalogue.path for catalogue in self.catalogues))
 
     def __repr__(self) -> str:
         """Return the variables and goals in a line."""

@@ -19,7 +19,7 @@ from pindrive.device.device import Criteria, Device
 from pindrive.evaluation.resolution import PRECISION, TRIED, check_work, two_lines
 from pindrive.optimisation.goals import Asked
 from pindrive.quantities.table import default
-from pindrive.study.design import Plan, device_at
+from pindrive.study.study import Study
 
 FINE: Final = 1e-2
 """Part of a speed to which it is found, unless it is confirmed."""
@@ -31,21 +31,21 @@ SLOWEST: Final[float] = default("speed.slowest")
 FASTEST: Final[float] = default("speed.fastest")
 
 
-def speeds(plan: Plan, portion: Sequence[Asked]) -> list[tuple[float, int]]:
+def speeds(study: Study, portion: Sequence[Asked]) -> list[tuple[float, int]]:
     """The largest speed of each device, m/s, and the trials that it took.
 
     NaN where there is no such device, or no speed was found at which the lines are distinct.
     """
-    return [_speed(plan, asked) for asked in portion]
+    return [_speed(study, asked) for asked in portion]
 
 
-def _speed(plan: Plan, asked: Asked) -> tuple[float, int]:
-    assert plan.page
+def _speed(study: Study, asked: Asked) -> tuple[float, int]:
+    assert study.page
     found, count = np.inf, 0
     try:
-        file = device_at(plan, asked.at)
+        file = study.device_at(asked.at)
         device, criteria = file.device, file.criteria
-        pitches = plan.page.page.grating or ()
+        pitches = study.page.page.grating or ()
         check_work(device, pitches, [0.5 * p for p in pitches], (SLOWEST, FASTEST))
         for pitch in pitches:
             climb = Climb(device, pitch, criteria)

@@ -25,7 +25,7 @@ from pindrive.quantities import budgets
 from pindrive.quantities.names import Names, label
 from pindrive.quantities.refusal import quoted, refusal
 from pindrive.study.axes import as_read, written_axes
-from pindrive.study.design import COUNTS, Dimension, Plan, read_page
+from pindrive.study.design import COUNTS, Dimension, read_page
 from pindrive.study.distributions import Distribution
 from pindrive.study.outputs import (
     DESIGN_OUTPUTS,
@@ -36,7 +36,8 @@ from pindrive.study.outputs import (
     is_measured,
     known_output,
 )
-from pindrive.study.spec import device_in, plan_of
+from pindrive.study.study import Study
+from pindrive.study.tables import device_in
 
 Array = NDArray[np.float64]
 MOST_GOALS: Final = 3
@@ -160,17 +161,19 @@ def _problem(
     listed, groups = _as_axes(catalogues)
     axes = {**tables.get("axes", {}), **listed}
     rest = {k: v for k, v in tables.items() if k not in ("catalogues", "goals", "specification")}
-    study = rest | {"axes": axes, "zip": [*tables.get("zip", []), *groups]}
+    varied = rest | {"axes": axes, "zip": [*tables.get("zip", []), *groups]}
     chunk = (budgets.CHUNK_OF_SCANS if scans else budgets.CHUNK).most
-    study |= {"sample": {"count": 1}, "chunk": chunk}  # no points are computed of it
-    plan = plan_of(study, device, path=path, place=place, text=text, problems=problems, si=si)
-    problems += _contradictions(plan, required, goals, catalogues, place)
-    problems += _no_ranges(plan, conditions, place)
+    varied |= {"sample": {"count": 1}, "chunk": chunk}  # no points are computed of it
+    study = Study.of_tables(
+        varied, device, path=path, place=place, text=text, problems=problems, si=si
+    )
+    problems += _contradictions(study, required, goals, catalogues, place)
+    problems += _no_ranges(study, conditions, place)
     if problems:
         raise ConfigError([*dict.fromkeys(problems)])
-    found = [*_variables(plan, catalogues)]
+    found = [*_variables(study, catalogues)]
     return DesignProblem(
-        plan=plan,
+        study=study,
         tables=tables,
         variables=tuple(v for v in found if not conditions & v.axes.keys()),
         conditions=tuple(v for v in found if conditions & v.axes.keys()),
@@ -225,9 +228,9 @@ def _as_axes(catalogues: Iterable[Catalogue]) -> tuple[dict[str, Any], list[list
     return axes, groups
 
 
-def _variables(plan: Plan, catalogues: Iterable[Catalogue]) -> Iterable[Variable]:
+def _variables(study: Study, catalogues: Iterable[Catalogue]) -> Iterable[Variable]:
     of = {key: catalogue for catalogue in catalogues for key in catalogue.values}
-    for dimension in plan.dimensions:
+    for dimension in study.dimensions:
         if dimension.sample:
             for key, axis in dimension.axes.items():
                 yield Variable(key, {key: axis})
@@ -291,7 +294,7 @@ def _least_yield(
 
 
 def _contradictions(
-    plan: Plan,
+    study: Study,
     required: tuple[Constraint, ...],
     goals: tuple[Goal, ...],
     catalogues: tuple[Catalogue, ...],
@@ -308,7 +311,7 @@ def _contradictions(
     names = {*(constraint.name for constraint in required), *(goal.name for goal in goals)}
     if PRICE in names and not any(catalogue.priced for catalogue in catalogues):
         yield f"{place}: no part has a price; give a catalogue with a column price in [catalogues]"
-    if SPEED in names and not (plan.page and plan.page.page.grating):
+    if SPEED in names and not (study.page and study.page.page.grating):
         yield (
             f"{place}: {label(SPEED)} is of lines a pitch apart; write which, "
             'grating = ["3 mm"] in [page]'
@@ -319,9 +322,9 @@ def _side(constraint: Constraint) -> str:
     return f"{'≤' if constraint.at_most else '≥'} {constraint.shown()}"
 
 
-def _no_ranges(plan: Plan, conditions: set[str], place: str) -> Iterable[str]:
+def _no_ranges(study: Study, conditions: set[str], place: str) -> Iterable[str]:
     """Return the errors of axes without ends, and of counts without steps."""
-    for dimension in plan.dimensions:
+    for dimension in study.dimensions:
         for key, axis in dimension.axes.items():
             table = "conditions" if key in conditions else "axes"
             if isinstance(axis, Distribution) and axis.kind not in ("uniform", "loguniform"):

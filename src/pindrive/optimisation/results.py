@@ -227,12 +227,12 @@ class Design(lazy.NotebookHtml):
     @cached_property
     def motion(self) -> Motion | None:
         """The transient at the worst condition of the first goal; None of a scan."""
-        if self.problem.plan.page:
+        if self.problem.study.page:
             return None
-        plan = self.problem.plan
+        study = self.problem.study
         at = {key: np.asarray(x) for key, x in (*self.values.items(), *self.goals[0].case.items())}
-        found = with_links(plan.device, at, plan.links)
-        return follow(plan, {key: float(x) for key, x in found.items()})
+        found = with_links(study.device, at, study.links)
+        return follow(study, {key: float(x) for key, x in found.items()})
 
     def plot(self) -> mpl_figure.Figure:
         """The front, and the maps of the feasible region around the design, as a figure."""
@@ -287,7 +287,7 @@ class Design(lazy.NotebookHtml):
             "limit_unit": ("limit", [NUMBERS[d.constraint.name].unit for d in self.constraints]),
         }
         attrs = {
-            "title": f"Design of {self.problem.plan.name or 'a device'}",
+            "title": f"Design of {self.problem.study.name or 'a device'}",
             "status": self.status.name,
             "seed": self.seed,
             "parts": ", ".join(f"{name} {part}" for name, part in self.parts.items()),
@@ -309,7 +309,7 @@ def designed_file(found: Design, target: Path) -> str:
     """
     head = [
         "Designed by pindrive.",
-        f"Problem: {found.problem.plan.path.name}, {found.problem.plan.name}; seed {found.seed}.",
+        f"Problem: {found.problem.study.path.name}, {found.problem.study.name}; seed {found.seed}.",
     ]
     if not found.feasible:
         head.append(f"No design meets the constraints; {found.closest}.")

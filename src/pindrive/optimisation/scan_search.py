@@ -9,14 +9,16 @@ optimisation (Jones, Schonlau and Welch 1998) with confidence bounds (Cox and Jo
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pindrive.lazy import qmc
-from pindrive.optimisation.design_space import DesignSpace
 from pindrive.optimisation.search import Population, gained, non_dominated, search
+
+if TYPE_CHECKING:
+    from pindrive.optimisation.design_space import DesignSpace
 
 Array = NDArray[np.float64]
 TRUSTS: Final = (-1.0, 0.0, 1.0, 2.0)

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pindrive.files.device import DeviceFile
-from pindrive.optimisation.design_space import DesignSpace
 from pindrive.optimisation.goals import DesignProblem, Variable
 from pindrive.optimisation.scanned import Scanned
 from pindrive.study.distributions import Sample, implied_links
 from pindrive.study.outputs import Share
-from pindrive.study.spec import plan_of
+from pindrive.study.study import Study
+
+if TYPE_CHECKING:
+    from pindrive.optimisation.design_space import DesignSpace
 
 Array = NDArray[np.float64]
 
@@ -43,19 +46,19 @@ def excess_as_built(
         SI, shape (constraints, draws); infinite for a device that cannot exist.
     """
     tables = {"tolerances": problem.tables["tolerances"]}
-    if problem.plan.page:
-        tables["page"] = problem.plan.page.page
-    file = problem.plan.path
-    plan = plan_of(tables, device, path=file, place=str(file), text="", si=problem.si)
-    keys = [*plan.tolerances]
+    if problem.study.page:
+        tables["page"] = problem.study.page.page
+    file = problem.study.path
+    study = Study.of_tables(tables, device, path=file, place=str(file), text="", si=problem.si)
+    keys = [*study.tolerances]
     varied = {*keys, *(key for condition in space.conditions for key in condition.axes)}
     parts = Sample(tuple(keys), draws, seed).parts(np.arange(draws)).T
     drawn = replace(
         space,
-        plan=plan,
+        study=study,
         goals=(),
-        variables=tuple(Variable(key, {key: axis}) for key, axis in plan.tolerances.items()),
-        links=implied_links(device, varied, space.scans) | dict(plan.tolerance_links),
+        variables=tuple(Variable(key, {key: axis}) for key, axis in study.tolerances.items()),
+        links=implied_links(device, varied, space.scans) | dict(study.tolerance_links),
         price=float(space.prices(point[None])[0]),
         scanned=Scanned(),
     )

@@ -6,6 +6,6 @@ from .runner import Sweep as Sweep
 from .runner import sweep as sweep
 from .sensitivity import SobolIndices as SobolIndices
 from .study import Study as Study
-from .study import load_study as load_study
+from .spec import load_study as load_study
 
 __all__: list[str]

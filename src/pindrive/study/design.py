@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import lru_cache
 from hashlib import sha256
-from math import prod
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,13 +17,10 @@ from pindrive.device.page import Scene
 from pindrive.device.page_description import Page, recorded
 from pindrive.device.pin_array import PinArray
 from pindrive.device.reading import Reading
-from pindrive.files.device import DeviceFile, Setting, device_of
-from pindrive.files.keys import has_part, number, written
+from pindrive.files.keys import number
 from pindrive.quantities.refusal import quoted, refusal
 from pindrive.quantities.table import QUANTITIES
-from pindrive.quantities.value import equal_by_value
 from pindrive.study.distributions import (
-    Axis,
     Distribution,
     Grid,
     Linked,
@@ -33,7 +28,9 @@ from pindrive.study.distributions import (
     as_distribution,
     with_links,
 )
-from pindrive.study.outputs import Constraint
+
+if TYPE_CHECKING:
+    from pindrive.study.study import Study
 
 Columns = dict[str, NDArray[np.float64]]
 
@@ -189,123 +186,6 @@ class Dimension:
         }
 
 
-@equal_by_value
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Plan:
-    """A study: its points are the product of its dimensions, the last one changing fastest."""
-
-    path: Path
-    name: str
-    text: str
-    """The study file, and the device file where it names one."""
-    device: DeviceFile
-    dimensions: tuple[Dimension, ...]
-    links: Mapping[str, Linked]
-    outputs: tuple[str, ...]
-    """Variables to keep, in the order of the file."""
-    chunk: int = CHUNK
-    tolerances: Mapping[str, Distribution]
-    tolerance_links: Mapping[str, Linked]
-    constraints: tuple[Constraint, ...] = ()
-    page: StudyPage | None = None
-    """Scanned page of every point; None: every point is a release."""
-
-    @property
-    def inputs(self) -> tuple[Path, ...]:
-        """The files that it was read from, or reads when it is computed."""
-        page = self.page.page.files.values() if self.page else ()
-        return (self.path, *self.device.inputs, *page)
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """Number of points along each dimension."""
-        return tuple(dimension.size for dimension in self.dimensions)
-
-    @property
-    def size(self) -> int:
-        """Number of points."""
-        return prod(self.shape)
-
-    @property
-    def chunks(self) -> int:
-        """Number of chunks."""
-        return -(-self.size // self.chunk)
-
-    def bounds(self, chunk: int) -> tuple[int, int]:
-        """The first point of a chunk, and the first of the next."""
-        return chunk * self.chunk, min((chunk + 1) * self.chunk, self.size)
-
-    def first_seen(self, chunk: int) -> Iterator[tuple[Dimension, int, int]]:
-        """For each dimension, the places along it that no point of an earlier chunk has."""
-        ends = self.bounds(chunk)
-        for i, dimension in enumerate(self.dimensions):
-            stride = prod(self.shape[i + 1 :])
-            first, last = (min(-(-point // stride), dimension.size) for point in ends)
-            if first < last:
-                yield dimension, first, last
-
-    @property
-    def at_a_time(self) -> int:
-        """Number of points between two reports of the progress."""
-        return 16 * SCANS if self.page else CHUNK
-
-    @property
-    def values(self) -> dict[str, Any]:
-        """The device's value of each key that has a part in this study, SI; None: not given."""
-        derived = self.device.derived
-        return {
-            key: value
-            for key, value in self.device.values().items()
-            if has_part(key, self.page is not None) and key not in derived
-        }
-
-    @property
-    def axes(self) -> dict[str, Axis]:
-        """Every swept key with its values; dependent keys come last."""
-        found: dict[str, Axis] = {}
-        for dimension in self.dimensions:
-            found.update(dimension.axes)
-        return found | dict(self.links)
-
-    def columns(self, begin: int, end: int) -> Columns:
-        """The value of every swept key at the points from `begin` up to `end`."""
-        places = np.unravel_index(np.arange(begin, end), self.shape)
-        found: Columns = {}
-        for dimension, index in zip(self.dimensions, places, strict=True):
-            found |= dimension.at(index)
-        return with_links(self.device, found, self.links)
-
-    def identity(self) -> dict[str, Any]:
-        """All that its numbers follow from: two studies with one identity have one answer."""
-        from pindrive import __version__
-
-        page = {"page": self.page.identity()} if self.page else {}
-        found: dict[str, Any] = json.loads(
-            json.dumps(
-                {
-                    "pindrive": __version__,
-                    "device": self.values,
-                    **page,
-                    "dimensions": [asdict(dimension) for dimension in self.dimensions],
-                    "links": {key: asdict(link) for key, link in self.links.items()},
-                    "outputs": self.outputs,
-                    "chunk": self.chunk,
-                }
-            )
-        )
-        return found
-
-
-def device_at(plan: Plan, at: Mapping[str, float]) -> DeviceFile:
-    """The device at one point, which the keys' values (SI) say.
-
-    Raises:
-        ConfigError: there is none, the values do not go together.
-    """
-    given = [Setting(key, written(key, value), "") for key, value in at.items()]
-    return device_of(plan.device.path, plan.device.tables, given, whole=plan.page is not None)
-
-
 @dataclass(frozen=True, slots=True)
 class Ranges:
     """Varied keys of a study with their ranges."""
@@ -315,33 +195,33 @@ class Ranges:
     """Keys of a single value."""
     links: Mapping[str, Linked]
 
-    def columns(self, plan: Plan, points: NDArray[np.float64]) -> Columns:
+    def columns(self, study: Study, points: NDArray[np.float64]) -> Columns:
         """Values of all keys at points (keys of `scatter`, n)."""
         given = dict(zip(self.scatter, points, strict=True))
         given |= {k: np.full(points.shape[1], v) for k, v in self.fixed.items()}
-        return with_links(plan.device, given, self.links)
+        return with_links(study.device, given, self.links)
 
 
-def ranges_of(plan: Plan, tolerances: bool) -> Ranges:
+def ranges_of(study: Study, tolerances: bool) -> Ranges:
     """The ranges of the axes, or the tolerances; these too where there are no axes.
 
     Raises:
         ValueError: nothing varies, or a count does, or there are no tolerances.
     """
-    if tolerances and not plan.tolerances:
-        raise ValueError(f"{plan.path}: has no tolerances; write them in [tolerances]")
+    if tolerances and not study.tolerances:
+        raise ValueError(f"{study.path}: has no tolerances; write them in [tolerances]")
     scatter: dict[str, Distribution] = {}
     fixed: dict[str, float] = {}
-    of_axes = [k for k, axis in plan.axes.items() if not isinstance(axis, Linked)]
-    if plan.tolerances and (tolerances or not of_axes):
-        return Ranges(plan.tolerances, {}, plan.tolerance_links)
-    for key, axis in plan.axes.items():
+    of_axes = [k for k, axis in study.axes.items() if not isinstance(axis, Linked)]
+    if study.tolerances and (tolerances or not of_axes):
+        return Ranges(study.tolerances, {}, study.tolerance_links)
+    for key, axis in study.axes.items():
         if isinstance(axis, Linked):
             continue
         low, high = axis.span
         if low < high and key in COUNTS:
             raise ValueError(
-                f"{plan.path}: axes.{key} counts pins, and there is nothing between two counts to "
+                f"{study.path}: axes.{key} counts pins, and there is nothing between two counts to "
                 "draw; give one value"
             )
         if low < high:
@@ -349,5 +229,5 @@ def ranges_of(plan: Plan, tolerances: bool) -> Ranges:
         else:
             fixed[key] = low
     if not scatter:
-        raise ValueError(f"{plan.path}: nothing varies; write what in [axes] or [tolerances]")
-    return Ranges(scatter, fixed, plan.links)
+        raise ValueError(f"{study.path}: nothing varies; write what in [axes] or [tolerances]")
+    return Ranges(scatter, fixed, study.links)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from math import inf, nan
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,9 +24,12 @@ from pindrive.motion.simulate import motion_of, simulated
 from pindrive.quantities.budgets import worker_count
 from pindrive.quantities.refusal import Refusal, refused_by, told_by
 from pindrive.quantities.status import End, SimulationError, Status
-from pindrive.study.design import Columns, Plan, Ranges, device_at
+from pindrive.study.design import Columns, Ranges
 from pindrive.study.outputs import MEASURED, SCANNED, variables
 from pindrive.study.workers import standing
+
+if TYPE_CHECKING:
+    from pindrive.study.study import Study
 
 Row = dict[str, Any]
 
@@ -34,56 +37,56 @@ _PORTION: Final = 8
 """Points that a process takes at a time, at most."""
 
 
-def scan_numbers(plan: Plan, at: Mapping[str, float]) -> dict[str, float]:
+def scan_numbers(study: Study, at: Mapping[str, float]) -> dict[str, float]:
     """The numbers of the scan at one point, which the keys' values (SI) say, by their names.
 
     Raises:
         ValueError: there is none: the values do not go together, or a spot leaves the page.
     """
-    if plan.page is None:
-        raise ValueError(f"{plan.path}: has no page to scan; write what is on it in [page]")
-    file = device_at(plan, at)
+    if study.page is None:
+        raise ValueError(f"{study.path}: has no page to scan; write what is on it in [page]")
+    file = study.device_at(at)
     device, reading = file.device, file.reading
-    scene = plan.page.scene(reading, device.array)
-    path = plan.page.hand(reading, scene, device.array)
+    scene = study.page.scene(reading, device.array)
+    path = study.page.hand(reading, scene, device.array)
     done = scan(device, scene, path, touch=file.touch, max_angle=reading.max_angle, threads=1)
     numbers: dict[str, float] = done.evaluate(file.criteria).numbers
     return numbers
 
 
 def _evaluate_scans(
-    plan: Plan, columns: Columns, count: int, outputs: Sequence[str], processes: int | None = 1
+    study: Study, columns: Columns, count: int, outputs: Sequence[str], processes: int | None = 1
 ) -> dict[str, Any]:
     """The outputs at `count` points; arguments as for `evaluate`.
 
     Raises:
         ValueError: a file of the page has changed since the study was read.
     """
-    assert plan.page
-    plan.page.check()
+    assert study.page
+    study.page.check()
     every = {key: np.broadcast_to(values, (count,)) for key, values in columns.items()}
     points = [{key: float(values[i]) for key, values in every.items()} for i in range(count)]
     processes = worker_count(processes)
     portion = min(_PORTION, -(-count // (2 * processes)))
     portions = [points[i : i + portion] for i in range(0, count, portion)]
     if processes == 1 or len(portions) == 1:
-        done = [_rows(plan, portion) for portion in portions]
+        done = [_rows(study, portion) for portion in portions]
     else:
-        done = standing(processes).spread(_rows, plan, portions)
+        done = standing(processes).spread(_rows, study, portions)
     rows = [row for portion in done for row in portion]
     kinds = {"reason": object}
     return {name: np.array([row[name] for row in rows], kinds.get(name)) for name in outputs}
 
 
-def _rows(plan: Plan, points: Sequence[Mapping[str, float]]) -> list[Row]:
-    return [_row(plan, point) for point in points]
+def _rows(study: Study, points: Sequence[Mapping[str, float]]) -> list[Row]:
+    return [_row(study, point) for point in points]
 
 
-def _row(plan: Plan, point: Mapping[str, float]) -> Row:
+def _row(study: Study, point: Mapping[str, float]) -> Row:
     """The numbers at a point; one without a scan has a status and no numbers."""
     names = variables(SCANNED)
     try:
-        found = scan_numbers(plan, point)
+        found = scan_numbers(study, point)
     except (ValueError, ArithmeticError, MemoryError) as error:
         status = error.status if isinstance(error, SimulationError) else Status.refused
         return dict.fromkeys(names, nan) | {"status": status, "reason": refused_by(error)}
@@ -108,7 +111,7 @@ Table = dict[str, Any]
 
 
 def evaluate(
-    plan: Plan, columns: Columns, count: int, outputs: Sequence[str], threads: int | None = 1
+    study: Study, columns: Columns, count: int, outputs: Sequence[str], threads: int | None = 1
 ) -> Table:
     """The outputs at `count` points, where the columns stand for what the device has.
 
@@ -117,16 +120,16 @@ def evaluate(
     skin) is simulated point by point: the same numbers, fifty times slower.
 
     Args:
-        plan: whose device.
+        study: whose device.
         columns: by the keys of device files, each of shape (count,), SI.
         count: how many points.
         outputs: names of variables; `reason` among them is text: what is refused of a point that
             cannot exist, the same for points that are refused alike, and empty where it exists.
         threads: for `simulate_batch`, or processes for scans; None: all cores.
     """
-    if plan.page:
-        return _evaluate_scans(plan, columns, count, outputs, threads)
-    device = plan.device
+    if study.page:
+        return _evaluate_scans(study, columns, count, outputs, threads)
+    device = study.device
     inputs = _inputs(device, columns)
     if is_slow(device, columns):
         table = _one_by_one(inputs, count)
@@ -145,7 +148,7 @@ def evaluate(
 
 
 def evaluate_all(
-    plan: Plan,
+    study: Study,
     ranges: Ranges,
     points: NDArray[np.float64],
     outputs: Sequence[str],
@@ -155,7 +158,7 @@ def evaluate_all(
     """The outputs and the status at many points, part by part; and which points cannot exist.
 
     Args:
-        plan: the study.
+        study: the study.
         ranges: what varies.
         points: values of the keys of `ranges.scatter`, SI, shape (keys, n).
         outputs: names of variables.
@@ -163,23 +166,23 @@ def evaluate_all(
         progress: called with the points done and the points in all.
     """
     total, parts = points.shape[1], []
-    for begin in range(0, total, plan.at_a_time):
-        part = points[:, begin : begin + plan.at_a_time]
-        columns, count = ranges.columns(plan, part), part.shape[1]
-        parts.append(evaluate(plan, columns, count, (*outputs, "status", "reason"), threads))
+    for begin in range(0, total, study.at_a_time):
+        part = points[:, begin : begin + study.at_a_time]
+        columns, count = ranges.columns(study, part), part.shape[1]
+        parts.append(evaluate(study, columns, count, (*outputs, "status", "reason"), threads))
         progress(begin + count, total)
     table = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
-    return table, refusals(plan, ranges.columns(plan, points), table.pop("reason"))
+    return table, refusals(study, ranges.columns(study, points), table.pop("reason"))
 
 
-def follow(plan: Plan, at: Mapping[str, float]) -> Motion:
+def follow(study: Study, at: Mapping[str, float]) -> Motion:
     """The motion at one point, which the keys' values say.
 
     Raises:
         ValueError: there is none, as for `simulate`.
     """
     columns = {key: np.array([value]) for key, value in at.items()}
-    return _motion(_point(_inputs(plan.device, columns), 0))
+    return _motion(_point(_inputs(study.device, columns), 0))
 
 
 def is_slow(device: DeviceFile, swept: Mapping[str, object]) -> bool:
@@ -282,11 +285,11 @@ def exist(status: NDArray[Any]) -> NDArray[np.bool_]:
     return np.asarray(status < Status.refused)
 
 
-def refusals(plan: Plan, columns: Columns, reasons: NDArray[Any]) -> tuple[RefusedPoints, ...]:
+def refusals(study: Study, columns: Columns, reasons: NDArray[Any]) -> tuple[RefusedPoints, ...]:
     """The points that cannot exist, by reason, most first.
 
     Args:
-        plan: the study.
+        study: the study.
         columns: the values of the varied keys at the points, SI.
         reasons: of each point what is refused, as `evaluate` gives it; empty where it exists.
     """
@@ -297,26 +300,26 @@ def refusals(plan: Plan, columns: Columns, reasons: NDArray[Any]) -> tuple[Refus
     for reason, points in alike.items():
         first = points[0]
         at = {key: float(np.broadcast_to(x, reasons.shape)[first]) for key, x in columns.items()}
-        found.append(RefusedPoints(len(points), why(plan, at) or reason))
+        found.append(RefusedPoints(len(points), why(study, at) or reason))
     return tuple(sorted(found, key=lambda refusal: -refusal.count))
 
 
-def why(plan: Plan, at: Mapping[str, float]) -> str:
+def why(study: Study, at: Mapping[str, float]) -> str:
     """Return the reason for a missing motion or scan at these values (SI); empty if it exists.
 
     It is said of the values to six digits, where these are refused too.
     """
     rounded = {key: float(f"{x:.6g}") for key, x in at.items()}
-    return _reason(plan, rounded) or _reason(plan, at)
+    return _reason(study, rounded) or _reason(study, at)
 
 
-def _reason(plan: Plan, at: Mapping[str, float]) -> str:
+def _reason(study: Study, at: Mapping[str, float]) -> str:
     """Return the rejection of a point; empty without one."""
     try:
-        if plan.page:
-            scan_numbers(plan, at)
+        if study.page:
+            scan_numbers(study, at)
         else:
-            motion_of(device_at(plan, at))
+            motion_of(study.device_at(at))
     except (ValueError, ArithmeticError, MemoryError) as error:
         told = told_by(error)
         return told.said if isinstance(told, Refusal) else told

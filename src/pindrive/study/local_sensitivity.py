@@ -17,8 +17,9 @@ from pindrive.motion.simulate import motion_of
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.status import Status
 from pindrive.quantities.value import equal_by_value
-from pindrive.study.design import Plan, ranges_of
+from pindrive.study.design import ranges_of
 from pindrive.study.distributions import Linked, base_value, exponents
+from pindrive.study.study import Study
 
 _WITHOUT: Final = ("motion.duration", "motion.settling_band")
 """Keys along which the core has no derivatives."""
@@ -75,7 +76,7 @@ class Elasticities(lazy.NotebookHtml):
         return xr.Dataset(data, coords=coords, attrs=attributes)
 
 
-def local_sensitivity(study: Plan, *, tolerances: bool = False) -> Elasticities:
+def local_sensitivity(study: Study, *, tolerances: bool = False) -> Elasticities:
     """Compute the change of each number, in per cent, when a key of a study grows by one per cent.
 
     Exact derivatives at the device's own values, by dual numbers through every event.
@@ -105,29 +106,29 @@ def local_sensitivity(study: Plan, *, tolerances: bool = False) -> Elasticities:
     return elasticities(study, tuple(ranges.scatter), ranges.links)
 
 
-def elasticities(plan: Plan, keys: Sequence[str], links: Mapping[str, Linked]) -> Elasticities:
+def elasticities(study: Study, keys: Sequence[str], links: Mapping[str, Linked]) -> Elasticities:
     """The elasticity of every number to each key at the device's own values.
 
     What follows a key changes with it: damping, where the device file gives its ratio, curves, and
     keys that are linked. The derivatives are the core's own, on dual numbers.
 
     Args:
-        plan: whose device.
+        study: whose device.
         keys: of device files, each with a value in the device.
         links: keys that follow others.
     """
-    motion = motion_of(plan.device)
+    motion = motion_of(study.device)
     changes, gaps = {}, {}
     for key in keys:
         followed = [key, *exponents(key, links)]
         if key in _WITHOUT:
             gaps[key] = "the core has none along it"
-        elif not base_value(plan.device, key) or not all(
-            isinstance(base_value(plan.device, name), float) for name in followed
+        elif not base_value(study.device, key) or not all(
+            isinstance(base_value(study.device, name), float) for name in followed
         ):
             gaps[key] = "it is zero or not given"
         else:
-            changes[key] = _changes(plan, key, links)
+            changes[key] = _changes(study, key, links)
     parameters = list(dict.fromkeys(name for change in changes.values() for name in change))
     numbers = {k.replace(".", "_"): v for k, v in motion.numbers().items()}
     slopes: dict[str, dict[str, float]] = {}
@@ -147,16 +148,16 @@ def elasticities(plan: Plan, keys: Sequence[str], links: Mapping[str, Linked]) -
         return sum(slope[name] * change for name, change in changes[key].items()) / value
 
     table = {number: {key: elasticity(number, key) for key in keys} for number in numbers}
-    return Elasticities(tuple(keys), numbers, table, motion.duration, gaps, plan.name)
+    return Elasticities(tuple(keys), numbers, table, motion.duration, gaps, study.name)
 
 
-def _changes(plan: Plan, key: str, links: Mapping[str, Linked]) -> dict[str, float]:
+def _changes(study: Study, key: str, links: Mapping[str, Linked]) -> dict[str, float]:
     """Return the change of each parameter of the motion, SI, when a key grows by its own size."""
-    drive = plan.device.drive
+    drive = study.device.drive
     if key == "drive.damping_ratio":
         return {"damping": drive.damping}
     shares = exponents(key, links)
-    if plan.device.by_ratio and key in ("drive.mass", "drive.stiffness"):
+    if study.device.by_ratio and key in ("drive.mass", "drive.stiffness"):
         shares["drive.damping"] = 0.5  # b = 2 ζ sqrt(m k)
     found = {}
     for name, share in shares.items():
@@ -169,7 +170,7 @@ def _changes(plan: Plan, key: str, links: Mapping[str, Linked]) -> dict[str, flo
         )
         if tied and name != key:
             continue  # one number with the kinetic friction: the core changes it along
-        found[variable(name)] = share * base_value(plan.device, name)
+        found[variable(name)] = share * base_value(study.device, name)
         if contact and part in ("kinetic", "coefficient"):  # its curve keeps its shape
             rows = enumerate(contact.curve or ())
             found |= {f"{table}_curve[{i}].force": force for i, (_, force) in rows if i}

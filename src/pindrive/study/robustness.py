@@ -19,10 +19,11 @@ from pindrive.quantities import budgets
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.status import Status
 from pindrive.quantities.value import concise, equal_by_value
-from pindrive.study.design import Plan, Ranges, ranges_of
+from pindrive.study.design import Ranges, ranges_of
 from pindrive.study.distributions import Sample
 from pindrive.study.evaluate import RefusedPoints, evaluate, evaluate_all, exist, follow
 from pindrive.study.outputs import NUMBERS, Constraint, Share, attributes
+from pindrive.study.study import Study
 
 USUAL_COUNT: Final = 100_000
 USUAL_COUNT_OF_SCANS: Final = 1000
@@ -146,7 +147,7 @@ class Robustness(lazy.NotebookHtml):
 
 
 def robustness(
-    study: Plan,
+    study: Study,
     *,
     count: int | None = None,
     seed: int = 1,
@@ -183,38 +184,37 @@ def robustness(
         >>> pd.robustness(study, count=500)
         <Robustness of 500 designs: 100.000 % meet the specification, ok>
     """
-    plan = study
-    ranges = ranges_of(plan, tolerances=True)
+    ranges = ranges_of(study, tolerances=True)
     if count is None:
-        count = USUAL_COUNT_OF_SCANS if plan.page else USUAL_COUNT
-    usual = WATCHED_OF_SCANS if plan.page else WATCHED
-    watched = tuple(dict.fromkeys((*usual, *(constraint.name for constraint in plan.constraints))))
+        count = USUAL_COUNT_OF_SCANS if study.page else USUAL_COUNT
+    usual = WATCHED_OF_SCANS if study.page else WATCHED
+    watched = tuple(dict.fromkeys((*usual, *(constraint.name for constraint in study.constraints))))
     each = len(ranges.scatter) + len(watched) + 1
     of = f"{count} draws of {len(ranges.scatter)} keys and {len(watched) + 1} results"
     budgets.DESIGN_VALUES.check(count * each, of)
     sample = Sample(tuple(ranges.scatter), count, seed)
 
     def numbers(points: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
-        columns = ranges.columns(plan, points)
-        return evaluate(plan, columns, points.shape[1], (*watched, "status"), threads)
+        columns = ranges.columns(study, points)
+        return evaluate(study, columns, points.shape[1], (*watched, "status"), threads)
 
     parts = zip(sample.parts(np.arange(count)), ranges.scatter.values(), strict=True)
     points = np.array([scatter.ppf(part) for part, scatter in parts])
-    table, refused = evaluate_all(plan, ranges, points, watched, threads, progress)
+    table, refused = evaluate_all(study, ranges, points, watched, threads, progress)
     designs = exist(table["status"])
     if not designs.any():
         words, reason = counted(count, "draw"), refused[0].reason
-        raise ValueError(f"{plan.path}: of {words} none can exist: {reason}")
+        raise ValueError(f"{study.path}: of {words} none can exist: {reason}")
     points, table = points[:, designs], {name: values[designs] for name, values in table.items()}
 
-    met = {constraint: constraint.met(table[constraint.name]) for constraint in plan.constraints}
+    met = {constraint: constraint.met(table[constraint.name]) for constraint in study.constraints}
     every = np.logical_and.reduce([*met.values()]) if met else None
     size = points.shape[1]
     return Robustness(
         ranges,
         count,
         seed,
-        _own(plan, watched),
+        _own(study, watched),
         dict(zip(ranges.scatter, points, strict=True)),
         np.ones(size, np.bool_) if every is None else every,
         {name: table[name] for name in watched},
@@ -225,20 +225,20 @@ def robustness(
             for d, m in met.items()
         ),
         None if every is None else Share.of_designs(int(every.sum()), size),
-        tuple(_worst(plan, ranges, d, points, table, numbers, seed) for d in plan.constraints),
-        plan.name,
+        tuple(_worst(study, ranges, d, points, table, numbers, seed) for d in study.constraints),
+        study.name,
     )
 
 
-def _own(plan: Plan, watched: tuple[str, ...]) -> dict[str, float]:
+def _own(study: Study, watched: tuple[str, ...]) -> dict[str, float]:
     """Numbers of the design itself."""
-    if plan.page:
-        return {name: float(values[0]) for name, values in evaluate(plan, {}, 1, watched).items()}
-    return {k.replace(".", "_"): v for k, v in motion_of(plan.device).numbers().items()}
+    if study.page:
+        return {name: float(values[0]) for name, values in evaluate(study, {}, 1, watched).items()}
+    return {k.replace(".", "_"): v for k, v in motion_of(study.device).numbers().items()}
 
 
 def _worst(
-    plan: Plan,
+    study: Study,
     ranges: Ranges,
     constraint: Constraint,
     points: NDArray[np.float64],
@@ -265,7 +265,7 @@ def _worst(
     inside = ((points >= spans[:, :1]) & (points <= spans[:, 1:])).all(axis=0)
     first = badness(constraint.excess(table[constraint.name]), table["status"])
     order = np.argsort(np.where(inside, first, np.inf), kind="stable")
-    population = _POPULATION_OF_SCANS if plan.page else _POPULATION
+    population = _POPULATION_OF_SCANS if study.page else _POPULATION
     members = points[:, order[: max(5, population * len(spans))]]
     started = ((members - low) / width).T
     if len(started) < 5:
@@ -275,7 +275,7 @@ def _worst(
         at,
         [(0.0, 1.0)] * len(spans),
         init=np.clip(started, 0.0, 1.0),
-        maxiter=_GENERATIONS_OF_SCANS if plan.page else _GENERATIONS,
+        maxiter=_GENERATIONS_OF_SCANS if study.page else _GENERATIONS,
         vectorized=True,
         updating="deferred",
         polish=False,
@@ -283,12 +283,12 @@ def _worst(
         rng=np.random.default_rng(seed),
     )
     best = members[:, :1] if first[order[0]] <= search.fun else low + width * search.x[:, None]
-    columns = {key: values.item() for key, values in ranges.columns(plan, best).items()}
+    columns = {key: values.item() for key, values in ranges.columns(study, best).items()}
     sampled = float(table[constraint.name][order[0]])
-    if plan.page:
+    if study.page:
         return WorstCase(
             constraint, columns, float(numbers(best)[constraint.name][0]), sampled, None
         )
-    motion = follow(plan, columns)
+    motion = follow(study, columns)
     value = motion.numbers()[NUMBERS[constraint.name].name]
     return WorstCase(constraint, columns, value, sampled, motion)

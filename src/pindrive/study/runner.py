@@ -32,7 +32,6 @@ from pindrive.quantities.budgets import worker_count
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.status import Status
 from pindrive.study import outputs
-from pindrive.study.design import Plan
 from pindrive.study.evaluate import evaluate
 from pindrive.study.store import (
     Journal,
@@ -44,10 +43,11 @@ from pindrive.study.store import (
     difference,
     lay_out,
 )
+from pindrive.study.study import Study
 from pindrive.study.workers import DIED, check_installed, cluster_executor, workers
 
-Work = Callable[["Plan", list[int]], Iterator[tuple[int, list[Piece]]]]
-"""Computes chunks of a plan, and yields each when it is done, in any order."""
+Work = Callable[["Study", list[int]], Iterator[tuple[int, list[Piece]]]]
+"""Computes chunks of a study, and yields each when it is done, in any order."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -92,7 +92,7 @@ class Sweep(lazy.NotebookHtml):
 
 
 def sweep(
-    plan: Plan,
+    study: Study,
     target: Path,
     *,
     resume: bool = False,
@@ -106,7 +106,7 @@ def sweep(
     Until it is whole the file is called TARGET.partial, with TARGET.journal beside it.
 
     Args:
-        plan: the study.
+        study: the study.
         target: a NetCDF file.
         resume: continue an interrupted run, if there is one.
         force: discard an interrupted run; an earlier study at `target` is replaced
@@ -125,30 +125,30 @@ def sweep(
         raise OutputError(f"{target}: cannot be written: not a regular file")
     part, notes = (target.with_name(f"{target.name}.{end}") for end in ("partial", "journal"))
     kind = replace(STUDY_NETCDF, costly=not resume)
-    check_outputs([Output(target, kind)], plan.inputs, force=force)
+    check_outputs([Output(target, kind)], study.inputs, force=force)
     for path in (part, notes):
-        check_unread(path, plan.inputs)
-    if resume and not notes.exists() and _is_complete(target, plan):
-        return Sweep(target, plan.size, 0, *_counted(target, plan), 0.0, True)
+        check_unread(path, study.inputs)
+    if resume and not notes.exists() and _is_complete(target, study):
+        return Sweep(target, study.size, 0, *_counted(target, study), 0.0, True)
     _check_target(target, notes, resume or force)
-    with _journal(notes, part, plan, force) as journal:
+    with _journal(notes, part, study, force) as journal:
         if not (journal.done and part.exists()):
             journal.done.clear()
-            _begin(part, plan, target)
-        with Store(part, plan) as store, _keeping(part, journal):
-            _drop_damaged(journal, store, plan)
+            _begin(part, study, target)
+        with Store(part, study) as store, _keeping(part, journal):
+            _drop_damaged(journal, store, study)
             done = before = sum(tally.points for _, tally in journal.done.values())
-            tell(done, plan.size)
-            todo = [chunk for chunk in range(plan.chunks) if chunk not in journal.done]
+            tell(done, study.size)
+            todo = [chunk for chunk in range(study.chunks) if chunk not in journal.done]
             if stop_after is not None:
-                todo = todo[: max(0, -(-(stop_after - done) // plan.chunk))]
-            for chunk, pieces in (work or on_threads())(plan, todo):
+                todo = todo[: max(0, -(-(stop_after - done) // study.chunk))]
+            for chunk, pieces in (work or on_threads())(study, todo):
                 store.put(pieces)
                 tally = _tally(pieces)
                 journal.note(chunk, checksum(pieces), tally)
                 done += tally.points
-                tell(done, plan.size)
-            complete = done == plan.size
+                tell(done, study.size)
+            complete = done == study.size
             if complete:
                 store.sync()
         tallies = [tally for _, tally in journal.done.values()]
@@ -177,10 +177,10 @@ def on_threads(threads: int | None = None) -> Work:
     """
     count = worker_count(threads)
 
-    def work(plan: Plan, chunks: list[int]) -> Iterator[tuple[int, list[Piece]]]:
-        pool = workers(min(count, len(chunks) or 1), processes=plan.page is not None)
+    def work(study: Study, chunks: list[int]) -> Iterator[tuple[int, list[Piece]]]:
+        pool = workers(min(count, len(chunks) or 1), processes=study.page is not None)
         try:
-            yield from in_flight(chunks, count + 1, lambda k: pool.submit(work_out, plan, k))
+            yield from in_flight(chunks, count + 1, lambda k: pool.submit(work_out, study, k))
         except BrokenProcessPool:
             raise OutputError(f"{DIED}; finished chunks are kept, --resume continues") from None
         finally:
@@ -189,16 +189,16 @@ def on_threads(threads: int | None = None) -> Work:
     return work
 
 
-def work_out(plan: Plan, chunk: int) -> list[Piece]:
+def work_out(study: Study, chunk: int) -> list[Piece]:
     """The numbers of a chunk's points, and of each coordinate the part that appears there first."""
-    begin, end = plan.bounds(chunk)
+    begin, end = study.bounds(chunk)
     coordinates = [
         Piece(variable(key), first, np.ascontiguousarray(values, "<f8"))
-        for dimension, first, last in plan.first_seen(chunk)
+        for dimension, first, last in study.first_seen(chunk)
         for key, values in dimension.at(np.arange(first, last)).items()
     ]
-    table = evaluate(plan, plan.columns(begin, end), end - begin, plan.outputs)
-    numbers = [Piece(name, begin, outputs.encoded(name, table[name])) for name in plan.outputs]
+    table = evaluate(study, study.columns(begin, end), end - begin, study.outputs)
+    numbers = [Piece(name, begin, outputs.encoded(name, table[name])) for name in study.outputs]
     return [*coordinates, *numbers]
 
 
@@ -234,11 +234,11 @@ def _check_target(target: Path, notes: Path, may_be_there: bool) -> None:
 
 
 @contextmanager
-def _journal(notes: Path, part: Path, plan: Plan, force: bool) -> Iterator[Journal]:
+def _journal(notes: Path, part: Path, study: Study, force: bool) -> Iterator[Journal]:
     """The study's journal; where it ends without a finished chunk nothing is left behind."""
     empty = False
     try:
-        with Journal(notes, plan.identity(), force) as journal:
+        with Journal(notes, study.identity(), force) as journal:
             try:
                 yield journal
             finally:
@@ -249,9 +249,9 @@ def _journal(notes: Path, part: Path, plan: Plan, force: bool) -> Iterator[Journ
                 path.unlink(missing_ok=True)
 
 
-def _begin(part: Path, plan: Plan, target: Path) -> None:
+def _begin(part: Path, study: Study, target: Path) -> None:
     """Lay the file out, where there is room for it."""
-    needed, free = bytes_of(plan), shutil.disk_usage(target.parent).free
+    needed, free = bytes_of(study), shutil.disk_usage(target.parent).free
     if needed > free:
         raise OutputError(
             f"{target}: needs {human_bytes(needed)}, and the disk has {human_bytes(free)}; "
@@ -259,7 +259,7 @@ def _begin(part: Path, plan: Plan, target: Path) -> None:
         )
     with naming(part):
         part.unlink(missing_ok=True)
-        lay_out(part, plan)
+        lay_out(part, study)
 
 
 @contextmanager
@@ -284,14 +284,14 @@ def _kept(chunks: int) -> str:
     return f"{finished} kept, --resume continues with {'it' if chunks == 1 else 'them'}"
 
 
-def _drop_damaged(journal: Journal, store: Store, plan: Plan) -> None:
+def _drop_damaged(journal: Journal, store: Store, study: Study) -> None:
     """Discard chunks whose bytes differ from the written ones."""
     for chunk, (noted, _) in list(journal.done.items()):
-        if not 0 <= chunk < plan.chunks or checksum(store.read(plan, chunk)) != noted:
+        if not 0 <= chunk < study.chunks or checksum(store.read(study, chunk)) != noted:
             del journal.done[chunk]
 
 
-def _is_complete(target: Path, plan: Plan) -> bool:
+def _is_complete(target: Path, study: Study) -> bool:
     """Return True if the file holds the whole study; reject the file of another study."""
     if not target.is_file():
         return False
@@ -301,16 +301,16 @@ def _is_complete(target: Path, plan: Plan) -> bool:
         written = json.loads(found)
     except (OSError, ValueError, TypeError):
         raise OutputError(f"{target}: is damaged; --force replaces it") from None
-    if written != plan.identity():
-        what = difference(written, plan.identity())
+    if written != study.identity():
+        what = difference(written, study.identity())
         raise OutputError(f"{target}: holds another study: {what}; --force replaces it")
     return True
 
 
-def _counted(target: Path, plan: Plan) -> tuple[int, int]:
+def _counted(target: Path, study: Study) -> tuple[int, int]:
     """Refused and settled points of a finished file."""
-    with Store(target, plan) as store:
-        tallies = [_tally(store.read(plan, k)) for k in range(plan.chunks)]
+    with Store(target, study) as store:
+        tallies = [_tally(store.read(study, k)) for k in range(study.chunks)]
     settled = sum(tally.settled for tally in tallies)
     return sum(tally.refused for tally in tallies), settled if settled >= 0 else -1
 
@@ -344,9 +344,9 @@ def on_cluster(address: str) -> Work:
     """
     check_installed()
 
-    def work(plan: Plan, chunks: list[int]) -> Iterator[tuple[int, list[Piece]]]:
+    def work(study: Study, chunks: list[int]) -> Iterator[tuple[int, list[Piece]]]:
         kept = "finished chunks are kept, --resume continues with them"
         with cluster_executor(address, kept) as (executor, threads):
-            yield from in_flight(chunks, 2 * threads, lambda k: executor.submit(work_out, plan, k))
+            yield from in_flight(chunks, 2 * threads, lambda k: executor.submit(work_out, study, k))
 
     return work

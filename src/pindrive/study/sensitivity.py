@@ -17,11 +17,12 @@ from pindrive.quantities.quantity import counted
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.status import Status
 from pindrive.quantities.value import concise, equal_by_value
-from pindrive.study.design import Plan, Ranges, ranges_of
+from pindrive.study.design import Ranges, ranges_of
 from pindrive.study.distributions import Distribution
 from pindrive.study.evaluate import RefusedPoints, evaluate_all, exist
 from pindrive.study.local_sensitivity import Elasticities, elasticities
 from pindrive.study.outputs import LEDGER, MEASURED, SCAN_MEASURED, known_output
+from pindrive.study.study import Study
 
 Function = Callable[[NDArray[np.float64]], Mapping[str, NDArray[np.float64]]]
 """Numbers at points given by columns (keys, n): arrays of shape (n,)."""
@@ -222,13 +223,13 @@ class SobolIndices(lazy.NotebookHtml):
         return xr.Dataset(data, coords=coords, attrs={**title, "status": self.status.name})
 
 
-def askable(plan: Plan) -> tuple[str, ...]:
+def askable(study: Study) -> tuple[str, ...]:
     """The variables whose sensitivity can be computed."""
-    return SCAN_MEASURED if plan.page else (*MEASURED, _SETTLED)
+    return SCAN_MEASURED if study.page else (*MEASURED, _SETTLED)
 
 
 def sobol(
-    study: Plan,
+    study: Study,
     *,
     tolerances: bool = False,
     numbers: Sequence[str] = (),
@@ -273,15 +274,14 @@ def sobol(
         >>> found.to_dataset().total.dims
         ('number', 'key')
     """
-    plan = study
-    among = askable(plan)
+    among = askable(study)
     numbers = [known_output(name, "numbers", among) for name in numbers]
-    ranges = ranges_of(plan, tolerances)
+    ranges = ranges_of(study, tolerances)
     keys = tuple(ranges.scatter)
-    usual = (name for name in askable(plan) if name not in LEDGER or name in plan.outputs)
+    usual = (name for name in askable(study) if name not in LEDGER or name in study.outputs)
     asked = tuple(dict.fromkeys(numbers)) or tuple(usual)
     if rows is None:
-        rows = USUAL_ROWS_OF_SCANS if plan.page else USUAL_ROWS
+        rows = USUAL_ROWS_OF_SCANS if study.page else USUAL_ROWS
     varied = len(keys)
     results = len(asked) + 2  # status and reason
     each = (varied + 2) * (varied + results) + 3 * (varied + 1) * results
@@ -291,7 +291,7 @@ def sobol(
 
     def function(points: NDArray[np.float64]) -> dict[str, Any]:
         nonlocal refused
-        found, refused = evaluate_all(plan, ranges, points, asked, threads, progress)
+        found, refused = evaluate_all(study, ranges, points, asked, threads, progress)
         designs = exist(found.pop("status"))
         if _SETTLED in found:
             found[_SETTLED] = np.where(designs, found[_SETTLED].astype(float), np.nan)
@@ -299,5 +299,5 @@ def sobol(
 
     over = sobol_indices(function, [*ranges.scatter.values()], rows, seed)
     points = rows * (len(keys) + 2)
-    local = elasticities(plan, keys, ranges.links) if near and not plan.page else None
-    return SobolIndices(keys, ranges, local, over, rows, points, refused, plan.name)
+    local = elasticities(study, keys, ranges.links) if near and not study.page else None
+    return SobolIndices(keys, ranges, local, over, rows, points, refused, study.name)

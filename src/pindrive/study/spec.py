@@ -1,58 +1,48 @@
 """Study files: a device, axes over its keys, tolerances and a specification, in TOML with units.
 
-Whatever is wrong is found in one pass and said in lines that name file, key, value and bound.
+All errors of a file are reported together, each in a line with file, key, value and bound.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from os import PathLike
 from pathlib import Path
 from typing import Any, Final
 
-from pindrive.device.page_description import Page
 from pindrive.files.device import (
     ConfigError,
-    DeviceFile,
-    Setting,
-    device_of,
     read_tables,
-    settings_of,
 )
-from pindrive.files.keys import NAMES, STUDY_KEYS, TABLES, variable
-from pindrive.files.recording import is_file
-from pindrive.quantities import budgets
+from pindrive.files.keys import STUDY_KEYS, TABLES
 from pindrive.quantities.names import Names
-from pindrive.quantities.refusal import quoted, refusal
-from pindrive.study.axes import AxisReader, sweepable, written_axes
-from pindrive.study.design import CHUNK, SCANS, Dimension, Plan, StudyPage, read_page
-from pindrive.study.distributions import (
-    MOST_SOBOL,
-    Axis,
-    Distribution,
-    Grid,
-    Linked,
-    Sample,
-    base_value,
-    implied_links,
-)
-from pindrive.study.outputs import (
-    OUTPUTS,
-    SCAN_OUTPUTS,
-    Constraint,
-    constraints,
-    known_output,
-    usual_outputs,
-)
-from pindrive.study.validation import conflicts
+from pindrive.quantities.refusal import quoted
+from pindrive.study.study import Study
+from pindrive.study.tables import device_in
 
 _OWN: Final = ("name", *STUDY_KEYS)
-_SAMPLE: Final = ("method", "count", "seed")
 _TEMPLATE: Final = 'a study names its device, base = "device.toml", and what to vary in [axes]'
 
 
-def read_study(path: str | PathLike[str], overrides: Iterable[str] = ()) -> Plan:
-    """Read the study file at `path`; arguments and errors as for `load_study`."""
+def load_study(path: str | PathLike[str], overrides: Iterable[str] = ()) -> Study:
+    """Read a study from a file.
+
+    Args:
+        path: a TOML file that names a device, or holds one, and says what to vary.
+        overrides: "key=value" each, as for `load_device`; after those in its table [set].
+
+    Returns:
+        The study; `run` simulates its points.
+
+    Raises:
+        ConfigError: the file or its device cannot be read, or holds anything unknown, malformed,
+            out of bounds or contradictory; a line for each problem.
+
+    Examples:
+        >>> import pindrive as pd
+        >>> pd.load_study("tactile-mouse-study.toml").shape
+        (146, 153, 3)
+    """
     file = Path(path)
     tables = read_tables(file, _TEMPLATE)
     if not tables.keys() & {*STUDY_KEYS} and tables.keys() & {*TABLES}:
@@ -64,97 +54,7 @@ def read_study(path: str | PathLike[str], overrides: Iterable[str] = ()) -> Plan
         )
     problems = _unknown(tables, file)
     device, text = device_in(tables, file, overrides, problems)
-    return plan_of(tables, device, path=file, place=str(file), text=text, problems=problems)
-
-
-def device_in(
-    tables: dict[str, Any], file: Path, overrides: Iterable[str], problems: list[str]
-) -> tuple[DeviceFile, str]:
-    """The device of a study file, and the text of all that describes it.
-
-    What `page` holds in `tables` becomes a `Page`; what is wrong with it is appended to `problems`.
-
-    Raises:
-        ConfigError: there is no device, or it cannot be read.
-    """
-    if "page" in tables:
-        tables["page"] = _page(tables["page"], file, problems)
-    return _device(tables, file, overrides)
-
-
-def plan_of(
-    tables: Mapping[str, Any],
-    device: DeviceFile,
-    *,
-    path: Path,
-    place: str,
-    text: str,
-    problems: Iterable[str] = (),
-    si: bool = False,
-) -> Plan:
-    """The study of a device that the tables of a study file describe.
-
-    Args:
-        tables: what TOML makes of them; `page` is a `Page`, or None of a page that was refused, and
-            `conditions` are further axes, those of a design problem (see `pindrive.optimisation`).
-        device: what varies.
-        path: the file that a sweep must not write to.
-        place: where the tables were written, for messages.
-        text: the same as text, to be kept with the numbers.
-        problems: what was found wrong before.
-        si: whether bare numbers are SI, as from Python.
-
-    Raises:
-        ConfigError: anything unknown, malformed, out of bounds or contradictory.
-    """
-    problems = list(problems)
-    page = None
-    if isinstance(tables.get("page"), Page):
-        page = _gathered(tables["page"], place, problems)
-        device = device if device.whole else device.with_whole()
-    reader = _Reader(place, tables, device, problems, si)
-    required = constraints(reader.table("specification"), place, problems, reader.among)
-    plan = Plan(
-        path=path,
-        name=reader.text("name") or device.name,
-        text=text,
-        device=device,
-        dimensions=reader.dimensions,
-        links=reader.links,
-        outputs=_with_required(reader.outputs(), required),
-        chunk=reader.chunk(),
-        tolerances=reader.tolerances,
-        tolerance_links=reader.tolerance_links,
-        constraints=required,
-        page=page,
-    )
-    problems += _too_much(plan)
-    problems += conflicts(plan, place)
-    if problems:
-        raise ConfigError(list(dict.fromkeys(problems)))
-    return plan
-
-
-def _with_required(outputs: Sequence[str], required: Iterable[Constraint]) -> tuple[str, ...]:
-    """Return the stored variables and the variables of the specification."""
-    added = dict.fromkeys(
-        constraint.name for constraint in required if constraint.name not in outputs
-    )
-    kept = [name for name in outputs if name != "status"]
-    return (*kept, *added, "status") if added else tuple(outputs)
-
-
-def _too_much(plan: Plan) -> Iterator[str]:
-    """Return the errors of a study beyond the budgets."""
-    of = f"{plan.size} points, {plan.chunk} in each; a larger chunk makes fewer"
-    for budget, count, words in (
-        (budgets.CHUNKS, plan.chunks, of),
-        (budgets.CONSTRAINTS, len(plan.constraints), ""),
-    ):
-        try:
-            budget.check(count, words, where=str(plan.path))
-        except ValueError as error:
-            yield str(error)
+    return Study.of_tables(tables, device, path=file, place=str(file), text=text, problems=problems)
 
 
 def _unknown(tables: Mapping[str, Any], file: Path) -> list[str]:
@@ -169,246 +69,3 @@ def _unknown(tables: Mapping[str, Any], file: Path) -> list[str]:
             continue
         problems.append(f"{file}: {names.unknown(key)}")
     return problems
-
-
-def _page(table: Any, file: Path, problems: list[str]) -> Page | None:
-    """The page of a table [page]; what is wrong with it is appended to `problems`."""
-    try:
-        return read_page(table, file)
-    except ValueError as error:
-        problems.append(str(error))
-        return None
-
-
-def _gathered(page: Page, place: str, problems: list[str]) -> StudyPage | None:
-    """A page with what its files hold; what is wrong with it is appended to `problems`."""
-    try:
-        return StudyPage.of(page, place)
-    except ValueError as error:
-        problems.append(str(error))
-        return None
-
-
-def _device(
-    tables: Mapping[str, Any], file: Path, overrides: Iterable[str]
-) -> tuple[DeviceFile, str]:
-    """The device, and the text of all that describes it."""
-    settings, problems = settings_of(overrides)
-    text = file.read_text("utf-8-sig")
-    given, source = {k: v for k, v in tables.items() if k in TABLES}, file
-    if "base" in tables:
-        if not isinstance(tables["base"], str):
-            required = "the path of a device file in quotes"
-            raise ConfigError([refusal("base", required, quoted(tables["base"]), str(file))])
-        source = file.parent / tables["base"]
-        given = read_tables(source)
-        text = f"{text.rstrip()}\n\n# ---- {tables['base']} ----\n\n{source.read_text('utf-8-sig')}"
-    elif not given:
-        raise ConfigError([f'{file}: has no device; write base = "device.toml" at the top'])
-    if settings:
-        said = "\n".join(f"# {setting.place} = {setting.value}" for setting in settings)
-        text = f"{text.rstrip()}\n\n{said}\n"
-    device = device_of(
-        source,
-        given,
-        [*_settings(tables, file), *settings],
-        whole="page" in tables,
-        problems=problems,
-    )
-    return device, text
-
-
-def _settings(tables: Mapping[str, Any], file: Path) -> list[Setting]:
-    """Return the settings of the table [set]."""
-    given = tables.get("set", {})
-    if not isinstance(given, dict):
-        raise ConfigError([refusal("set", "a table, [set]", quoted(given), str(file))])
-    settings = []
-    for key, value in written_axes(given):
-        keys = NAMES.matches(key)
-        if len(keys) == 1 and is_file(keys[0], value):
-            value = str((file.parent / value).absolute())
-        settings.append(Setting(key, value, f"{file}: set"))
-    return settings
-
-
-class _Reader:
-    """Reads the tables of one study file; what is wrong is appended to `problems`."""
-
-    def __init__(
-        self,
-        file: str,
-        tables: Mapping[str, Any],
-        device: DeviceFile,
-        problems: list[str],
-        si: bool,
-    ) -> None:
-        self._file, self._tables, self._device = file, tables, device
-        self._problems, self._scans, self._si = problems, "page" in tables, si
-        self.among = SCAN_OUTPUTS if self._scans else OUTPUTS
-        axes = self._axes("axes") | self._axes("conditions")
-        self.links = self._links(axes)
-        tolerances = self._axes("tolerances")
-        self.tolerance_links = self._links(tolerances)
-        self.tolerances = {
-            k: axis for k, axis in tolerances.items() if isinstance(axis, Distribution)
-        }
-        self._swept = axes.keys() | tolerances.keys()
-        self.dimensions = self._dimensions(axes)
-
-    def table(self, name: str) -> dict[str, Any]:
-        """Return a table of the file; empty for a missing table."""
-        given = self._tables.get(name, {})
-        if isinstance(given, dict):
-            return given
-        self._problems.append(refusal(name, f"a table, [{name}]", quoted(given), self._file))
-        return {}
-
-    def text(self, name: str) -> str:
-        """Text, empty where it is missing."""
-        given = self._tables.get(name, "")
-        if isinstance(given, str):
-            return given
-        self._problems.append(refusal(name, "text in quotes", quoted(given), self._file))
-        return ""
-
-    def whole(self, name: str, default: int, most: int, least: int = 1) -> int:
-        """A whole number at the top or, as "sample.count", in a table."""
-        table, _, key = name.rpartition(".")
-        given = (self.table(table) if table else self._tables).get(key, default)
-        if type(given) is int and least <= given <= most:
-            return given
-        required = f"a whole number from {least} to {most}"
-        self._problems.append(refusal(name, required, quoted(given), self._file))
-        return max(least, min(default, most))
-
-    def chunk(self) -> int:
-        """Points that are computed together."""
-        most = budgets.CHUNK_OF_SCANS if self._scans else budgets.CHUNK
-        return self.whole("chunk", SCANS if self._scans else CHUNK, most.most)
-
-    def outputs(self) -> tuple[str, ...]:
-        """The variables to keep, each once, with the status of every point."""
-        given = self._tables.get("outputs")
-        if given is None:
-            rigid = self._device.drive.finger.rigid and "finger.stiffness" not in self._swept
-            whole = self._device.whole
-            coil = whole is not None and whole.magnet().coil is not None
-            return usual_outputs(self.among, rigid=rigid, coil=coil)
-        if not isinstance(given, list) or not given:
-            required = 'a list of numbers, like ["settling_time", "swing"]'
-            self._problems.append(refusal("outputs", required, quoted(given), self._file))
-            return ("status",)
-        found = []
-        for name in given:
-            try:
-                found.append(known_output(name, f"{self._file}: outputs", self.among))
-            except ValueError as error:
-                self._problems.append(str(error))
-        return tuple(dict.fromkeys((*found, "status")))
-
-    def _links(self, axes: Mapping[str, Axis]) -> dict[str, Linked]:
-        """Return the linked keys: the written links, and keys that keep their ratio."""
-        written = {key: axis for key, axis in axes.items() if isinstance(axis, Linked)}
-        return written | implied_links(self._device, axes.keys(), self._scans)
-
-    # ---- axes ------------------------------------------------------------------------------------
-
-    def _axes(self, table: str) -> dict[str, Axis]:
-        found: dict[str, Axis] = {}
-        names: dict[str, str] = {}
-        for given, spec in written_axes(self.table(table)):
-            try:
-                key = sweepable(given, f"{self._file}: {table}", self._scans)
-                if key in names:
-                    raise ValueError(
-                        f"{self._file}: {table}.{key} is given twice, as {names[key]} and {given}"
-                    )
-                names[key] = given
-                base = base_value(self._device, key)
-                number = base if isinstance(base, float) else None
-                found[key] = AxisReader(
-                    self._file, table, key, number, scans=self._scans, si=self._si
-                ).read(spec)
-            except ValueError as error:
-                self._problems.append(str(error))
-        return found
-
-    def _dimensions(self, axes: Mapping[str, Axis]) -> tuple[Dimension, ...]:
-        grids = {k: v for k, v in axes.items() if not isinstance(v, Distribution | Linked)}
-        drawn = {k: v for k, v in axes.items() if isinstance(v, Distribution)}
-        groups = self._zips(grids)
-        dimensions: list[Dimension] = []
-        done: set[str] = set()
-        for key in axes:
-            if key in drawn and "sample" not in done:
-                done.add("sample")
-                sample = self._sample(tuple(drawn))
-                dimensions.append(Dimension("sample", sample.count, drawn, sample))
-            elif key in grids and key not in done:
-                group = next((g for g in groups if key in g), (key,))
-                done |= {*group}
-                own: dict[str, Grid] = {name: grids[name] for name in group}
-                dimensions.append(Dimension(variable(group[0]), grids[key].count, own))
-        if not drawn:
-            for name in self.table("sample"):
-                self._check_sample_key(name)
-        return tuple(dimensions)
-
-    def _zips(self, grids: Mapping[str, Grid]) -> list[tuple[str, ...]]:
-        """The groups of keys that go together."""
-        given = self._tables.get("zip", [])
-        if not isinstance(given, list) or not all(isinstance(group, list) for group in given):
-            required = 'a list of groups, like [["drive.mass", "drive.stiffness"]]'
-            self._problems.append(refusal("zip", required, quoted(given), self._file))
-            return []
-        groups: list[tuple[str, ...]] = []
-        for group in given:
-            try:
-                groups.append(self._zipped(group, grids, [key for g in groups for key in g]))
-            except ValueError as error:
-                self._problems.append(str(error))
-        return groups
-
-    def _zipped(
-        self, group: Sequence[object], grids: Mapping[str, Grid], taken: Sequence[str]
-    ) -> tuple[str, ...]:
-        place = f"{self._file}: zip"
-        keys = []
-        for name in group:
-            key = sweepable(str(name), place, self._scans)
-            if key not in grids:
-                raise ValueError(f"{place}: {key} is no axis of a list or of even steps")
-            if key in taken or key in keys:
-                raise ValueError(f"{place}: {key} is named twice")
-            keys.append(key)
-        if len(keys) < 2:
-            raise ValueError(refusal("a group", "two keys or more", quoted(list(group)), place))
-        if len({grids[key].count for key in keys}) > 1:
-            lengths = ", ".join(f"{key} has {grids[key].count}" for key in keys)
-            raise ValueError(f"{place}: axes that go together must be of one length; {lengths}")
-        return tuple(keys)
-
-    def _sample(self, keys: tuple[str, ...]) -> Sample:
-        table = self.table("sample")
-        for name in table:
-            self._check_sample_key(name)
-        method = table.get("method", "random")
-        if method not in ("random", "sobol"):
-            required = '"random" or "sobol"'
-            self._problems.append(refusal("sample.method", required, quoted(method), self._file))
-            method = "random"
-        if "count" not in table:
-            drawn = ", ".join(keys)
-            self._problems.append(
-                f"{self._file}: sample.count is missing for {drawn}; write count = 1024 in [sample]"
-            )
-        most = MOST_SOBOL if method == "sobol" else budgets.AXIS.most
-        count = self.whole("sample.count", 1024, most)
-        return Sample(keys, count, self.whole("sample.seed", 1, 2**63 - 1, 0), method)
-
-    def _check_sample_key(self, name: str) -> None:
-        if name not in _SAMPLE:
-            self._problems.append(
-                f"{self._file}: unknown key sample.{name}; there are {', '.join(_SAMPLE)}"
-            )

@@ -16,7 +16,7 @@ import json
 import os
 from pathlib import Path
 from threading import Lock
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 from zlib import crc32
 
 import numpy as np
@@ -28,7 +28,9 @@ from pindrive.files.keys import NUMERIC_KEYS, variable
 from pindrive.files.output import OutputError, naming
 from pindrive.lazy import h5netcdf, h5py
 from pindrive.study import outputs
-from pindrive.study.design import Plan
+
+if TYPE_CHECKING:
+    from pindrive.study.study import Study
 
 
 class Piece(NamedTuple):
@@ -40,15 +42,15 @@ class Piece(NamedTuple):
     values: NDArray[Any]
 
 
-def extents(plan: Plan, chunk: int) -> list[tuple[str, int, int]]:
+def extents(study: Study, chunk: int) -> list[tuple[str, int, int]]:
     """Name, start and length of the pieces of a chunk, in their order."""
-    begin, end = plan.bounds(chunk)
+    begin, end = study.bounds(chunk)
     coordinates = [
         (variable(key), first, last - first)
-        for dimension, first, last in plan.first_seen(chunk)
+        for dimension, first, last in study.first_seen(chunk)
         for key in dimension.axes
     ]
-    return [*coordinates, *((name, begin, end - begin) for name in plan.outputs)]
+    return [*coordinates, *((name, begin, end - begin) for name in study.outputs)]
 
 
 def checksum(pieces: list[Piece]) -> int:
@@ -62,10 +64,10 @@ def checksum(pieces: list[Piece]) -> int:
 class Store:
     """An open file of a study, to put pieces in and to read them back."""
 
-    def __init__(self, path: Path, plan: Plan) -> None:
+    def __init__(self, path: Path, study: Study) -> None:
         """Open a file that `lay_out` made."""
         self._path, self._lock = path, Lock()
-        names = {variable(key) for d in plan.dimensions for key in d.axes} | {*plan.outputs}
+        names = {variable(key) for d in study.dimensions for key in d.axes} | {*study.outputs}
         try:
             with h5py.File(path, "r") as file:
                 found = {name: (file[name].id.get_offset(), file[name].dtype) for name in names}
@@ -96,10 +98,10 @@ class Store:
                 while bytes_left:
                     bytes_left = bytes_left[self._file.write(bytes_left) :]
 
-    def read(self, plan: Plan, chunk: int) -> list[Piece]:
+    def read(self, study: Study, chunk: int) -> list[Piece]:
         """The pieces of a chunk as they stand in the file."""
         found = []
-        for name, start, length in extents(plan, chunk):
+        for name, start, length in extents(study, chunk):
             offset, kind = self._places[name]
             with self._lock:
                 self._file.seek(offset + start * kind.itemsize)
@@ -112,68 +114,70 @@ class Store:
         os.fsync(self._file.fileno())
 
 
-def bytes_of(plan: Plan) -> int:
+def bytes_of(study: Study) -> int:
     """The size of the file without its structure."""
-    each = sum(outputs.dtype(name).itemsize for name in plan.outputs)
-    return plan.size * each + sum(8 * d.size * len(d.axes) for d in plan.dimensions)
+    each = sum(outputs.dtype(name).itemsize for name in study.outputs)
+    return study.size * each + sum(8 * d.size * len(d.axes) for d in study.dimensions)
 
 
 # ---- the structure -------------------------------------------------------------------------------
 
 
-def lay_out(path: Path, plan: Plan) -> None:
+def lay_out(path: Path, study: Study) -> None:
     """Write the file's structure: dimensions, coordinates, variables, units, the study itself."""
     from pindrive import __version__
 
-    links = "\n".join(link.words(key) for key, link in plan.links.items())
+    links = "\n".join(link.words(key) for key, link in study.links.items())
     with h5netcdf.File(path, "w") as file:
-        file.dimensions = {dimension.name: dimension.size for dimension in plan.dimensions}
-        for dimension in plan.dimensions:
+        file.dimensions = {dimension.name: dimension.size for dimension in study.dimensions}
+        for dimension in study.dimensions:
             for key, axis in dimension.axes.items():
                 made = _variable(file, variable(key), (dimension.name,), "<f8")
                 made.attrs.update(NUMERIC_KEYS[key].attributes, key=key)
                 if getattr(axis, "log", False):
                     made.attrs["spacing"] = "log"
-        for key, value in _fixed(plan).items():
+        for key, value in _fixed(study).items():
             made = file.create_variable(variable(key), (), "<f8", data=value)
             made.attrs.update(NUMERIC_KEYS[key].attributes, key=key)
-        names = tuple(dimension.name for dimension in plan.dimensions)
-        for name in plan.outputs:
+        names = tuple(dimension.name for dimension in study.dimensions)
+        for name in study.outputs:
             made = _variable(file, name, names, outputs.dtype(name), outputs.missing(name))
             made.attrs.update(outputs.attributes(name))
-            beside = [variable(key) for key in (*plan.axes, *_fixed(plan)) if key not in plan.links]
+            beside = [
+                variable(key) for key in (*study.axes, *_fixed(study)) if key not in study.links
+            ]
             made.attrs["coordinates"] = " ".join(v for v in beside if v not in names)
         file.attrs.update(
             {
                 "Conventions": "CF-1.11",
-                "title": plan.name or "A study of a pin drive",
+                "title": study.name or "A study of a pin drive",
                 "source": f"pindrive {__version__}",
-                "study": plan.text,
-                **({"page": plan.page.page.words} if plan.page else {}),
+                "study": study.text,
+                **({"page": study.page.page.words} if study.page else {}),
                 **({"links": links} if links else {}),
-                "specification": outputs.as_attribute(plan.constraints),
-                "identity": identity(plan),
+                "specification": outputs.as_attribute(study.constraints),
+                "identity": identity(study),
             }
         )
 
 
-def _fixed(plan: Plan) -> dict[str, float]:
+def _fixed(study: Study) -> dict[str, float]:
     """The values of the device that no axis changes."""
-    swept = {*plan.axes}
+    swept = {*study.axes}
     if swept & {"drive.damping", "drive.damping_ratio"}:
         swept |= {"drive.damping", "drive.damping_ratio"}
     if any(key == f"magnet.{name}" for key in swept for name in COIL):
         swept |= {f"magnet.{name}" for name in DIRECT}
     return {
         key: value
-        for key, value in plan.values.items()
+        for key, value in study.values.items()
         if isinstance(value, float) and key not in swept
     }
 
 
-def identity(plan: Plan) -> str:
+def identity(study: Study) -> str:
     """Return the text on which the study's numbers depend."""
-    return json.dumps(plan.identity(), sort_keys=True)
+    return json.dumps(study.identity(), sort_keys=True)
 
 
 def _variable(

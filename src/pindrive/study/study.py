@@ -3,29 +3,39 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import fields
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import asdict, dataclass
+from math import prod
 from os import PathLike
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, Final
 
+import numpy as np
+
 from pindrive.device.page_description import Page
-from pindrive.files.device import DeviceFile
+from pindrive.files.device import ConfigError, DeviceFile, Setting, device_of
+from pindrive.files.keys import has_part, written
 from pindrive.lazy import xr
+from pindrive.quantities import budgets
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.refusal import refusal
+from pindrive.quantities.value import equal_by_value
 from pindrive.study.axes import as_read
-from pindrive.study.design import Plan
-from pindrive.study.runner import Work, on_cluster, on_threads, sweep
-from pindrive.study.spec import plan_of, read_study
+from pindrive.study.design import CHUNK, SCANS, Columns, Dimension, StudyPage
+from pindrive.study.distributions import Axis, Distribution, Linked, with_links
+from pindrive.study.outputs import Constraint
 
 _PLACE: Final = "Study"
 """Place of Python values in messages."""
 
 
-class Study(Plan):
+@equal_by_value
+@dataclass(frozen=True, slots=True, init=False, repr=False)
+class Study:
     """Device with varied keys; every point is a release, or a scan of a page.
+
+    The points are the product of the dimensions; the last dimension changes fastest.
 
     Args:
         device: as `load_device` reads it.
@@ -63,7 +73,21 @@ class Study(Plan):
         ('mouse_velocity', 'plate_kinetic')
     """
 
-    __slots__ = ()
+    path: Path
+    name: str
+    text: str
+    """The study file, and the device file where it names one."""
+    device: DeviceFile
+    dimensions: tuple[Dimension, ...]
+    links: Mapping[str, Linked]
+    outputs: tuple[str, ...]
+    """Variables to keep, in the order of the file."""
+    chunk: int
+    tolerances: Mapping[str, Distribution]
+    tolerance_links: Mapping[str, Linked]
+    constraints: tuple[Constraint, ...]
+    page: StudyPage | None
+    """Scanned page of every point; None: every point is a release."""
 
     def __init__(
         self,
@@ -95,11 +119,169 @@ class Study(Plan):
             whole.check("page.{}")
             tables["page"] = whole
         text = json.dumps(tables, indent=1, ensure_ascii=False, default=repr)
-        self._take(plan_of(tables, device, path=device.path, place=_PLACE, text=text, si=True))
+        self._take(tables, device, path=device.path, place=_PLACE, text=text, problems=[], si=True)
 
-    def _take(self, plan: Plan) -> None:
-        """Become the study that a plan says."""
-        Plan.__init__(self, **{field.name: getattr(plan, field.name) for field in fields(Plan)})
+    @classmethod
+    def of_tables(
+        cls,
+        tables: Mapping[str, Any],
+        device: DeviceFile,
+        *,
+        path: Path,
+        place: str,
+        text: str,
+        problems: Iterable[str] = (),
+        si: bool = False,
+    ) -> Study:
+        """Read a study from the tables of a study file.
+
+        Args:
+            tables: Tables of the file; `page` is a `Page`, or None for a rejected page, and
+                `conditions` are further axes, of a design problem (see `pindrive.optimisation`).
+            device: Device with the keys to vary.
+            path: File that a sweep must not overwrite.
+            place: Place of the tables for messages.
+            text: Text of the tables, stored with the numbers.
+            problems: Errors found before.
+            si: True if bare numbers are SI, as from Python.
+
+        Raises:
+            ConfigError: An entry is unknown, malformed, out of bounds or contradictory.
+        """
+        study = cls.__new__(cls)
+        study._take(tables, device, path=path, place=place, text=text, problems=[*problems], si=si)
+        return study
+
+    def _take(
+        self,
+        tables: Mapping[str, Any],
+        device: DeviceFile,
+        *,
+        path: Path,
+        place: str,
+        text: str,
+        problems: list[str],
+        si: bool,
+    ) -> None:
+        """Set all attributes from tables; arguments as for `of_tables`."""
+        from pindrive.study.tables import parts_of
+        from pindrive.study.validation import conflicts
+
+        parts = parts_of(
+            tables, device, path=path, place=place, text=text, problems=problems, si=si
+        )
+        for name, value in parts.items():
+            object.__setattr__(self, name, value)
+        problems += self._too_much()
+        problems += conflicts(self, place)
+        if problems:
+            raise ConfigError(list(dict.fromkeys(problems)))
+
+    def _too_much(self) -> Iterator[str]:
+        """Return the errors of a study beyond the budgets."""
+        of = f"{self.size} points, {self.chunk} in each; a larger chunk makes fewer"
+        for budget, count, words in (
+            (budgets.CHUNKS, self.chunks, of),
+            (budgets.CONSTRAINTS, len(self.constraints), ""),
+        ):
+            try:
+                budget.check(count, words, where=str(self.path))
+            except ValueError as error:
+                yield str(error)
+
+    @property
+    def inputs(self) -> tuple[Path, ...]:
+        """The files that it was read from, or reads when it is computed."""
+        page = self.page.page.files.values() if self.page else ()
+        return (self.path, *self.device.inputs, *page)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Number of points along each dimension."""
+        return tuple(dimension.size for dimension in self.dimensions)
+
+    @property
+    def size(self) -> int:
+        """Number of points."""
+        return prod(self.shape)
+
+    @property
+    def chunks(self) -> int:
+        """Number of chunks."""
+        return -(-self.size // self.chunk)
+
+    def bounds(self, chunk: int) -> tuple[int, int]:
+        """The first point of a chunk, and the first of the next."""
+        return chunk * self.chunk, min((chunk + 1) * self.chunk, self.size)
+
+    def first_seen(self, chunk: int) -> Iterator[tuple[Dimension, int, int]]:
+        """For each dimension, the places along it that no point of an earlier chunk has."""
+        ends = self.bounds(chunk)
+        for i, dimension in enumerate(self.dimensions):
+            stride = prod(self.shape[i + 1 :])
+            first, last = (min(-(-point // stride), dimension.size) for point in ends)
+            if first < last:
+                yield dimension, first, last
+
+    @property
+    def at_a_time(self) -> int:
+        """Number of points between two reports of the progress."""
+        return 16 * SCANS if self.page else CHUNK
+
+    @property
+    def values(self) -> dict[str, Any]:
+        """The device's value of each key that has a part in this study, SI; None: not given."""
+        derived = self.device.derived
+        return {
+            key: value
+            for key, value in self.device.values().items()
+            if has_part(key, self.page is not None) and key not in derived
+        }
+
+    @property
+    def axes(self) -> dict[str, Axis]:
+        """Every swept key with its values; dependent keys come last."""
+        found: dict[str, Axis] = {}
+        for dimension in self.dimensions:
+            found.update(dimension.axes)
+        return found | dict(self.links)
+
+    def columns(self, begin: int, end: int) -> Columns:
+        """The value of every swept key at the points from `begin` up to `end`."""
+        places = np.unravel_index(np.arange(begin, end), self.shape)
+        found: Columns = {}
+        for dimension, index in zip(self.dimensions, places, strict=True):
+            found |= dimension.at(index)
+        return with_links(self.device, found, self.links)
+
+    def device_at(self, at: Mapping[str, float]) -> DeviceFile:
+        """Return the device at a point with these values of the keys, SI.
+
+        Raises:
+            ConfigError: The values contradict each other.
+        """
+        given = [Setting(key, written(key, value), "") for key, value in at.items()]
+        return device_of(self.device.path, self.device.tables, given, whole=self.page is not None)
+
+    def identity(self) -> dict[str, Any]:
+        """All that its numbers follow from: two studies with one identity have one answer."""
+        from pindrive import __version__
+
+        page = {"page": self.page.identity()} if self.page else {}
+        found: dict[str, Any] = json.loads(
+            json.dumps(
+                {
+                    "pindrive": __version__,
+                    "device": self.values,
+                    **page,
+                    "dimensions": [asdict(dimension) for dimension in self.dimensions],
+                    "links": {key: asdict(link) for key, link in self.links.items()},
+                    "outputs": self.outputs,
+                    "chunk": self.chunk,
+                }
+            )
+        )
+        return found
 
     def __repr__(self) -> str:
         """Return the number of points and the dimensions in a line."""
@@ -140,11 +322,13 @@ class Study(Plan):
         Raises:
             ValueError: nothing varies; or the file is there, or cannot be written.
         """
+        from pindrive.study.runner import on_cluster, on_threads, sweep
+
         if not self.dimensions:
             raise ValueError(f"{_PLACE}: has no axes; say what to vary in axes")
         if threads is not None and cluster is not None:
             raise ValueError("give threads or cluster, not both: workers have their own")
-        work: Work = on_threads(threads) if cluster is None else on_cluster(cluster)
+        work = on_threads(threads) if cluster is None else on_cluster(cluster)
         if path is None:
             with TemporaryDirectory(prefix="pindrive-") as folder:
                 target = Path(folder) / "study.nc"
@@ -153,27 +337,3 @@ class Study(Plan):
         target = Path(path)
         done = sweep(self, target, resume=resume, force=force, work=work, tell=progress)
         return done.to_dataset()
-
-
-def load_study(path: str | PathLike[str], overrides: Iterable[str] = ()) -> Study:
-    """The study that a file describes.
-
-    Args:
-        path: a TOML file that names a device, or holds one, and says what to vary.
-        overrides: "key=value" each, as for `load_device`; after those in its table [set].
-
-    Returns:
-        The study; `run` simulates its points.
-
-    Raises:
-        ConfigError: the file or its device cannot be read, or holds anything unknown, malformed,
-            out of bounds or contradictory; a line for each problem.
-
-    Examples:
-        >>> import pindrive as pd
-        >>> pd.load_study("tactile-mouse-study.toml").shape
-        (146, 153, 3)
-    """
-    study = Study.__new__(Study)
-    study._take(read_study(path, overrides))
-    return study

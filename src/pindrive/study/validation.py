@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from pindrive.device.electromagnet import check_one_way
 from pindrive.device.pin_array import check_count
-from pindrive.files.device import DeviceFile
 from pindrive.files.keys import NUMERIC_KEYS
 from pindrive.motion.coefficients import KINETIC, within
 from pindrive.motion.drive import check_one_kind
 from pindrive.motion.friction import COEFFICIENTS, normal_force
 from pindrive.quantities import budgets
 from pindrive.quantities.table import QUANTITIES
-from pindrive.study.design import COUNTS, Columns, Plan
+from pindrive.study.design import COUNTS, Columns
 from pindrive.study.distributions import (
     Axis,
     Distribution,
@@ -27,26 +26,30 @@ from pindrive.study.distributions import (
     with_links,
 )
 
+if TYPE_CHECKING:
+    from pindrive.files.device import DeviceFile
+    from pindrive.study.study import Study
+
 _MOST_COMPARED = 1 << 20
 """Points of one dimension that are compared one by one."""
 
 
-def conflicts(plan: Plan, file: str) -> list[str]:
+def conflicts(study: Study, file: str) -> list[str]:
     """A line for each contradiction among the axes, and between them and the device."""
     problems = []
-    tolerances: dict[str, Axis] = {**plan.tolerances, **plan.tolerance_links}
-    for table, axes in (("axes", plan.axes), ("tolerances", tolerances)):
+    tolerances: dict[str, Axis] = {**study.tolerances, **study.tolerance_links}
+    for table, axes in (("axes", study.axes), ("tolerances", tolerances)):
         if keys := circle({k: axis for k, axis in axes.items() if isinstance(axis, Linked)}):
             problems.append(f"{file}: {table}: {_in_words(keys)}")
             continue
-        problems += [f"{file}: {table}: {words}" for words in _among(plan.device, axes)]
-        if plan.page:
-            problems += [f"{file}: {table}: {words}" for words in _around(plan, axes)]
+        problems += [f"{file}: {table}: {words}" for words in _among(study.device, axes)]
+        if study.page:
+            problems += [f"{file}: {table}: {words}" for words in _around(study, axes)]
         for kinetic, static in _PAIRS:
-            if words := _static_below_kinetic(plan, axes, static, kinetic):
+            if words := _static_below_kinetic(study, axes, static, kinetic):
                 problems.append(f"{file}: {table}: {words}")
-    if plan.page and not any(_sizes(key) for key in (*plan.axes, *tolerances)):
-        problems += [f"{file}: page: {words}" for words in _unreadable(plan)]
+    if study.page and not any(_sizes(key) for key in (*study.axes, *tolerances)):
+        problems += [f"{file}: page: {words}" for words in _unreadable(study)]
     return problems
 
 
@@ -55,12 +58,12 @@ def _sizes(key: str) -> bool:
     return key.startswith(("array.", "scan."))
 
 
-def _unreadable(plan: Plan) -> Iterator[str]:
+def _unreadable(study: Study) -> Iterator[str]:
     """Return the errors of a page that is equal at every point."""
-    if plan.page and plan.device.whole:
-        reading, array = plan.device.reading, plan.device.whole.array()
+    if study.page and study.device.whole:
+        reading, array = study.device.reading, study.device.whole.array()
         try:
-            plan.page.hand(reading, plan.page.scene(reading, array), array)
+            study.page.hand(reading, study.page.scene(reading, array), array)
         except ValueError as error:
             yield str(error)
 
@@ -94,21 +97,21 @@ def _in_words(keys: tuple[str, ...]) -> str:
     return f"{first} follows {', which follows '.join((*others, first))}; give one of them values"
 
 
-def _around(plan: Plan, axes: Mapping[str, Axis]) -> Iterator[str]:
+def _around(study: Study, axes: Mapping[str, Axis]) -> Iterator[str]:
     """Return the errors of the tables around the drive."""
     magnet = {name for table, _, name in (key.partition(".") for key in axes) if table == "magnet"}
     if magnet:
         try:
-            check_one_way(magnet | plan.device.tables["magnet"].keys(), table="magnet")
+            check_one_way(magnet | study.device.tables["magnet"].keys(), table="magnet")
         except ValueError as error:
             yield str(error)
-    if "places" in plan.device.tables["array"]:
+    if "places" in study.device.tables["array"]:
         for key in ("array.columns", "array.rows", "array.pitch"):
             if key in axes:
                 yield f"{key} cannot be varied beside array.places"
-    if "scan.touch" in axes and plan.device.drive.finger.coefficient is None:
+    if "scan.touch" in axes and study.device.drive.finger.coefficient is None:
         yield "scan.touch cannot be varied where finger.kinetic is a force"
-    if "finger.touch_force" in axes and "touch" in plan.device.tables["scan"]:
+    if "finger.touch_force" in axes and "touch" in study.device.tables["scan"]:
         yield "finger.touch_force has no effect beside scan.touch, which gives the touch force"
     for key in COUNTS:
         axis = axes.get(key)
@@ -134,14 +137,14 @@ _PAIRS: Final = [
 """Kinetic and static friction, by forces and by coefficients."""
 
 
-def _static_below_kinetic(plan: Plan, axes: Mapping[str, Axis], static: str, kinetic: str) -> str:
+def _static_below_kinetic(study: Study, axes: Mapping[str, Axis], static: str, kinetic: str) -> str:
     """Words for static friction that is below kinetic friction at every point."""
     if not {static, kinetic} & axes.keys():
         return ""
-    if static not in axes and plan.device.values()[static] is None:
+    if static not in axes and study.device.values()[static] is None:
         return ""
-    largest, smallest = _span(plan, axes, static)[1], _span(plan, axes, kinetic)[0]
-    if largest >= smallest and not _below_along(plan, static, kinetic):
+    largest, smallest = _span(study, axes, static)[1], _span(study, axes, kinetic)[0]
+    if largest >= smallest and not _below_along(study, static, kinetic):
         return ""
     unit = NUMERIC_KEYS[static]
     return (
@@ -150,50 +153,50 @@ def _static_below_kinetic(plan: Plan, axes: Mapping[str, Axis], static: str, kin
     )
 
 
-def _span(plan: Plan, axes: Mapping[str, Axis], key: str) -> tuple[float, float]:
+def _span(study: Study, axes: Mapping[str, Axis], key: str) -> tuple[float, float]:
     """The smallest and the largest value of a key."""
     axis = axes.get(key)
     if axis is None:
-        value = float(base_value(plan.device, key))
+        value = float(base_value(study.device, key))
         return value, value
     if isinstance(axis, Linked):
-        of = _span(plan, axes, axis.of)
-        over = _span(plan, axes, axis.over) if axis.over else (1.0, 1.0)
+        of = _span(study, axes, axis.of)
+        over = _span(study, axes, axis.over) if axis.over else (1.0, 1.0)
         ends = sorted(axis.times * end / part for end in of for part in over)
         return ends[0], ends[-1]
     return axis.span
 
 
-def _below_along(plan: Plan, static: str, kinetic: str) -> bool:
+def _below_along(study: Study, static: str, kinetic: str) -> bool:
     """Return True if two zipped keys contradict at every point, though their ranges overlap."""
-    for dimension in plan.dimensions:
+    for dimension in study.dimensions:
         if {static, kinetic} <= dimension.axes.keys() and dimension.size <= _MOST_COMPARED:
             values = dimension.at(np.arange(dimension.size))
             return bool((values[static] < values[kinetic]).all())
     return False
 
 
-def coefficient_range(plan: Plan, *, tolerances: bool) -> tuple[float, float] | None:
+def coefficient_range(study: Study, *, tolerances: bool) -> tuple[float, float] | None:
     """The least and the largest kinetic coefficient of the plate; None where it does not change.
 
     Args:
-        plan: the study.
+        study: the study.
         tolerances: over its tolerances, not over its axes.
     """
-    links = plan.tolerance_links if tolerances else plan.links
-    by_coefficient = plan.device.drive.plate.coefficient is not None
+    links = study.tolerance_links if tolerances else study.links
+    by_coefficient = study.device.drive.plate.coefficient is not None
     own = "plate.coefficient" if by_coefficient else "plate.kinetic"
     followed = [own] if by_coefficient else [own, "drive.mass", "plate.preload"]
     for key in followed:  # and what they follow, and so on
         if key in links:
             followed += [of for of in (links[key].of, links[key].over) if of and of not in followed]
-    groups = [plan.tolerances] if tolerances else [d.axes for d in plan.dimensions]
+    groups = [study.tolerances] if tolerances else [d.axes for d in study.dimensions]
     columns: list[Columns] = []
     for i, axes in enumerate(groups):
         here = [key for key in axes if key in followed]
-        zipped = not tolerances and plan.dimensions[i].sample is None
+        zipped = not tolerances and study.dimensions[i].sample is None
         if len(here) > 1 and zipped:
-            every = plan.dimensions[i].at(np.arange(plan.dimensions[i].size))
+            every = study.dimensions[i].at(np.arange(study.dimensions[i].size))
             columns.append({key: every[key] for key in here})
         else:  # each by itself; the coefficient is monotone in it, so that its ends tell
             columns += [{key: np.array(axes[key].span)} for key in here]
@@ -204,7 +207,7 @@ def coefficient_range(plan: Plan, *, tolerances: bool) -> tuple[float, float] | 
         for column, index in zip(columns, places, strict=True)
         for key, values in column.items()
     }
-    found = plan.values | with_links(plan.device, spread, links)
+    found = study.values | with_links(study.device, spread, links)
     # A spread that goes down to no mass has no upper end.
     with np.errstate(divide="ignore", invalid="ignore"):
         force = 1.0 if by_coefficient else normal_force("plate", lambda n: found[QUANTITIES[n].key])
@@ -213,14 +216,14 @@ def coefficient_range(plan: Plan, *, tolerances: bool) -> tuple[float, float] | 
     return (low, high) if high > low * (1.0 + 1e-9) else None
 
 
-def coefficient_words(plan: Plan, *, tolerances: bool = False) -> tuple[str, bool] | None:
+def coefficient_words(study: Study, *, tolerances: bool = False) -> tuple[str, bool] | None:
     """Return the range of the friction coefficients in a sentence; None without a change."""
-    found = coefficient_range(plan, tolerances=tolerances)
+    found = coefficient_range(study, tolerances=tolerances)
     if found is None:
         return None
     low, high = found
     over = "the tolerances" if tolerances else "the study"
-    by_force = plan.device.drive.plate.coefficient is None
+    by_force = study.device.drive.plate.coefficient is None
     how = ", plate.kinetic over what presses" if by_force else ", plate.coefficient"
     known = all(within(value, KINETIC) for value in found)
     doubt = f"; steel on steel has {KINETIC[0]:.2f} to {KINETIC[1]:.2f} in handbooks"
