@@ -36,9 +36,9 @@ def commands(text: str) -> list[list[str]]:
 
 
 def rows(text: str) -> list[str]:
-    """The rows of evidence in a table."""
-    table = text.partition("| what | measured | printed by |\n|---|---|---|\n")[2]
-    return table.partition("\n\n")[0].splitlines()
+    """Return the rows of all tables of evidence."""
+    tables = text.split("| what | measured | printed by |\n|---|---|---|\n")[1:]
+    return [row for table in tables for row in table.partition("\n\n")[0].splitlines()]
 
 
 def test_it_is_short() -> None:
