@@ -1,4 +1,4 @@
-"""How Sphinx makes the site: `python3 run.py docs`."""
+"""Configuration of Sphinx for the site: `python3 run.py docs`."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ default_role = "code"  # docstrings set code between single backticks
 
 
 def read(app: Sphinx, docname: str, source: list[str]) -> None:
-    """Turn links to CONTRIBUTING.md into links to its page, and those to folders into their text.
+    """Replace links to CONTRIBUTING.md by links to its page, and links to folders by their text.
 
     The guides of the first page have, after those that it names, all other pages of this folder;
     that of the studio has a link to it.

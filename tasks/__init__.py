@@ -1,1 +1,1 @@
-"""What `run.py` does: the machine, the environment, and a module for each group of commands."""
+"""Commands of `run.py`: machine, environment, and a module for each group of commands."""

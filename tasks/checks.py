@@ -39,7 +39,7 @@ def installed_stub() -> Path:
 
 
 def check_stub() -> int:
-    """Whether the committed stub declares what the built extension does; layout apart."""
+    """Return True if the committed stub declares the built extension, apart from layout."""
     trees = (ast.dump(ast.parse(p.read_text("utf-8"))) for p in (STUB, installed_stub()))
     if len(set(trees)) == 1:
         return 0
@@ -77,7 +77,7 @@ LINT: dict[str, Callable[[], int]] = {
 
 
 def lint(steps: list[str]) -> int:
-    """Runs the steps named, or all of them, to the end, and says which failed."""
+    """Run the named steps, or all steps, to the end, and report the failed ones."""
     unknown = [step for step in steps if step not in LINT]
     if unknown:
         stop(f"no lint step {unknown[0]!r}; there are {', '.join(LINT)}")

@@ -30,7 +30,7 @@ def test(arguments: list[str]) -> int:
 
 
 def explore(arguments: list[str]) -> int:
-    """The tests of random cases: all cases of those of which `test` takes a part, then new seeds.
+    """Run all random cases, of which `test` takes a part, then new seeds.
 
     There are COUNT seeds from SEED on, which is random unless given.
     """
@@ -63,7 +63,7 @@ def explore(arguments: list[str]) -> int:
 
 
 def bench(arguments: list[str]) -> int:
-    """The timings: those of `simulate`, or those named first in the arguments."""
+    """Run the timings: of `simulate`, or the ones named first in the arguments."""
     named = arguments[:1] if arguments and not arguments[0].startswith("-") else []
     program = Path("benchmarks", f"{named[0] if named else 'simulate'}.py")
     if not (ROOT / program).exists():

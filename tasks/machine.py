@@ -1,4 +1,4 @@
-"""What a machine must have: Python, its venv module, its headers and a C++ compiler."""
+"""Requirements of a machine: Python, its venv module, its headers and a C++ compiler."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def remedy(need: int) -> str:
 
 
 def has(module: str) -> bool:
-    """Whether a module is there; an empty folder of its name is not enough."""
+    """Return True if a module exists; an empty folder of its name does not count."""
     spec = find_spec(module)
     return spec is not None and spec.origin is not None
 

@@ -1,4 +1,4 @@
-"""What several test files share."""
+"""Fixtures that several test files share."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def in_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture(scope="session")
 def c_library(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Where the C interface is installed, by the first commands of docs/c.md."""
+    """Folder of the installed C interface, built by the first commands of docs/c.md."""
 
     def build(folder: Path) -> None:
         for command in blocks(DOCS / "c.md")[0].text.splitlines():
@@ -47,7 +47,7 @@ def c_library(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="session")
 def programs(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Where the C++ tests, `fuzz` and `endings` are built.
+    """Folder of the C++ tests, `fuzz` and `endings`.
 
     Compiling takes longer than running: -O1 halves the one and hardly adds to the other.
     """
@@ -61,7 +61,7 @@ def programs(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def _built_once(factory: pytest.TempPathFactory, name: str, build: Callable[[Path], None]) -> Path:
-    """A folder of build/tests that is brought up to date once in a run, by one of the workers."""
+    """Return a folder of build/tests, built once per run by one of the workers."""
     if sys.platform == "win32":
         pytest.skip("where the library lies is tested on the others")
     import fcntl

@@ -70,7 +70,7 @@ class Case:
         return _core.simulate(*self.as_core())
 
     def plain(self) -> Case:
-        """The same without what `simulate_batch` does not take: curves, and inputs that change."""
+        """Return the case without curves and varying inputs, which `simulate_batch` rejects."""
         first = {name: rows[0][1] for name, rows in self.inputs.items()}
         constant = first | {"force": 0.0, "across_velocity": 0.0, "finger_load": 1.0}
         return replace(
@@ -80,7 +80,7 @@ class Case:
         )
 
     def python(self) -> tuple[Drive, Release]:
-        """The same in the classes of the package; the duration is left out."""
+        """Return the case as objects of the package, without the duration."""
         n = self.numbers
 
         def contact(name: str, stiffness: float) -> Contact:

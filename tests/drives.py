@@ -27,7 +27,7 @@ class Case:
         return simulate(self.drive, self.release, duration=duration)
 
     def rescaled(self, time: float, length: float, mass: float) -> Case:
-        """The same drive in other units of time, length and mass."""
+        """Return the drive in other units of time, length and mass."""
         force, speed = mass * length / time**2, length / time
         drive, release = self.drive, self.release
 

@@ -1,4 +1,4 @@
-"""What a figure shows, read back from its artists by their labels and ids."""
+"""Contents of a figure, read back from its artists by their labels and ids."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ def points(line: Line2D) -> tuple[Array, Array]:
 
 
 def data(axes: Axes, gid: str) -> tuple[Array, Array]:
-    """Of the one line with this id."""
+    """Return the data of the only line with this id."""
     (line,) = lines(axes, gid)
     return points(line)
 
 
 def events(axes: Axes, kind: str, contact: str) -> tuple[Array, Array]:
-    """Where the events of this kind at this contact are marked."""
+    """Return the marked times of the events of this kind at this contact."""
     found = [points(line) for line in lines(axes, f"{kind} {contact}")]
     return found[0] if found else (np.zeros(0), np.zeros(0))
 

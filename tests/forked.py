@@ -23,7 +23,7 @@ LOADED = (
     *("scipy.stats", "scipy.signal", "scipy.optimize", "matplotlib.figure", "matplotlib.pyplot"),
     *("rich.console", "rich.table", "typer.testing", "pint", "PIL.Image"),
 )
-"""What most tests import, and the package does not change."""
+"""Modules that most tests import and the package does not change."""
 NOT_IMPORTED = -2
 OPTIONS = ("-x", "-q", "-n", "0", "--no-header", "--tb=no", "-p", "no:cacheprovider")
 
@@ -76,7 +76,7 @@ def telling(output: str) -> str:
 
 
 def answer(job: dict[str, Any]) -> dict[str, Any]:
-    """What comes of a job."""
+    """Return the result of a job."""
     with tempfile.TemporaryFile("w+", encoding="utf-8") as output:
         child = os.fork()
         if not child:
@@ -95,7 +95,7 @@ def answer(job: dict[str, Any]) -> dict[str, Any]:
 
 
 def main() -> None:
-    """One job after the other, until there are no more."""
+    """Run jobs in sequence until there are none."""
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
     for name in LOADED:
         importlib.import_module(name)

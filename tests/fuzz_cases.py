@@ -1,4 +1,4 @@
-"""What fuzz of files draws: a command, its files and options, from a seed and a number."""
+"""Random cases of the fuzz of files: a command, its files and options, by seed and number."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Case:
     drawn: str
     """Them with their values, for a message."""
     interrupt: float | None
-    """When Ctrl-C comes, s; None: never."""
+    """Time of Ctrl-C, s; None: never."""
 
     @classmethod
     def of(cls, seed: int, number: int) -> Case:
@@ -220,7 +220,7 @@ def device(given: dict[str, str], varied: dict[str, str]) -> str:
 
 
 def study_file(varied: dict[str, str], scans: bool, rng: np.random.Generator) -> str:
-    """A study of these keys."""
+    """Return a study of these keys."""
     lines = ['base = "device.toml"']
     if rng.random() < 0.08:
         lines.append(f"chunk = {rng.choice(COUNTS)}")

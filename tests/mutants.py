@@ -1,4 +1,4 @@
-"""Whether the tests see what goes wrong: the Python package is spoiled in one place at a time.
+"""Mutation test of the Python package: a change in one place must make a test fail.
 
     python3 tests/mutants.py [--changed] [NAME...]
 
@@ -38,7 +38,7 @@ LIMIT = 20
 ENOUGH = 0.95
 TIMEOUT = 300.0
 FAILED, PASSED = 1, 0
-"""What pytest ends with; anything else is no verdict."""
+"""Exit codes of pytest with a verdict."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class Mutant:
     instead: str
     tests: tuple[str, ...]
     lives: str = ""
-    """Why no test can see it; empty: one must."""
+    """Reason for which no test can detect the mutant; empty: a test must."""
 
 
 def mutants() -> list[Mutant]:
@@ -84,7 +84,7 @@ def problems(chosen: list[Mutant]) -> list[str]:
 
 
 def changed() -> set[str]:
-    """Files that differ from those before the last commit; relative to the root."""
+    """Return the files that differ from the last commit but one; relative to the root."""
     command = ["git", "diff", "--name-only", "HEAD~1"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     if done.returncode:
@@ -93,7 +93,7 @@ def changed() -> set[str]:
 
 
 def spread(chosen: list[Mutant]) -> list[Mutant]:
-    """The mutants in another order: one of each file after the other."""
+    """Return the mutants in another order: alternating between files."""
     place: dict[str, int] = {}
     keys = []
     for mutant in chosen:
@@ -112,7 +112,7 @@ def python() -> str:
 
 
 class Runner:
-    """Runs tests on copies of the package; `close` ends those that still run."""
+    """Runner of tests on copies of the package; `close` ends running tests."""
 
     def __init__(self, folder: Path) -> None:
         """Copies the installed package, with the Python files as they are in the source."""
@@ -147,7 +147,7 @@ class Runner:
             self._idle.put(server)
 
     def _place(self, environment: Mapping[str, str], *, without_editable: bool) -> Path:
-        """Where the package is that is imported, perhaps past an editable installation."""
+        """Return the place of the imported package, past an editable installation."""
         tests = str(Path(forked.__file__).parent)
         script = f"import sys; sys.path.append({tests!r}); import forked; "
         if without_editable:
@@ -166,12 +166,12 @@ class Runner:
         return Path(done.stdout.strip())
 
     def control(self, tests: list[str]) -> str:
-        """What the tests say of the package as it is; empty where they pass."""
+        """Return the failures of the unchanged package; empty if none."""
         status, said = self._test(self._whole, "pindrive", tests)
         return "" if status == PASSED else said
 
     def verdict(self, mutant: Mutant) -> tuple[str, str]:
-        """How it ends: "dies", "lives" or "error", and by what."""
+        """Return the verdict "dies", "lives" or "error", with the deciding test."""
         module = ".".join(["pindrive", *Path(mutant.file).with_suffix("").parts])
         with self._spoiled(mutant) as path:
             status, said = self._test(path, module, list(mutant.tests))

@@ -1,4 +1,4 @@
-"""What a notebook shows of a result, read back; and what every result has."""
+"""Output of results in a notebook, read back; and properties of every result."""
 
 from __future__ import annotations
 

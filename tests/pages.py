@@ -1,4 +1,4 @@
-"""The pages of the site and their blocks of code, each of which a test runs.
+"""Pages of the site with their blocks of code, which tests run.
 
 How a page is written for that stands in tests/README.md, "Pages".
 """
@@ -27,7 +27,7 @@ class Block:
     language: str
     text: str
     reason: str
-    """Why it is not run, as the source of the page says in a comment before it; else empty."""
+    """Return the reason for which a block is not run, from a comment before the block; else ""."""
 
     def __str__(self) -> str:
         return f"{self.page}, line {self.line}:\n{self.text}"

@@ -121,13 +121,13 @@ class RandomScan:
 
 
 def short(pin: PinScan) -> bool:
-    """Whether a general integrator gets through it in a second."""
+    """Return True if a general integrator finishes within a second."""
     rows = len(pin.load.times) if isinstance(pin.load, Profile) else 1
     return rows <= 600 and pin.end <= 4.0
 
 
 def parting(whole: PinScan, halves: tuple[PinScan, PinScan]) -> float:
-    """How far two halves are from the whole, a part of its largest deflection."""
+    """Return the difference of two halves from the whole, relative to its largest deflection."""
     largest = np.abs(whole.position(np.linspace(whole.begin, whole.end, 2000))).max()
     worst = 0.0
     for half in halves:
@@ -137,7 +137,7 @@ def parting(whole: PinScan, halves: tuple[PinScan, PinScan]) -> float:
 
 
 def mirrors(pin: PinScan, other: PinScan) -> bool:
-    """Whether one is the mirror image of the other, to the bit."""
+    """Return True if one is the mirror image of the other, to the bit."""
     t = np.linspace(pin.begin, pin.end, 500)
     return (
         np.array_equal(pin.commands.times, other.commands.times)
@@ -162,7 +162,7 @@ def main(count: int, seed: int, *, curved: bool, oblique: bool) -> None:
 
 
 def main_sundials(count: int, seed: int, *, curved: bool, oblique: bool) -> None:
-    """Where SUNDIALS steps over two zeros, SciPy's DOP853 is asked with the same modes."""
+    """SciPy's DOP853 runs with equal modes if SUNDIALS steps over two zeros."""
     from oracle.scan_cycles import Distance, distance
     from oracle.watched_dop853 import dop853
 

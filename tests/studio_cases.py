@@ -1,4 +1,4 @@
-"""What the tests of the studio share: random releases, and how the page answers beside Python."""
+"""Random releases of the studio tests, and the page's answers beside Python's."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ NAMES = [number.name for number in (*TRANSIENT, *ENDING) if number.name != "tran
 
 
 def questions(count: int, seed: int) -> tuple[list[Any], list[dict[str, Any]]]:
-    """Random cases (drive, release, duration), and what the page is asked of them."""
+    """Random cases (drive, release, duration), with the questions to the page."""
     random = np.random.default_rng(seed)
     cases = [drawn(random) for _ in range(count)]
     asked = []

@@ -1,4 +1,4 @@
-"""What the tests of the page share: how a person uses it, and devices that they open."""
+"""Actions of a person on the page, and devices for the page."""
 
 from __future__ import annotations
 

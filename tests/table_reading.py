@@ -1,4 +1,4 @@
-"""What a report holds, as rows of cells."""
+"""Contents of a report as rows of cells."""
 
 from __future__ import annotations
 

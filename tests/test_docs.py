@@ -35,7 +35,7 @@ LONGER = {
         '--pitch "4 mm" --slowest "0.05 m/s" --fastest "0.2 m/s"'
     ),
 }
-"""How commands that take long begin, and what they get here beside what they say."""
+"""First words of slow commands, with additional options."""
 COARSER = {
     "examples/tactile-reader-study.toml": (
         ("count = 19", "count = 4"),
@@ -63,7 +63,7 @@ def test_what_is_left_out_is_no_more_than_that() -> None:
 def test_a_page_prints_what_it_says(
     page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
 ) -> None:
-    """Its blocks, one after the other, in one folder, each with the block of text after it."""
+    """The blocks of a page run in sequence in one folder, and print the next block of text."""
     text = "".join(block.text for block in BLOCKS[page])
     if sys.platform == "win32" and re.search(r"^(cmake|cc|dask) ", text, re.M):
         pytest.skip("its commands are those of other systems")
@@ -111,7 +111,7 @@ def test_every_file_that_a_page_writes_is_used_on_it() -> None:
 
 
 def test_commands_that_no_page_runs_are_there() -> None:
-    """Those of run.py are listed by its help."""
+    """The help of run.py lists its commands."""
     said = subprocess.run(
         [sys.executable, ROOT / "run.py", "--help"], capture_output=True, text=True, check=True
     ).stdout
@@ -135,7 +135,7 @@ def test_pictures_are_small() -> None:
 
 
 def test_every_page_is_on_the_site() -> None:
-    """Those that the first page names are there; it takes all others of its folder by itself."""
+    """Pages of the first page exist; the site adds all further pages of its folder."""
     index = (DOCS / "index.md").read_text("utf-8")
     trees = re.findall(r"^```\{toctree\}\n(?::[^\n]*\n)+\n(.*?)^```$", index, re.M | re.S)
     named = [line for tree in trees for line in tree.split("\n") if line and line[0] != "%"]
@@ -270,7 +270,7 @@ def test_calls_of_julia_are_those_of_the_header() -> None:
     whole = {*re.findall(r"^typedef int (\w+);", header, re.M), "int"}
 
     def julia(declared: str) -> set[str]:
-        """What may stand in Julia for an argument or a result."""
+        """Types in Julia for arguments and results."""
         name = re.sub(r"\bconst |\b\w+$", "", declared.strip()) if " " in declared else declared
         name = name.strip()
         if name in of_c:

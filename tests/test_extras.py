@@ -1,4 +1,4 @@
-"""What works without the extra "complete", and what the rest says there."""
+"""Commands without the extra "complete", and their messages."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ PathFinder.find_spec = lambda name, *rest: (
     None if name.partition(".")[0] in hidden else find(name, *rest)
 )
 """
-"""As a Python without these packages finds none of them."""
+"""Code that hides these packages from Python."""
 
 
 def python(folder: Path, *arguments: str | Path) -> subprocess.CompletedProcess[str]:

@@ -53,7 +53,7 @@ run("6")
 
 @pytest.fixture(scope="module")
 def said(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, str]:
-    """Of the cases as they are; of some of them with a library that warns."""
+    """Return the messages of the cases, some with a library that warns."""
     done = subprocess.run(
         [sys.executable, "-c", RUNS],
         capture_output=True,
@@ -75,6 +75,6 @@ def test_cases_end_well(said: tuple[str, str]) -> None:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="it forks")
 def test_what_is_wrong_is_told(said: tuple[str, str]) -> None:
-    """A library that warns: the same cases fail, and say so."""
+    """With a library that warns, the cases fail and report the warning."""
     assert said[1].endswith("status 1\n")
     assert ": a library warns: pindrive scan" in said[1]

@@ -1,4 +1,4 @@
-"""Which file of the package imports which: no circles, packages in one order; every name is used.
+"""Imports between the files of the package: no circles, ordered packages, used names.
 
 What counts is what runs as a module is imported: types may come from anywhere, and a result may
 reach its figure from inside a method.
@@ -22,14 +22,14 @@ ORDER = (
     *("quantities", "motion", "device", "evaluation", "files"),
     *("study", "fitting", "optimisation", "plot", "paper", "cli"),
 )
-"""Each package imports from itself and from those before it."""
+"""Packages in order: each imports from itself and from earlier packages."""
 MOST_LAYERS = 10
-"""Of packages: the longest chain of them, each of which imports the one before."""
+"""Longest chain of packages, each of which imports the package before."""
 MOST_FLOORS = 12
-"""Of files: the longest chain of them, each of which imports the one before."""
+"""Longest chain of files, each of which imports the file before."""
 
 USING = {".py", ".pyi", ".md"}
-"""What may use a name."""
+"""Places that may use a name."""
 
 Graph = dict[str, set[str]]
 
@@ -46,7 +46,7 @@ def run_at_import(node: ast.AST) -> Iterator[ast.AST]:
 
 
 def imports(files: dict[str, str]) -> Graph:
-    """The modules that each module imports, of those given.
+    """Return the imports of each module among the given modules.
 
     Args:
         files: the text of each module; a package is named as the package.
@@ -77,7 +77,7 @@ def without_own(graph: Graph) -> Graph:
 
 
 def circle(graph: Graph) -> list[str]:
-    """A circle, the first module of it also last; empty where there is none."""
+    """Return a circle with its first module repeated at the end; empty without one."""
     try:
         TopologicalSorter(graph).prepare()
     except CycleError as error:
@@ -86,7 +86,7 @@ def circle(graph: Graph) -> list[str]:
 
 
 def longest_chain(graph: Graph) -> list[str]:
-    """The longest chain of modules, each of which imports the one before; the shortest first."""
+    """Return the longest chain of modules, each of which imports the module before."""
     chains: dict[str, list[str]] = {}
     for module in TopologicalSorter(graph).static_order():
         below = max((chains[name] for name in graph[module]), key=len, default=[])
@@ -129,7 +129,7 @@ def test_every_package_has_its_place_in_the_order() -> None:
 
 
 def test_packages_stand_in_few_layers() -> None:
-    """With the modules of the top level as one of them."""
+    """The modules of the top level count as one package."""
 
     def folder(module: str) -> str:
         name = module.removeprefix("pindrive").removeprefix(".").partition(".")[0]

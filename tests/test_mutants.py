@@ -1,4 +1,4 @@
-"""The list of mutants is one of the code as it is, and what runs them tells life from death."""
+"""The list of mutants fits the code, and its runner tells detected ones."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def test_files_take_turns() -> None:
 
 @pytest.fixture(scope="module")
 def of_the_core() -> ModuleType:
-    """The mutants of the core, whose file has the name of those of Python."""
+    """Return the mutants of the core."""
     path = Path(__file__).parent / "fuzz" / "mutants.py"
     spec = spec_from_file_location("fuzz_mutants", path)
     assert spec is not None

@@ -1,4 +1,4 @@
-"""What `import pindrive` offers: reachable, documented, and with examples that run."""
+"""Names of `import pindrive`: reachable, documented, with examples that run."""
 
 from __future__ import annotations
 

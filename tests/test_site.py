@@ -35,7 +35,7 @@ TOO_WIDE = """() => {
   const width = Math.max(innerWidth, document.documentElement.scrollWidth);
   return {width, lost: named.slice(0, 5)};
 }"""
-"""How wide a page is, and what of it is beyond its right edge where no reader can scroll to it."""
+"""Script for the width of a page, and for parts that no reader can scroll to."""
 
 
 class Quiet(SimpleHTTPRequestHandler):
@@ -47,7 +47,7 @@ class Quiet(SimpleHTTPRequestHandler):
 
 @pytest.fixture(scope="module")
 def address() -> Iterator[str]:
-    """Where the site is served on this machine."""
+    """Address of the site on this machine."""
     if not PAGES:
         pytest.skip("needs the site of `python3 run.py docs`")
     with ThreadingHTTPServer(("127.0.0.1", 0), partial(Quiet, directory=str(SITE))) as server:

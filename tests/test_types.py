@@ -23,7 +23,7 @@ PACKAGES = (
 
 
 def callables(module: Any) -> Iterator[tuple[str, Callable[..., Any]]]:
-    """The functions and classes of a package, and the methods and properties of these."""
+    """Yield the functions and classes of a package, with methods and properties."""
     for name in dir(module):
         public = getattr(module, name)
         if name.startswith("_") or not callable(public):
@@ -43,7 +43,7 @@ def test_types_resolve_at_run_time(package: str) -> None:
 
 
 def test_no_public_name_is_any(tmp_path: Path) -> None:
-    """A program that uses all of them passes `mypy --strict`, without Any in a type."""
+    """A program that uses all public names passes `mypy --strict`, without Any in a type."""
     pytest.importorskip("mypy")
     names = [name for name in dir(pd) if not name.startswith("_")]
     lines = ["import pindrive", *(f"reveal_type(pindrive.{name})" for name in names)]

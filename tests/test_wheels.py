@@ -1,4 +1,4 @@
-"""How a wheel is judged, and that the workflows pin what they run and try what is promised."""
+"""Checks of a wheel, and of the workflows: pinned actions and promised platforms."""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ PLATFORMS = 6  # those of `python3 run.py fmu-binaries`
 
 
 def contents(names: Iterable[str]) -> tuple[bool, list[str]]:
-    """Whether the studio page is among the files, and the platforms of the FMU library."""
+    """Return if the studio page is among the files, and the platforms of the FMU library."""
     found = set(names)
     libraries = (re.fullmatch(r"pindrive/fmu/([^/]+)/pindrive\.(?:so|dll|dylib)", n) for n in found)
     return "pindrive/studio.html" in found, sorted(match[1] for match in libraries if match)
@@ -40,7 +40,7 @@ def tags(name: str) -> tuple[str, str, str]:
 
 
 def faults(name: str, size: float, names: Iterable[str], *, complete: bool) -> list[str]:
-    """What is wrong with a wheel of a size in MB that holds these files; each in one line.
+    """Return the errors of a wheel of a size in MB with these files, a line each.
 
     Args:
         name: Its file name.
@@ -135,7 +135,7 @@ def environment(python: str | Path, place: Path) -> Path:
 
 @cache
 def version_of(python: str | Path) -> tuple[int, int]:
-    """Of an interpreter: 3, 12."""
+    """Return the version of an interpreter: 3, 12."""
     asked = "import sys; print(*sys.version_info[:2])"
     said = call(f"asking {python} for its version", python, "-c", asked).split()
     return int(said[0]), int(said[1])
@@ -147,7 +147,7 @@ def name_of(python: str | Path) -> str:
 
 
 def serves(wheel: Path, version: tuple[int, int]) -> bool:
-    """Whether a wheel is for that version of Python."""
+    """Return True if a wheel fits that version of Python."""
     python, abi, _ = tags(wheel.name)
     own = (3, int(python.removeprefix("cp3")))
     return version >= own if abi == "abi3" else version == own
@@ -187,7 +187,7 @@ def try_out(wheel: Path, python: str | Path) -> tuple[float, float, float]:
 
 
 def judge(wheel: Path, *, complete: bool) -> list[str]:
-    """What is wrong with a wheel; prints what is in it."""
+    """Return the errors of a wheel; prints its contents."""
     with zipfile.ZipFile(wheel) as archive:
         names = archive.namelist()
     page, platforms = contents(names)

@@ -22,7 +22,7 @@ _ASKED = {
 
 
 def requests(text: str, suffix: str) -> list[str]:
-    """What a page (.html) or a style sheet (.css) asks other machines for when it is opened.
+    """Return the requests of a page (.html) or a style sheet (.css) to other machines.
 
     Links that a reader may follow are none of it.
     """

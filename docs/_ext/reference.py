@@ -111,7 +111,7 @@ def status() -> str:
 
 
 def python() -> str:
-    """What each public name is, by the module that has it."""
+    """Return the description of each public name, by the module that has it."""
     page = (PAGES / "python.md").read_text("utf-8")
     module, groups = "", dict[str, list[tuple[str, str]]]()
     for kind, name in re.findall(r"^\.\. (currentmodule|auto\w+):: ([\w.]+)$", page, re.M):

@@ -1,4 +1,4 @@
-"""The C interface, installed and used from C, and its answers beside those of the extension."""
+"""C interface, installed and used from C, compared with the extension."""
 
 from __future__ import annotations
 
@@ -160,7 +160,7 @@ IN_C = {
 }
 """The function of pindrive.h for what the extension calls otherwise."""
 OF_THE_EXTENSION = {"kernel_widths", "elementary", "settling_band", "event_limit"}
-"""How it computes, and its constants: of these C has no function."""
+"""Names of the extension without a function in C."""
 
 
 def test_what_python_can_do_with_the_core_c_can() -> None:
@@ -186,7 +186,7 @@ def test_what_python_can_do_with_the_core_c_can() -> None:
 
 
 def same(found: Any, expected: Any, case: int) -> None:
-    """The same bits, NaN where NaN is."""
+    """Return True for equal bits, or two NaN."""
     assert_array_equal(np.asarray(found, float), np.asarray(expected, float), f"case {case}")
 
 

@@ -80,7 +80,7 @@ def test_a_design_is_printed_and_written_or_the_closest_to_it() -> None:
 
 
 def test_tables_show_values_in_their_units() -> None:
-    """Every number of the report is one of the result, in its display unit."""
+    """Every number of the report is a number of the result, in its display unit."""
     found = optimise(None, "problem.toml", effort=SMALL)
     text = Path("report.txt")
     with text.open("w", encoding="utf-8") as file:

@@ -33,7 +33,7 @@ HEADINGS = (
     *("How it is computed", "Files", "Help", "Example"),
 )
 BEFORE_OTHERS = ("init", "sweep")
-"""The commands whose files those of others' examples are."""
+"""Commands whose files the examples of further commands need."""
 
 SHORTER = {
     "scan": ["--set", "array.columns=1", "--set", "array.rows=1"],
@@ -41,7 +41,7 @@ SHORTER = {
     "robustness": ["--draws", "100"],
     "studio": ["--no-browser"],
 }
-"""What the examples add here, to be quick; it changes nothing in what the command takes."""
+"""Additions to the examples that shorten them; the commands take equal arguments."""
 
 
 def test_each_command_has_a_file_a_group_and_an_example_of_itself() -> None:

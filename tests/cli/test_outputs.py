@@ -1,4 +1,4 @@
-"""What the commands write: the same options everywhere, and the numbers that they print."""
+"""Files that the commands write: equal options everywhere, and the printed numbers."""
 
 from __future__ import annotations
 

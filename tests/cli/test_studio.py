@@ -24,7 +24,7 @@ def page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def given(said: str) -> dict[str, object]:
-    """What the copy of the page was given."""
+    """Contents of the copy of the page."""
     text = Path(said.strip()).read_text("utf-8")
     match = re.fullmatch(
         r'<p>before</p><script type="application/json" id="device">(.*)</script><p>after</p>',

@@ -1,4 +1,4 @@
-"""Options of the commands of studies, their words, and what Ctrl-C leaves of them."""
+"""Options of the study commands, their messages, and their files after Ctrl-C."""
 
 from __future__ import annotations
 

@@ -45,7 +45,7 @@ def evaluated() -> Evaluation:
 
 
 def close(cell: str, value: float, scale: float = 1e3) -> bool:
-    """Whether a cell is a value to four digits."""
+    """Return True if a cell is a value to four digits."""
     return float(cell) == pytest.approx(scale * value, rel=1.01e-3, abs=1e-12)
 
 

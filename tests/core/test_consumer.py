@@ -31,7 +31,7 @@ LAYERS = (
     "certificate",
     "kernel",
 )
-"""The folders of the core, each built on those before it alone."""
+"""Folders of the core, each built on the folders before."""
 PUBLIC = {
     "certificate": {"certificate", "certify"},
     "events": {"simulate", "stepper"},
@@ -53,7 +53,7 @@ PUBLIC = {
     },
     "numbers": {"dual", "functions", "limits", "named_number"},
 }
-"""Headers with names that a user of the core may use; the others stand in `pindrive::detail`."""
+"""Headers with names for users of the core; all further headers are in `pindrive::detail`."""
 PATH = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
 
 
@@ -177,7 +177,7 @@ def test_ctest(programs: Path, tmp_path: Path) -> None:
 
 
 def same_however_it_is_run(fuzz: Path, log: Path) -> None:
-    """Fuzz finds the same on one thread, on three, and in two goes from its log."""
+    """Fuzz has equal results on one thread, on three, and in two runs with a log."""
 
     def found(*options: str | Path) -> str:
         return re.sub(r"seconds .*", "", run(fuzz, *options))
@@ -196,7 +196,7 @@ def same_however_it_is_run(fuzz: Path, log: Path) -> None:
 @pytest.mark.skipif(not list(ROOT.glob("tests/cpp/*.cpp")), reason="there are no C++ tests")
 @pytest.mark.sanitizers
 def test_no_sanitizer_complains(tmp_path: Path) -> None:
-    """The same programs, stopped at any memory error or undefined behaviour, and a shorter fuzz."""
+    """The programs run without memory errors and undefined behaviour, with a shorter fuzz."""
     settings = ("-DPINDRIVE_TESTS=ON", "-DPINDRIVE_SANITIZE=ON")
     configured = attempt("cmake", "-S", ROOT, "-B", tmp_path, "-G", "Ninja", *settings)
     if "this compiler has no -fsanitize" in " ".join(configured.stderr.split()):

@@ -49,7 +49,7 @@ def test_cancelled_damping_has_one_ending(mass: float, stiffness: float) -> None
 
 
 def test_every_derivative_goes_over_smoothly() -> None:
-    """Along the damping, at critical damping and 1e-8 to either side of it."""
+    """Derivatives by the damping, at critical damping and 1e-8 to either side."""
 
     def slopes(damping: float) -> dict[str, float]:
         drive = Drive(

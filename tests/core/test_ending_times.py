@@ -159,7 +159,7 @@ def test_the_command_line_tells_them_apart() -> None:
 
 @pytest.mark.usefixtures("in_empty_folder")
 def test_a_specification_of_rest_is_not_met_by_a_pin_that_only_decays() -> None:
-    """The last event of all of these is before 70 ms, and none of them ever comes to rest."""
+    """The last event of all these motions is before 70 ms, and none comes to rest."""
     Path("device.toml").write_text(
         DEVICE.format(damping=0.1, static=50, finger=0), encoding="utf-8"
     )

@@ -80,7 +80,7 @@ CASES = {
 
 
 def against_thirty_digits(of: Case, times: int) -> tuple[Motion, int]:
-    """The motion of a case, checked at so many times and at its events, and how many events."""
+    """Return the motion of a case, checked at given times and its events, and the event count."""
     motion = piecewise.release(of)
     at = np.linspace(0.0, of["duration"], times + 2)[1:-1]
     path = mp_piecewise.solve(of["inputs"], of["duration"])

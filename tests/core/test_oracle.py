@@ -33,7 +33,7 @@ def start_velocity(case: Case) -> float:
 
 
 def scales(case: Case) -> tuple[float, float, float]:
-    """Of x, v and a.
+    """Return the scales of x, v and a.
 
     Of x, the release displacement, or where that is 0 the largest |x| of the oracle; of v, the
     largest of frequency * that, mouse velocity and start velocity; of a, frequency * that again.
@@ -85,7 +85,7 @@ def deviations(
     time_tolerance: float,
     state_tolerance: float,
 ) -> list[str]:
-    """Where an answer leaves the stored one; `states` are x, v and a at the stored times."""
+    """Return the deviations from the stored answer; `states` are x, v and a at its times."""
     name = f"case {NUMBERS[id(case)]} ({case['family']})"
     told, stored = ([f"{e[1]} {e[2]}" for e in es] for es in (events, case["events"]))
     if told != stored:
@@ -153,7 +153,7 @@ def test_explicit_modes_give_the_oracle_answers(family: str) -> None:
 
 @pytest.mark.parametrize("number", range(0, 100, 17))
 def test_stored_answers_are_those_of_the_script(number: int) -> None:
-    """Made anew from their inputs, a few of the cheaper answers come out the same."""
+    """Some cheap answers, computed again from their inputs, are equal."""
 
     def cost(case: Case) -> float:
         pin = case["inputs"]

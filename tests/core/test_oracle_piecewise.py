@@ -41,7 +41,7 @@ def natural_frequency(case: Case) -> float:
 
 
 def scales(case: Case) -> dict[str, float]:
-    """Of x, the largest of the oracle; the others from it, the mouse and the natural frequency."""
+    """Return the scales: of x the largest of the oracle; of v and a with mouse and frequency."""
     pin, frequency = case["inputs"], natural_frequency(case)
     length = max(map(abs, case["x"]))
     moves = (abs(velocity) for _, velocity in pin["mouse_velocity"])
@@ -108,7 +108,7 @@ def instants(events: list[Told]) -> list[list[Told]]:
 
 
 def carried(case: Case, events: list[Told]) -> list[Told]:
-    """Those events without the ones of a contact that never carries anything, which is absent."""
+    """Return the events without events of an absent contact."""
     loads = {"plate": case["inputs"]["load"], "finger": case["inputs"].get("finger_load")}
     absent = {name for name, rows in loads.items() if rows and not any(value for _, value in rows)}
     left = {"both": next(iter({"plate", "finger"} - absent))} if absent else {}
@@ -117,7 +117,7 @@ def carried(case: Case, events: list[Told]) -> list[Told]:
 
 
 def alike(told: list[Told], true: list[Told]) -> bool:
-    """Whether the same happens to each contact at one instant."""
+    """Return True if each contact changes alike at one instant."""
 
     def kinds(events: list[Told]) -> set[tuple[str, str]]:
         each = {"both": ("plate", "finger")}
@@ -149,7 +149,7 @@ def deviations(
     time_tolerance: float,
     state_tolerance: float,
 ) -> list[str]:
-    """Where an answer leaves the stored one; `states` are at the stored times."""
+    """Return the deviations from the stored answer; `states` are at its times."""
     told, stored = (instants(carried(case, these)) for these in (events, case["events"]))
     if len(told) != len(stored) or not all(map(alike, told, stored)):
         lists = ([f"{e[1]} {e[2]}" for e in es] for es in (events, case["events"]))
@@ -210,7 +210,7 @@ def check_live(case: Case, oracle: Any, tolerances: Any) -> None:
 
 
 def cheapest_with_events(family: str) -> Case:
-    """Of the cases with at least the family's median of events the one with the softest skin."""
+    """Return the case with the softest skin among cases with many events."""
     cases = sorted(of_family(family), key=lambda case: -len(case["events"]))
     half = cases[: (len(cases) + 1) // 2]
     return min(half, key=lambda case: case["inputs"]["finger"]["stiffness"] or 0.0)
@@ -222,7 +222,7 @@ def test_explicit_modes_give_the_oracle_answers(family: str) -> None:
 
 
 def stepped(rows: list[list[float]]) -> list[list[float]]:
-    """The same rows, each value held until the next."""
+    """Return the rows with each value held until the next row."""
     found = [rows[0]]
     for (_, held), (time, value) in pairwise(rows):
         found += [[time, held], [time, value]]
@@ -234,7 +234,7 @@ STEPPED = [case for case in CASES if len(case["inputs"]["load"]) > 2][::3]
 
 @pytest.mark.parametrize("case", STEPPED, ids=lambda case: name(case))
 def test_a_load_in_steps_is_that_of_explicit_modes(case: Case) -> None:
-    """A magnet that is there or not: the same cases, their loads held from row to row."""
+    """Magnet switched on and off: the cases with loads held from row to row."""
     inputs = {**case["inputs"], "load": stepped(case["inputs"]["load"])}
     run = explicit_piecewise.solve(inputs, case["duration"], case["times"])
     answer = {**case, "inputs": inputs, "events": run.events}
@@ -257,7 +257,7 @@ def test_sundials_gives_the_oracle_answers(family: str) -> None:
 
 @pytest.mark.parametrize("number", range(0, 60, 10))
 def test_stored_answers_are_those_of_the_script(number: int) -> None:
-    """Made anew from their inputs, a few of the cheaper answers come out the same."""
+    """Some cheap answers, computed again from their inputs, are equal."""
 
     def cost(case: Case) -> float:
         pin = case["inputs"]

@@ -146,7 +146,7 @@ def test_units_end_as_simulate(cases: list[Case], tmp_path: Path) -> None:
 
 
 def check(unit: Unit, core: Any, time: float, number: int) -> None:
-    """Position and velocity are those of one simulation.
+    """Check that position and velocity agree with one simulation.
 
     Which continues a cycle by its first period where that repeats to 1e-8 of the amplitude; a unit
     follows every round.

@@ -114,7 +114,7 @@ def test_mirrored_release_gives_the_mirrored_motion() -> None:
 
 
 def later(rows: Rows, cut: float) -> Rows:
-    """The same input from a time on, with no step there."""
+    """Return the input from a time on, without a step there."""
     times, values = np.array(rows).T
     rest = [[t - cut, y] for t, y in rows if t > cut]
     return [[0.0, float(np.interp(cut, times, values))], *rest]

@@ -14,7 +14,7 @@ COUNT, SEED = 200, 14
 
 @pytest.mark.parametrize("kind", range(CREEP), ids=KINDS[:CREEP])
 def test_stored_cases_are_the_answers_of_the_oracle(kind: int) -> None:
-    """One of each kind anew, to the last stored digit; the C++ test compares the core with all."""
+    """A case of each kind again, to the last stored digit; the C++ test compares the core."""
     lines = STORED.read_text().splitlines()
     assert len(lines) == COUNT * CREEP + COUNT // 4
     number = 17

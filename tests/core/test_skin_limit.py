@@ -117,7 +117,7 @@ TIMES = ("transient.trough_time", "transient.return_velocity_time", "transient.s
 
 @pytest.mark.parametrize("case", [Case(), Case(kinetic=0.02, static=0.03)])
 def test_numbers_tend_places_faster_than_times(case: Case) -> None:
-    """Between constant inputs the pin goes nearly the same way, only sooner."""
+    """Between constant inputs the path hardly changes, only the times."""
     rigid = case.run().numbers()
     soft = [case.run(skin).numbers() for skin in STIFFER]
     for names, expected in (((*PLACES, "ending.position"), 1.0), (TIMES, 0.5)):
@@ -146,7 +146,7 @@ def test_each_reversal_comes_sooner_by_tan_phi_less_phi(damping: float) -> None:
 
 
 def variation(motion: Motion) -> float:
-    """How far the finger's friction changes in all, up and down, N; within a mode it is monotone.
+    """Total variation of the finger's friction, N; within a mode it is monotone.
 
     A rigid finger carries a constant while it is slid along, and a straight line while it holds.
     """

@@ -173,7 +173,7 @@ def test_stops_that_are_not_met_change_nothing() -> None:
 
 @pytest.mark.parametrize("stops", [FREE, ELASTIC])
 def test_a_batch_is_the_motions_of_its_points(stops: Drive) -> None:
-    """Whether they reach a stop or not; what starts beyond a rigid one is left out."""
+    """With and without stop contact; a start beyond a rigid stop is left out."""
     made = replace(stops, plate=Contact(0.03, 0.05), finger=Contact(0.02))
     x = np.array([-9e-4, 2e-4, 8e-4, 1e-3, 1.2e-3])
     found = simulate_batch(made, Release(0.06), displacement=x, duration=0.2, energy=True)

@@ -1,4 +1,4 @@
-"""The formulas of docs/theory.md against other ways to the same numbers."""
+"""Formulas of docs/theory.md compared with independent computations."""
 
 from __future__ import annotations
 

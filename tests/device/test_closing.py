@@ -109,7 +109,7 @@ def integrated(made: Electromagnet, current: Current, t: Array) -> tuple[Array, 
 
 
 def crossings(made: Electromagnet, current: Current) -> NDArray[np.bool_]:
-    """Which pieces begin where the gap closes or opens, not at a switching."""
+    """Return the pieces that begin at a closing or opening of the gap, not at a switching."""
     return np.asarray(current.starts == made.closing.flux)
 
 
@@ -205,7 +205,7 @@ def test_what_is_open_stays_open_at_a_voltage_that_keeps_it_closed() -> None:
 @pytest.mark.parametrize("duty", [0.08, 0.25, 0.35, 0.5, 0.8])
 @pytest.mark.parametrize("force", [0.02, 0.3, 0.55])
 def test_pulses_come_to_their_steady_swing(frequency: float, duty: float, force: float) -> None:
-    """Against 400 periods one after the other: open, closed, and both in each period."""
+    """Compared with 400 periods in sequence: gap open, closed, and both in each period."""
     made = Electromagnet.from_coil(
         coil(lift=9e-5, closing_force=force), pwm_frequency=frequency, pwm_duty=duty
     )
@@ -221,7 +221,7 @@ def test_pulses_come_to_their_steady_swing(frequency: float, duty: float, force:
 
 
 def test_the_energy_taken_is_warmed_stored_and_given_to_the_closing() -> None:
-    """U i - R i² goes into the field, and λ²/2 (1/L_open - 1/L) of it into each closing."""
+    """U i - R i² enters the field, and λ²/2 (1/L_open - 1/L) of it each closing."""
     made, made_of = DRIVEN["on and off"], coil(**LIFT)
     current = made.current(Commands(np.array([0.0])), CoilState(-1.0))
     t = np.linspace(0.0, made.closing_time, 20_001)

@@ -1,4 +1,4 @@
-"""How close neighbouring pins come: against closed forms, samples and laws; and how it is told.
+"""Gaps of neighbouring pins: closed forms, samples, laws, and their report.
 
 x counts against the drive axis: a pin that is carried forward goes towards the one behind it.
 """
@@ -50,7 +50,7 @@ def closest(behind: Motion, ahead: Motion) -> tuple[float, float]:
 
 
 def sampled(behind: Motion, ahead: Motion, count: int = 40_001) -> float:
-    """The same from samples, the lowest of them made exact by a search about it."""
+    """Return the smallest gap from samples, refined by a search."""
     knots = [s.end for m in (behind, ahead) for s in m.segments if s.end < m.duration]
     t = np.union1d(np.linspace(0.0, behind.duration, count), knots)
     x = behind.position(t) - ahead.position(t)
@@ -315,7 +315,7 @@ def test_the_table_shows_the_least_gap_of_each_pin() -> None:
 
 
 def test_no_pin_goes_beyond_its_excursion() -> None:
-    """Of random devices, whose hands speed up and slow down."""
+    """Random devices whose hands accelerate and decelerate."""
     closest_ = 0.0
     for seed in range(60):
         one = RandomScan.of(seed, curved=seed < 8)

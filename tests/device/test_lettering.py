@@ -21,7 +21,7 @@ HEIGHT = 60.0
 
 
 def ink(text: str) -> NDArray[np.bool_]:
-    """What is black of one line, cut to its width; rows as on the page."""
+    """Return the black pixels of a line, cut to its width; rows as on the page."""
     values, _ = draw(text, HEIGHT, 2.0 * HEIGHT, HEIGHT)
     black = values < 0.5
     columns = np.flatnonzero(black.any(axis=0))
@@ -29,7 +29,7 @@ def ink(text: str) -> NDArray[np.bool_]:
 
 
 def alike(one: NDArray[np.bool_], other: NDArray[np.bool_]) -> bool:
-    """Whether two pieces are the same letter, up to where a pixel begins."""
+    """Return True if two pieces show one letter, within a pixel."""
     rows, columns = (min(one.shape[i], other.shape[i]) for i in (0, 1))
     apart = one[:rows, :columns] != other[:rows, :columns]
     return bool(apart.mean() < 0.12 and abs(one.shape[1] - other.shape[1]) <= 3)

@@ -122,7 +122,7 @@ def test_a_cycle_has_all_its_parts() -> None:
 
 
 def exact_release(device: Device, pin: PinScan, begin: float, end: float) -> float:
-    """Where a pin that the plate carries at `begin` is at `end`, under the smooth pull itself.
+    """Return the position at `end` of a pin in stick from `begin` on, under the smooth pull.
 
     Valid while it is first carried, then slides with the finger dragging back.
     """
@@ -195,7 +195,7 @@ def test_a_pin_never_over_information_never_moves_where_the_finger_holds_it() ->
 
 
 def test_a_pin_that_is_off_is_dragged_no_further_than_the_plate_can() -> None:
-    """Where the finger does not hold it, the plate's friction drags it, and it stays there."""
+    """A pin that the finger does not hold is dragged by the plate to a standstill."""
     device = Device(drive=drive())
     path = HandPath([0.0, 0.1, 1.0], [0.0, 0.04, 0.04], [0.0] * 3, (0.01, 0.005))
     (pin,) = scan(device, blank(), path).pins
@@ -283,7 +283,7 @@ def test_latency_moves_the_commands_alone() -> None:
 
 
 def test_a_hand_that_leaves_the_page_reads_blank_paper() -> None:
-    """As on a page that goes on white: the same looks, switchings and motion."""
+    """Beyond the page the pins read white: equal samples, switchings and motions."""
     page = np.ones((100, 200))
     page[10:90, 80:100] = 0.0
     around = np.pad(page, 300, constant_values=1.0)

@@ -72,7 +72,7 @@ def test_a_scan_follows_end_stops(name: str, request: pytest.FixtureRequest) -> 
 
 
 def test_a_scan_goes_on_from_a_stop(rigid: Scan) -> None:
-    """Cut where a pin strikes, within some roundings of it: its closed form goes beyond by one."""
+    """A scan is cut within some roundings of an impact."""
     first = rigid.pins[0]
     held = [e.time for e in first.events if e.contact == "stop"][:4]
     cuts = [e + k * np.spacing(e) for e in held for k in (-3, 0, 2)]

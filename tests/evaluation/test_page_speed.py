@@ -1,4 +1,4 @@
-"""How fast a hand may move over a text."""
+"""Largest hand speed over a text."""
 
 from __future__ import annotations
 

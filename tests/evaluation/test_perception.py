@@ -193,7 +193,7 @@ def test_numbers_are_those_of_dense_samples(finger: Contact, speed: float) -> No
 
 
 def test_smear_is_settling_time_times_hand_speed() -> None:
-    """Of a line with nothing after it: the transient that `simulate` finds from the release on."""
+    """A line without a successor: the transient that `simulate` computes from the release."""
     scene, speed = grating(0.004, count=1, margin=0.05), 0.06
     done = scan(Device(drive=drive()), scene, evenly(scene, speed))
     (pin,), (line,) = done.pins, evaluate(done).lines
@@ -312,7 +312,7 @@ def test_skin_that_hardly_gives_makes_lines_faint() -> None:
 
 
 def test_cues_rise_with_what_the_skin_does() -> None:
-    """How far it moves is what friction holds over its stiffness, both ways."""
+    """The displacement is the stick limit over the stiffness, in both directions."""
     scene = grating(0.012)
     for friction, cue in ((0.0044, "none"), (0.0048, "felt"), (0.012, "direction"), (0.03, "sure")):
         finger = Contact(friction, 1.5 * friction, stiffness=250.0)

@@ -1,4 +1,4 @@
-"""How fast the hand may move: against scans of drawn lines, by laws, and on the command line."""
+"""Largest hand speed over two lines: scans of drawn lines, laws, and the command line."""
 
 from __future__ import annotations
 

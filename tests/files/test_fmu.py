@@ -45,7 +45,7 @@ class Archive:
         return Unit(self.folder, self.description, **events)
 
     def motion(self) -> Any:
-        """What one simulation says of the inputs of these tests."""
+        """Return the simulation with the inputs of these tests."""
         release = Release(
             Profile(TIMES, VELOCITIES),
             displacement=self.device.release.displacement,
@@ -102,7 +102,7 @@ def rates(rows: tuple[float, ...], i: int) -> float:
 
 
 def driven(unit: Unit, random: np.random.Generator, largest: float) -> Iterator[Unit]:
-    """Steps of random length under inputs that change, after each of them."""
+    """Return the states after steps of random length under varying inputs."""
     for i, (begin, end) in enumerate(pairwise((*TIMES, END))):
         assert unit.time == begin
         rows = {"mouse_velocity": VELOCITIES, "plate_load": LOADS, "force": FORCES}
@@ -145,7 +145,7 @@ def test_random_steps_lead_to_what_one_simulation_has(archive: Archive) -> None:
 
 
 def end_of(unit: Unit, seed: int) -> list[float]:
-    """Where a unit comes to."""
+    """Return the final state of a unit."""
     *_, last = driven(unit, np.random.default_rng(seed), 0.01)
     return last.get("position", "velocity", "acceleration", "plate_state", "finger_state")
 

@@ -79,7 +79,7 @@ pin_diameter = "1.5 mm"
 
 @cache
 def scanned(magnet: str, folder: Path) -> tuple[DeviceFile, Scan]:
-    """A device with that magnet, and one pin of it over two lines."""
+    """Return a device with that magnet, and one pin of its scan over two lines."""
     path = folder / "device.toml"
     path.write_text(DEVICE.format(magnet=MAGNETS[magnet]), "utf-8")
     device = load_device(path, {"scan.hand_speed": "90 mm/s"})
@@ -269,7 +269,7 @@ def test_every_key_of_the_table_is_a_variable(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("version", [2, 3])
 def test_a_parameter_does_what_the_key_does(version: int, tmp_path: Path) -> None:
-    """Set by an importer or in the device file: the same motion."""
+    """Set by an importer or in the device file, the parameter gives one motion."""
     device, _ = scanned("times", tmp_path)
     path = tmp_path / "steps.toml"
     path.write_text(DEVICE.format(magnet=MAGNETS["warm"] + "\n" + OPENING), "utf-8")

@@ -29,7 +29,7 @@ SYSROOT = Path("/usr/aarch64-linux-gnu")
 
 
 def driven(folder: Path, target: str, runs: list[str], resources: str, library: Path) -> str:
-    """What the driver, compiled for a target, prints."""
+    """Return the output of the driver, compiled for a target."""
     program = folder / f"driver-{target}.exe"
     compiling = [sys.executable, "-m", "ziglang", "cc", "-target", target, "-O1", "-s"]
     source = Path(__file__).with_name("fmu_driver.c")

@@ -1,4 +1,4 @@
-"""What commands write never takes the place of what is read, or of another kind of file."""
+"""Commands never replace an input file, or a file of another kind."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ COMMANDS = {
     "robustness -o a.json": ((*ROBUSTNESS, "-o"), "a.json"),
     "fmu -o": (("fmu", "device.toml", "-o"), "a.fmu"),
 }
-"""What writes a file, and under which name."""
+"""Commands that write a file, with the option."""
 
 
 @pytest.fixture(scope="module")

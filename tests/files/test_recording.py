@@ -1,4 +1,4 @@
-"""Inputs in CSV files: the same as rows in the device file, and what is refused."""
+"""Inputs in CSV files: equal to rows in the device file, and rejected files."""
 
 from __future__ import annotations
 

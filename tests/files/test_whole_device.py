@@ -337,7 +337,7 @@ def test_a_magnet_that_would_be_too_hot_is_warned_of(write: Write) -> None:
 
 
 def test_a_table_of_pins_cuts_no_number_off(device: Path) -> None:
-    """The longest numbers: those of pins that hardly move."""
+    """The longest numbers, of pins that hardly move, are complete."""
     result = run("scan", device, "--grating", "4 mm", "--set", "hold_force=1 mN")
     assert result.exit_code == 0
     assert "…" not in result.stdout

@@ -130,7 +130,7 @@ def test_two_recordings_share_the_drive() -> None:
 
 
 def test_a_free_motion_tells_ratios_alone() -> None:
-    """Of mass, stiffness, damping and force; found by the rank, and said with the fix."""
+    """Mass, stiffness, damping and force: found by the rank, reported with the remedy."""
     drive = Drive(
         mass=0.006, stiffness=160.0, damping=0.19, plate=Contact(0.0), finger=Contact(0.011)
     )

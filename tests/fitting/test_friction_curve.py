@@ -1,4 +1,4 @@
-"""Friction curves from force against speed, and the one of a published result from its motion."""
+"""Friction curves from force against speed, and the curve of a published result."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Data of another model than ours: fitted all the same, and the misfit is told."""
+"""Data of another model: the fit reports the misfit."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a recording is, and what is refused of one, in a line that names the file and the fix."""
+"""Recordings: contents, and rejected files with a message that names file and remedy."""
 
 from __future__ import annotations
 

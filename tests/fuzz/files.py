@@ -1,4 +1,4 @@
-"""Device files, studies and options at their extremes: what becomes of them.
+"""Fuzz of device files, studies and options at their extremes.
 
 python tests/fuzz/files.py COUNT SEED            so many cases of a seed, one after the other
 python tests/fuzz/files.py 1 SEED --from NUMBER  one of them again; its files stay in ./case-NUMBER
@@ -32,19 +32,19 @@ from fuzz_cases import Case
 SECONDS = 60.0
 BYTES = 4 << 30
 ADDRESSES = 8 << 30
-"""Of virtual memory: beyond it an allocation fails, so that the machine stays usable."""
+"""Limit of virtual memory: allocations beyond fail, so that the machine stays usable."""
 CTRL_C = 2.0
 """Seconds in which Ctrl-C ends a command; on a machine at its limit some more."""
 PATIENCE = 4.0
 LINES = 12
-"""Of a refusal at most: a file may have several mistakes."""
+"""Longest error message in lines: a file may have several errors."""
 WIDTH = 500
-"""Of each of them."""
+"""Longest line of an error message."""
 
 
 @dataclass
 class Result:
-    """What became of a case."""
+    """Result of a case."""
 
     number: int
     status: int | None
@@ -58,7 +58,7 @@ class Result:
 
     @property
     def wrong(self) -> str:
-        """What is wrong with it, in a few words; empty: nothing."""
+        """Return the error of the result in a few words; "" without one."""
         if self.status is None:
             return "hangs" if self.interrupted else f"takes more than {SECONDS:g} s"
         if self.status not in ((0, 2, 130) if self.interrupted else (0, 2)):

@@ -1,4 +1,4 @@
-"""Whether fuzz sees what is wrong: the solver is spoiled in one place at a time, and must fail.
+"""Mutation test of the core: a change in one place must make fuzz fail.
 
 python3 tests/fuzz/mutants.py [COUNT [PART...]]
 
@@ -288,7 +288,7 @@ MUTANTS = (
 
 
 def problems(mutants: Sequence[Mutant]) -> list[str]:
-    """Which of them are not one thing made wrong in the core as it is."""
+    """Return the mutants whose text does not occur exactly once in the core."""
     found = []
     for mutant in mutants:
         source = (HEADERS / mutant.header).read_text("utf-8")
@@ -301,7 +301,7 @@ def problems(mutants: Sequence[Mutant]) -> list[str]:
 
 
 def judged(mutant: Mutant, count: int, folder: Path) -> str:
-    """How the mutant ends: what fuzz found, or an empty string if nothing."""
+    """Return the detection of the mutant by fuzz, or an empty string."""
     include = folder / "include"
     shutil.copytree(ROOT / "include", include, dirs_exist_ok=True)
     header = include / "pindrive" / mutant.header
@@ -331,7 +331,7 @@ def judged(mutant: Mutant, count: int, folder: Path) -> str:
 
 
 def main(arguments: list[str]) -> int:
-    """Judges every mutant, or those that are named; 1 if one passes."""
+    """Evaluate every mutant, or the named ones; 1 if one is not detected."""
     count = int(arguments[0]) if arguments else 50_000
     parts = arguments[1:]
     chosen = [one for one in MUTANTS if not parts or any(part in one.what for part in parts)]

@@ -72,7 +72,7 @@ def drawn(count: int, seed: int) -> dict[str, Any]:
 
 
 def alone(point: dict[str, float]) -> Motion:
-    """The same point by itself."""
+    """Return the point simulated alone."""
     duration = point.get("duration", inf)
     return simulate(
         Drive(
@@ -92,7 +92,7 @@ def alone(point: dict[str, float]) -> Motion:
 
 
 def meaning(flag: xr.DataArray) -> str:
-    """What the value of a flag stands for, as its attributes say."""
+    """Return the meaning of a flag's value, from its attributes."""
     meanings = flag.attrs["flag_meanings"].split()
     return str(dict(zip(flag.attrs["flag_values"].tolist(), meanings, strict=True))[flag.item()])
 

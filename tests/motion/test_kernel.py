@@ -1,4 +1,4 @@
-"""The kernel by itself: the same bits in every width, and what is asked for and no more.
+"""Kernel alone: equal bits in every width, and only the requested outputs.
 
 And the elementary functions against thirty digits. How the kernel stands beside the general core is
 shown by tests/cpp/kernel_test.cpp.
@@ -52,7 +52,7 @@ def plain(count: int, seed: int) -> dict[str, Any]:
 
 
 def columns(points: dict[str, Any]) -> list[Floats]:
-    """The same in the order of the core."""
+    """Return the columns in the order of the core."""
     given = points | {"finger_stiffness": inf, "plate_load": 1.0}
     return [np.broadcast_to(given[name], points["mass"].shape) for name in batch._ARGUMENTS]
 

@@ -132,7 +132,7 @@ def test_what_is_wrong_is_said_in_a_line(make: Callable[[], object], message: st
 
 
 def test_a_batch_varies_a_base() -> None:
-    """What is not varied is that of the drive and the release, as `simulate` has it."""
+    """Arguments that are not varied come from drive and release, as in `simulate`."""
     drive = replace(DRIVE, finger=Contact(0.005, 0.0075, stiffness=1000.0))
     release = Release(0.06, 2e-3, velocity=0.01, plate_load=2.0)
     damping = np.array([0.1, 0.4])

@@ -42,7 +42,7 @@ def sliding(t: Any, m: Any, k: Any, b: Any, force: Any, v0: Any, x0: Any) -> Any
 
 
 def peak_time(m: Any, k: Any, b: Any, force: Any, v0: Any, x0: Any) -> Any:
-    """When its velocity first is zero, by eq. (13)."""
+    """Return the time of the first zero of the velocity, by eq. (13)."""
     alpha = -b / (2 * m)
     omega = mp.sqrt(k / m - alpha**2)
     return mp.atan2(v0 * omega, k / m * (x0 - force / k) - alpha * v0) / omega

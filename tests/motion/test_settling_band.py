@@ -216,7 +216,7 @@ def test_sensitivity_and_robustness_use_it() -> None:
 
 
 def test_a_swept_band_and_slow_devices() -> None:
-    """Several bands at once; a friction curve takes the other way through."""
+    """Several bands at once; a friction curve uses the general core."""
     curve = 'curve = [["0 m/s", "20 mN"], ["0.1 m/s", "15 mN"]]'
     Path("curved.toml").write_text(GOOD.replace('kinetic = "20 mN"', curve))
     for device in (EXAMPLE.as_posix(), "curved.toml"):

@@ -1,4 +1,4 @@
-"""The numbers of a motion against what dense samples of the same motion show."""
+"""Numbers of a motion compared with dense samples."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def test_numbers_against_samples(case: Case) -> None:
     )
 
     def visible(time: float) -> bool:
-        """Whether samples can tell the sign of the velocity before it vanishes from rounding."""
+        """Return True if samples resolve the sign of the velocity before rounding hides it."""
         return bool(abs(motion.velocity(max(time - step, 0.0))) > 1e-12 * np.abs(v).max())
 
     if transient.peak_time > 0 and visible(transient.peak_time):
@@ -141,7 +141,7 @@ def test_steady_motion_settles_where_it_begins() -> None:
     [("free", Contact(0.0)), ("grazing", Contact(0.02)), ("stick-slip", Contact(0.02, 0.03))],
 )
 def test_steady_motion_against_samples(cycle: str, plate: Contact) -> None:
-    """Amplitude and middle are those of one round; no shorter period brings the motion back."""
+    """Amplitude and centre belong to one period; no shorter period repeats the motion."""
     drive = Drive(mass=0.01, stiffness=100.0, damping=0.0, plate=plate, finger=Contact(0.0))
     motion = Case(drive, Release(0.1, 1.5e-3)).run()
     ending = motion.ending

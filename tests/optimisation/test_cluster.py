@@ -1,4 +1,4 @@
-"""Designs and fits on a Dask cluster are those found here."""
+"""Designs and fits on a Dask cluster equal the local ones."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ distributed = pytest.importorskip("distributed", reason="the extra `cluster` is 
 
 @pytest.fixture(scope="module")
 def address() -> Iterator[str]:
-    """Of workers that are threads of this process, to which all goes as bytes."""
+    """Return the address of workers that are threads of this process."""
     with distributed.LocalCluster(
         n_workers=2,
         threads_per_worker=1,

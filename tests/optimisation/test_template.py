@@ -1,4 +1,4 @@
-"""`pindrive init --problem`: a design problem that `pindrive design` takes as it is."""
+"""`pindrive init --problem` writes a problem file that `pindrive design` accepts."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Two oracles for a released pin, and the cases that one of them has answered."""
+"""Two oracles for a released pin, with the stored answers of one oracle."""

@@ -229,7 +229,7 @@ def releases(draw: st.DrawFn) -> Releases:
 
 
 def rounding(formula: Callable[..., Array], size: float, r: Releases, *times: Array) -> Array:
-    """How far a formula and the simulation of it may lie apart by rounding.
+    """Return the difference of a formula and its simulation by rounding.
 
     Each of N roundings on the way to a value f, by a part u = 2^-53 of what is rounded, does what a
     change of an input p by that part does, u |p df/dp|, or changes one of the terms that f is the

@@ -46,7 +46,7 @@ def made(steps: list[str]) -> Report:
 
 @pytest.fixture(scope="module")
 def files(made: Report, steps: list[str]) -> dict[str, bytes]:
-    """What `pindrive paper -o` writes."""
+    """Return the files of `pindrive paper -o`."""
     return made.files(steps.append)
 
 
@@ -86,7 +86,7 @@ def test_a_change_of_data_shows_in_the_summary(made: Report) -> None:
 
 
 def test_the_docs_tables_are_whole() -> None:
-    """No cell holds a bar: every row has as many as its headings."""
+    """Each row of a table has the number of cells of its heading."""
     text = (DOCS / report.NAME).read_text("utf-8")
     tables = re.findall(r"(?:^\|.*\n)+", text, re.MULTILINE)
     assert len(tables) == 7
@@ -109,7 +109,7 @@ def test_what_the_docs_link_to_is_there() -> None:
 
 
 class Reader(HTMLParser):
-    """What a page asks for from elsewhere, its ids, and what it links to in itself."""
+    """Links and ids of a page, and its requests to other places."""
 
     def __init__(self, text: str) -> None:
         super().__init__()
@@ -204,7 +204,7 @@ def test_every_symbol_stands_once(made: Report) -> None:
 
 
 def test_print_lets_nothing_scroll(page: str) -> None:
-    """What scrolls on the screen would be cut off on paper."""
+    """Parts that scroll on the screen are complete on paper."""
     screen, _, print_rules = page.partition("@media print")
     scrolling = re.findall(r"([^{}\n]+) \{[^}]*overflow-x: auto", screen)
     assert scrolling == ["figure > div"], "tables are stacked where they find no room"
@@ -439,7 +439,7 @@ def test_the_releases_are_those_stated() -> None:
 
 
 def test_the_curves_are_the_simulations(made: Report) -> None:
-    """At random places of each of the eight, against `simulate` alone."""
+    """Curves at random places of all eight parameters equal `simulate`."""
     draw = np.random.default_rng(4)
     time, way = (exhibit(made, f"influence-on-{name}").data for name in ("time", "displacement"))
     base = {"mass": 0.01, "stiffness": 100.0, "damping": 0.32, "plate_kinetic": 0.022,

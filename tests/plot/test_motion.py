@@ -154,7 +154,7 @@ def test_events_are_marked(drawn: dict[str, tuple[Motion, Figure]], name: str) -
 def test_kinds_and_contacts_differ_without_colour(
     drawn: dict[str, tuple[Motion, Figure]],
 ) -> None:
-    """The shape is the kind; filled at the plate, an outline at the finger, half of it at both."""
+    """The shape marks the kind; filled at the plate, open at the finger, half at both."""
     seen: dict[str, set[object]] = {}
     for name in ("example", "skin", "still plate"):
         motion, figure = drawn[name]

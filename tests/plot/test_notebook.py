@@ -1,4 +1,4 @@
-"""What a notebook shows of a result: one line, a table with units, a picture, and nothing else."""
+"""Results in a notebook: one line, a table with units, a picture, and nothing else."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def test_every_result_has_the_same_faces(name: str, results: dict[str, Any]) -> 
 
 
 def test_no_result_is_left_out(results: dict[str, Any]) -> None:
-    """Of these three it is seen where they are made."""
+    """Three results are tested with their makers."""
     found = {name for p in (ROOT / "src").rglob("*.py") for name in MADE.findall(p.read_text())}
     seen = {type(result).__name__ for result in results.values()}
     assert found == seen | {"Design", "ModelComparison", "SpeedLimits"}

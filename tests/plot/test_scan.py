@@ -50,7 +50,7 @@ def figure(evaluated: Evaluation) -> Figure:
 
 
 def test_the_tactile_image_is_the_mean_deflection_of_the_pins_that_passed() -> None:
-    """Two pins one behind the other, at an even speed: their mean, where both passed."""
+    """Two pins in line at an even speed: the mean where both passed."""
     array = PinArray([(0.0, 0.0), (0.004, 0.0)])
     scene = Scene.from_grating([0.004], count=2, margin=0.012, height=0.004)
     left, right, _, _ = scene.extent

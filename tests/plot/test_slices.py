@@ -49,7 +49,7 @@ count = 3000
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Holds a study on a grid, one that is drawn, and one of a single point."""
+    """Folder with a study on a grid, a drawn study, and a study of a single point."""
     made = tmp_path_factory.mktemp("maps")
     for name, text in (("grid", GRID), ("drawn", DRAWN), ("one", '[axes]\nmass = ["1 g"]\n')):
         (made / f"{name}.toml").write_text(BASE + text)

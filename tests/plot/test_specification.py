@@ -1,4 +1,4 @@
-"""Where the specification of a study is met: counted by its points, and shaded in its maps."""
+"""Points that meet the specification of a study: counts, and shading in maps."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a few lines of input ask for is counted before anything is allocated, and refused beyond."""
+"""Requests beyond a budget are rejected before any allocation."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ REFUSED = {
 
 @pytest.fixture(scope="module")
 def imported(tmp_path_factory: pytest.TempPathFactory) -> None:
-    """What the commands import is imported, and no memory that they take."""
+    """The imports of the commands take no further memory."""
     file = tmp_path_factory.mktemp("imported") / "device.toml"
     file.write_text(template(whole=True), encoding="utf-8")
     for line in (
@@ -151,7 +151,7 @@ def device(count: int = 1, stiffness: float = float("inf")) -> Device:
 
 
 def traced(work: Callable[[], Found]) -> tuple[Found, int]:
-    """What some work returns, and the most memory that Python and NumPy held for it."""
+    """Return a result and the peak memory of Python and NumPy."""
     gc.collect()
     tracemalloc.start()
     try:
@@ -205,7 +205,7 @@ def test_a_picture_is_refused_before_it_is_read(tmp_path: Path) -> None:
 
 
 def test_segments_are_counted_as_the_pins_are_followed(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The first pin is beyond the budget: those that have not begun never do."""
+    """The first pin exceeds the budget: pins that have not begun never begin."""
     followed: list[int] = []
     monkeypatch.setattr(budgets, "SEGMENTS", replace(budgets.SEGMENTS, most=10))
     path = strokes([(0.0005, 0.004), (0.0095, 0.004)], 0.1)

@@ -34,7 +34,7 @@ BRAKE = Profile([0.0, 0.1], [0.06, 0.0])
 
 
 def parameters(made: Callable[..., Any]) -> dict[str, inspect.Parameter]:
-    """What it takes that is a number, by its names in Python."""
+    """Return the numeric arguments, by their names in Python."""
     of_python = "self plate finger coil places spots curve drive release steps"
     parts = of_python.split()
     found = inspect.signature(made).parameters

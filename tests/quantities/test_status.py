@@ -84,7 +84,7 @@ def test_an_error_keeps_its_code_between_processes() -> None:
 
 
 def test_no_code_looks_into_a_message_of_an_error() -> None:
-    """What an error says is for people: code asks for its type or for what it carries."""
+    """Code uses the type and the attributes of an error, never its message."""
     looks = []
     for path in SOURCES:
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):

@@ -68,6 +68,6 @@ def test_what_is_no_such_quantity_is_refused(text: str, unit: str, words: str) -
 
 
 def test_what_is_shown_is_read_back() -> None:
-    """Each display unit, so many of which make one SI unit."""
+    """A displayed value in its unit is read back as the SI value."""
     for unit, (shown, scale) in DISPLAY.items():
         assert to_si(f"{scale!r} {shown}", unit, "1 x") == pytest.approx(1.0, rel=1e-14)

@@ -55,7 +55,7 @@ def node(node_program: str) -> Ask:
 
 @pytest.fixture
 def spoiled(node_program: str, tmp_path: Path) -> Callable[[str, str, str], Ask]:
-    """The same of the page with a text of one of its files, which is there once, replaced."""
+    """Return a page with one text of one file replaced."""
 
     def spoil(file: str, text: str, instead: str) -> Ask:
         source, program = tmp_path / "src", tmp_path / "node.mjs"
@@ -76,7 +76,7 @@ def spoiled(node_program: str, tmp_path: Path) -> Callable[[str, str, str], Ask]
 
 
 def asking(node: str, program: Path) -> Ask:
-    """What asks a program in Node."""
+    """Return the function that runs a program in Node."""
 
     def ask(questions: list[dict[str, Any]]) -> list[Any]:
         lines = "".join(json.dumps(question, ensure_ascii=False) + "\n" for question in questions)

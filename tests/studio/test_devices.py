@@ -1,4 +1,4 @@
-"""The page's reader of device files, and what it makes of them, beside Python's."""
+"""The page's reader of device files, compared with Python's."""
 
 from __future__ import annotations
 
@@ -248,7 +248,7 @@ OTHERS = (
         '"5 mN"', '"5 mN"\nstiffness = "1 N/m"\ncurve = [["0 m/s", "5 mN"], ["1 m/s", "1 mN"]]'
     ),
 )
-"""Devices with rigid end stops and with the keys that the others leave out."""
+"""Devices with rigid end stops and with the remaining keys."""
 
 
 def asked_of(text: str, **more: Any) -> dict[str, Any]:

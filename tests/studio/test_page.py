@@ -37,7 +37,7 @@ READER = EXAMPLES / "tactile-reader.toml"
 
 
 def test_a_thousand_random_drives_give_the_bits_of_node(page: Any, node: Ask) -> None:
-    """Which are those of Python: test_core.py."""
+    """The bits of Node equal Python's: test_core.py."""
     _, asked = questions(1000, 16)
     answers = page.evaluate(
         "asked => asked.map(q => pindrive.answerOf(pindrive.core, q.simulate, q.duration))", asked
@@ -287,7 +287,7 @@ def test_a_mistake_is_said_in_the_words_of_the_command(
 
 
 def test_what_is_being_typed_outlasts_a_drawing_of_the_page(page: Any) -> None:
-    """Which comes after each change, in the next frame, and so while the next number is typed."""
+    """A field keeps its text while the page is redrawn in the next frame."""
     page.locator("#drive-stiffness").select_text()
     page.keyboard.type("15")
     page.evaluate("pindrive.page.render()")

@@ -1,4 +1,4 @@
-"""Study files: the points they stand for, and what is said of those that cannot be used."""
+"""Study files: points of valid files, and messages for invalid ones."""
 
 from __future__ import annotations
 

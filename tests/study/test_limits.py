@@ -80,7 +80,7 @@ print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
 
 
 def test_memory_is_bounded_by_the_chunk() -> None:
-    """A hundred million points need no more than forty thousand, for as many chunks of them."""
+    """A hundred million points need the memory of forty thousand, for equally many chunks."""
     pytest.importorskip("resource")
 
     def peak(count: int) -> int:

@@ -33,7 +33,7 @@ def study(folder: Path, text: str) -> Study:
 
 
 def test_the_yield_is_that_of_other_draws(tmp_path: Path) -> None:
-    """Designs drawn by NumPy itself, as many, from another generator."""
+    """Equally many designs, drawn by NumPy with another generator."""
     count = 20_000
     plan = study(tmp_path, TOLERANCES + '[specification]\nswing = [">= 0.9 mm", "<= 1.2 mm"]\n')
     found = robustness(plan, count=count)
@@ -118,7 +118,7 @@ def test_what_never_settles_meets_nothing_and_is_the_worst(tmp_path: Path) -> No
 
 
 def _edited(folder: Path, table: str, content: str) -> Path:
-    """The study with the device written in it, one table of it otherwise."""
+    """Return the study with its device written in and one table changed."""
     device = (HERE / "minimal.toml").read_text()
     head, _, _ = device.partition(f"[{table}]")
     text = (folder / "study.toml").read_text().partition("\n")[2]

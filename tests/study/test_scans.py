@@ -68,7 +68,7 @@ COIL = {
 
 
 def direct(at: dict[str, float], coiled: bool = False) -> Evaluation:
-    """What `scan` and `evaluate` say of the study's device with these values, SI."""
+    """Return the results of `scan` and `evaluate` for the study's device with these values, SI."""
     tables: dict[str, dict[str, Any]] = {
         "drive": {"mass": 0.010, "stiffness": 100.0, "damping_ratio": 0.32},
         "plate": {"kinetic": 0.022},
@@ -367,7 +367,7 @@ def test_the_identity_holds_the_page() -> None:
 
 
 def test_a_page_that_changes_meanwhile_is_refused() -> None:
-    """No point is worked out from another picture than the others."""
+    """No point is computed from a changed picture."""
     picture("page.png", slice(80, 100))
     plan = study('[axes]\ncontrol.latency = ["1 ms"]\n', '[page]\nimage = "page.png"\n')
     picture("page.png", slice(80, 110))
@@ -394,7 +394,7 @@ lag_on = "<= 2 mm"
 
 
 def test_robustness_is_that_of_scans() -> None:
-    """The same draws by hand; the longest way is that of the slowest hand: 1.875 L / v + pause."""
+    """Equal draws by hand; the longest path belongs to the slowest hand: 1.875 L / v + pause."""
     picture("page.png", slice(80, 100))
     plan = study(TOLERANCES, ONE_LINE)
     found = robustness(plan, count=40, threads=1)
@@ -417,7 +417,7 @@ def test_robustness_is_that_of_scans() -> None:
 
 
 def test_sobol_indices_are_those_of_scans() -> None:
-    """How long the hand moves depends on its speed alone; a pin's answer on both."""
+    """The duration depends on the hand's speed alone; a pin's response on both keys."""
     picture("page.png", slice(80, 100))
     plan = study(TOLERANCES, ONE_LINE)
     found = sobol(plan, tolerances=True, rows=128, threads=1, near=True)
@@ -479,7 +479,7 @@ def test_releases_of_a_whole_device_are_swept_too() -> None:
 
 
 def test_the_example_is_a_study_of_scans() -> None:
-    """What docs/studies.md shows: its first points, one of them put together by hand."""
+    """The first points of the study in docs/studies.md, one point built by hand."""
     file = Path(__file__).parents[2] / "examples" / "tactile-reader-study.toml"
     plan = load_study(file)
     assert plan.shape == (19, 13, 3)

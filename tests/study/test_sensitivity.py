@@ -1,4 +1,4 @@
-"""Which parameter matters: against closed forms, SciPy, differences and dimensional analysis."""
+"""Sensitivity compared with closed forms, SciPy, differences and dimensional analysis."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def test_indices_of_a_function_that_is_known() -> None:
 
 
 def test_indices_are_those_of_scipy() -> None:
-    """From the same points: SciPy is given the values at them."""
+    """SciPy receives the values at equal points."""
     design: dict[str, NDArray[np.float64]] = {}
 
     def function(x: NDArray[np.float64]) -> Mapping[str, NDArray[np.float64]]:
@@ -77,7 +77,7 @@ def test_intervals_hold_the_truth() -> None:
 
 
 def test_what_does_not_exist_is_left_out_and_told() -> None:
-    """Where x0 < 0 there is no number; elsewhere it is that of half the range."""
+    """Points with x0 < 0 have no number; the result is that of half the range."""
 
     def partly(x: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
         y = ishigami(x)["y"]
@@ -141,7 +141,7 @@ KEYS = (
 
 
 def test_elasticities_are_differences() -> None:
-    """Of whole device files, a millionth up and down, with all that follows the key."""
+    """Whole device files, changed by a millionth up and down, with all linked keys."""
     found = elasticities(load_study(STUDY), KEYS, LINKS)
     own = load_device(DEVICE).values()
     compared = 0

@@ -1,4 +1,4 @@
-"""Studies from Python: the same as from a file, and what is refused."""
+"""Studies from Python: equal to those of files, and rejected arguments."""
 
 from __future__ import annotations
 
@@ -218,7 +218,7 @@ def test_a_device_that_is_none_is_refused(mouse: DeviceFile) -> None:
 
 
 def test_a_scan_reads_as_the_device_file_says() -> None:
-    """Hand speed, criteria and angle are those of the file; a `Reading` replaces the hand."""
+    """Hand speed, criteria and angle come from the file; a `Reading` replaces the hand."""
     small = ["array.columns=1", "array.rows=1", "hand_speed=40 mm/s", "felt=0.1 mm"]
     reader = pd.load_device(READER, small)
     done = pd.scan(reader, "I")
