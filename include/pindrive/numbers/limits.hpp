@@ -1,4 +1,5 @@
-/// Limits and tolerances that are not physics, each with its reason.
+/// Limits and tolerances that are not physics, each with its reason and a test that fails without it:
+/// a test of tests/cpp, `fuzz` with 100 000 drives, or `fuzz --replay` of tests/hard.
 #pragma once
 
 #include <limits>
@@ -8,19 +9,21 @@ namespace pindrive {
 namespace detail {
 
 /// Relative error of a sum: a force, a rate or a time is the sum of some eight terms, each rounded
-/// by half an epsilon.
+/// by half an epsilon. Without it: limits_test fails.
 template <class T>
 inline constexpr T rounding = 4 * std::numeric_limits<T>::epsilon();
 
-/// Relative error of a root, at which Newton's iteration ends.
+/// Relative error of a root, at which Newton's iteration ends. Without it: fuzz --replay fails.
 template <class T>
 inline constexpr T root_error = 2 * std::numeric_limits<T>::epsilon();
-/// Relative change of an iteration at its fixed point: its last digit.
+/// Relative change of an iteration at its fixed point: its last digit. Without it: slow_slider_test
+/// fails.
 template <class T>
 inline constexpr T last_digit = std::numeric_limits<T>::epsilon();
 
 /// Relative error of the difference of two computed values: of two positions, of two friction
-/// forces of one sliding speed, of two velocities that reach zero together.
+/// forces of one sliding speed, of two velocities that reach zero together. Without it: fuzz
+/// --replay fails.
 template <class T>
 inline constexpr T difference_error = 4 * rounding<T>;
 
@@ -29,12 +32,13 @@ template <class T>
 inline constexpr T end_error = 8 * rounding<T>;
 
 /// Relative distance of the stationary speed of a slider from the end of its branch, below which
-/// the slider has not left the branch: both are rounded.
+/// the slider has not left the branch: both are rounded. Without it: fuzz fails.
 template <class T>
 inline constexpr T branch_end_error = 2 * rounding<T>;
 
 /// Relative transverse velocity below which an oblique plate moves along the axis: closer to zero
-/// the steps of a pin that comes to rest on the plate become short.
+/// the steps of a pin that comes to rest on the plate become short. Without it: fuzz --replay
+/// fails.
 template <class T>
 inline constexpr T least_across = 64 * rounding<T>;
 
@@ -44,17 +48,19 @@ template <class T>
 inline constexpr T before_rest = 128 * rounding<T>;
 
 /// Relative time of the first stick of skin that has no first mode as its load grows from zero:
-/// some time resolutions, for each period in which the load grows by a half.
+/// some time resolutions, for each period in which the load grows by a half. Without it: fuzz
+/// --replay fails.
 template <class T>
 inline constexpr T first_grip = 64 * rounding<T>;
 
-/// Relative difference of two forces, or of two speeds, beyond which the load or the pin velocity of
-/// a slider has jumped: the accumulated rounding of a segment is below.
+/// Relative difference of two forces, or of two speeds, beyond which the load or the pin velocity
+/// of a slider has jumped: the accumulated rounding of a segment is below. Without it: fuzz fails.
 template <class T>
 inline constexpr T jump_error = 64 * rounding<T>;
 
 /// Events at one instant after which a motion is terminated. Physics has two or three (a contact
-/// slips, a second one follows, a breakpoint is passed); more would never end.
+/// slips, a second one follows, a breakpoint is passed); more would never end. Without it:
+/// limits_test fails.
 inline constexpr int standstill_limit = 100;
 
 /// Index of the first event whose state is kept for comparison: most motions come to rest after few.
@@ -63,26 +69,27 @@ inline constexpr long long first_kept_event = 3;
 inline constexpr long long short_memory = 32;
 
 /// Distance within which two states are equal, as a fraction of the natural scales of the motion:
-/// well above the rounding of the events of one period.
+/// well above the rounding of the events of one period. Without it: recurrence_test fails.
 inline constexpr double return_tolerance = 1e-12;
 
 /// Distance below which a return is compared with the next return, as a fraction of the natural
-/// scales.
+/// scales. Without it: recurrence_test fails.
 inline constexpr double near_return = 1e-3;
 
 /// Bound of the distance between a geometrically approached cycle and the simulated period that
 /// represents the cycle, and largest difference between begin and end of that period, as fractions
-/// of the natural scales.
+/// of the natural scales. Without it: recurrence_test fails.
 inline constexpr double approach_tolerance = 1e-9, approach_step = 1e-10;
 
 /// Difference between a motion and its periodic continuation from its steady begin on, as a
 /// fraction of the amplitude; larger than `approach_tolerance`, so that the simulated period itself
-/// is steady.
+/// is steady. Without it: steady_since_test fails.
 inline constexpr double repeat_tolerance = 1e-8;
 
 /// Events in a window whose duration is compared, and windows after which a motion that neither
 /// returns, nor grows, nor decays is irregular: 15 360 events, some ten milliseconds. Many numbers
 /// of events per period divide the window, so that the windows of a decaying motion are alike.
+/// Without it: irregularity_test fails.
 inline constexpr int irregular_window = 240, irregular_windows = 64;
 
 /// Speed below which a pin is at rest, as a fraction of |x| ω0: below the remaining digits of the
@@ -91,7 +98,8 @@ inline constexpr double rest_tolerance = 3e-11;
 
 /// Error of the band of the settling time, as a fraction of the largest position: a sum of some
 /// dozens of roundings; and the remaining motion of a pin at rest by the rest criterion,
-/// `rest_tolerance` times the ratio of its fastest and slowest rates.
+/// `rest_tolerance` times the ratio of its fastest and slowest rates. Without it: settling_test
+/// fails.
 template <class T>
 inline constexpr T band_error = 16 * rounding<T>;
 inline constexpr double band_error_at_rest = 64 * rest_tolerance;
@@ -106,13 +114,14 @@ inline constexpr double turning_at_end = 1e-9;
 // ---- series ------------------------------------------------------------------------------------
 
 /// Relative truncation error of a step of a series, and of the terms that are removed from it:
-/// together less than one rounding.
+/// together less than one rounding. Without it: fuzz --replay fails.
 template <class T>
 inline constexpr T truncation_error = std::numeric_limits<T>::epsilon() / 4;
 template <class T>
 inline constexpr T removed_terms = std::numeric_limits<T>::epsilon() / 8;
 /// Relative truncation error of an accepted step, beside the coefficients of the step; and of the
 /// motion in which friction or a slider is eliminated, whose equations are solved by iteration.
+/// Without it: fuzz --replay fails.
 template <class T>
 inline constexpr T step_error = 2 * std::numeric_limits<T>::epsilon();
 template <class T>
@@ -129,26 +138,28 @@ inline constexpr T creep_error = 1024 * rounding<T>;
 inline constexpr double longest_step = 8;
 /// Factor between tried and used step of a series; the powers of the step must be finite.
 inline constexpr double farthest_step = 1024;
-/// Reductions of a step before its truncation error is accepted as it is.
+/// Reductions of a step before its truncation error is accepted as it is. Without it: series_test
+/// fails.
 inline constexpr int most_reductions = 200;
 /// Factor by which a step of slow motion is shortened until its iteration converges.
 inline constexpr double step_reduction = 0.75;
-/// Iterations and reductions of a step of slow motion before the Taylor series of the whole motion is
-/// used instead.
+/// Iterations and reductions of a step of slow motion before the Taylor series of the whole motion
+/// is used instead. Without it: creep_test, slow_slider_test fails.
 inline constexpr int slow_iterations = 16, slow_reductions = 40;
 /// Largest ratio t = (x' − v_p)/w of creep: closer to the friction limit the boundary layer is never thin.
 inline constexpr double steepest_creep = 1e4;
 
 // ---- stepper -----------------------------------------------------------------------------------
 
-/// Periods, in units of 1/ω0, after which a stepper selects its mode again under inputs that change:
-/// a double still resolves the time of an event.
+/// Periods, in units of 1/ω0, after which a stepper selects its mode again under inputs that
+/// change: a double still resolves the time of an event. Without it: stepper_test fails.
 inline constexpr double longest_segment = 1e6;
 
 // ---- kernel ------------------------------------------------------------------------------------
 
-/// Relative difference below which the kernel leaves a decision to the general core: a thousand times
-/// the accumulated rounding of the evaluated half periods.
+/// Relative difference below which the kernel leaves a decision to the general core: a thousand
+/// times the accumulated rounding of the evaluated half periods. Without it: plain_release_test
+/// fails.
 inline constexpr double near_tie = 1e-12;
 /// Smallest distance of an extremum of the velocity from the plate velocity, relative to the latter:
 /// closer, the time of the event has less than half of the digits.
@@ -156,12 +167,13 @@ inline constexpr double near_grazing = 1e-9;
 /// Smallest 1 − ζ² in the kernel: closer to critical damping the sine of a half period loses digits.
 inline constexpr double least_discriminant = 0.02;
 /// Relative change of an angle after which the kernel's iteration of order 4 ends: its next change
-/// is below the rounding.
+/// is below the rounding. Without it: oscillation_test fails.
 inline constexpr double last_change = 1e-4;
 /// Half periods evaluated by the kernel; each costs a few operations, of a whole pack if one drive
-/// needs it.
+/// needs it. Without it: kernel_test fails.
 inline constexpr int most_half_turns = 4096;
-/// Rounds evaluated by the kernel before a release is left to the general core.
+/// Rounds evaluated by the kernel before a release is left to the general core. Without it:
+/// kernel_test fails.
 inline constexpr int most_rounds = 1 << 18;
 
 // ---- certificate -------------------------------------------------------------------------------
@@ -170,21 +182,23 @@ inline constexpr int most_rounds = 1 << 18;
 /// unnoticed.
 inline constexpr double unseen_violation = 1e-10;
 /// Relative part of the force scale by which skin may stretch near a load of zero, where it is not
-/// simulated.
+/// simulated. Without it: fuzz fails.
 template <class T>
 inline constexpr T unloaded_stretch = 256 * rounding<T>;
-/// Panels at each end of a segment that are evaluated before its middle is skipped.
+/// Panels at each end of a segment that are evaluated before its middle is skipped. Without it:
+/// fuzz --replay fails.
 inline constexpr int walked_panels = 2048;
 /// Duration of a segment in time constants below which nothing changes, and relative change of the
 /// friction of an oblique plate below which its direction is constant.
 inline constexpr double brief_segment = 1e-11, brief_turn = 1e-10;
-/// Relative velocity, as a fraction of the largest velocity, below which a pin is at rest on a surface.
+/// Relative velocity, as a fraction of the largest velocity, below which a pin is at rest on a
+/// surface. Without it: fuzz fails.
 inline constexpr double still_velocity = 1e-12;
 
 }  // namespace detail
 
 /// Events after which a motion is terminated: friction and damping are too weak to end the motion,
-/// and its segments would fill the memory.
+/// and its segments would fill the memory. Without it: limits_test fails.
 inline constexpr long long event_limit = 1'000'000;
 
 }  // namespace pindrive
