@@ -21,7 +21,7 @@ SOURCES = ("pyproject.toml", "CMakeLists.txt", "include", "capi", "fmu", "src")
 
 
 def requirements(extras: set[str]) -> list[str]:
-    """Return the requirements of pyproject.toml to build, to run, and of these extras."""
+    """Return the requirements of pyproject.toml to build, to run, and for the given extras."""
     import tomllib
 
     pyproject = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))

@@ -61,7 +61,7 @@ def programs(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def _built_once(factory: pytest.TempPathFactory, name: str, build: Callable[[Path], None]) -> Path:
-    """Return a folder of build/tests, built once per run by one of the workers."""
+    """Return a folder of build/tests, built once per run by a single worker."""
     if sys.platform == "win32":
         pytest.skip("where the library lies is tested on the others")
     import fcntl

@@ -11,7 +11,7 @@ from pindrive.optimisation import Effort
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 MOUSE = EXAMPLES / "tactile-mouse.toml"
 SMALL = Effort(1 << 14, 48, 120, 128, 11, 2000)
-"""Sufficient effort for the design problems of these tests."""
+"""Sufficient effort for the design problems in the tests."""
 PAPER: Mapping[str, Any] = {
     "name": "short transient",
     "axes": {

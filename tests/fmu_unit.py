@@ -77,7 +77,7 @@ class Unit:
 
     @contextmanager
     def astray(self, random: np.random.Generator, *names: str) -> Iterator[None]:
-        """A unit returns to the stored values of these names after any calls.
+        """A unit returns to the stored values of its names after any calls.
 
         Its state is kept, or written to bytes and read again.
         """

@@ -220,7 +220,7 @@ def device(given: dict[str, str], varied: dict[str, str]) -> str:
 
 
 def study_file(varied: dict[str, str], scans: bool, rng: np.random.Generator) -> str:
-    """Return a study of these keys."""
+    """Return a study with the given keys."""
     lines = ['base = "device.toml"']
     if rng.random() < 0.08:
         lines.append(f"chunk = {rng.choice(COUNTS)}")

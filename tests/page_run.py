@@ -1,4 +1,4 @@
-"""A page of the site as a program: its blocks, one after the other, in one folder."""
+"""Page of the site as a program: its blocks run in sequence in one folder."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ from command import run
 from pages import FILES, ROOT, Block, file_of
 
 CHECKOUT = ("CMakeLists.txt", "examples", "include", "tests/consumer")
-"""What of a checkout the commands of a page find in their folder, as copies."""
+"""Files of the checkout that the commands of a page find as copies in their folder."""
 NOT_RUN = {
     "python3 run.py": "it makes the environment that the tests run in",
     "python -m pip install": "it installs what the tests run",
     ".venv/bin/pindrive studio": "it opens a browser; tests/studio has the page",
 }
-"""Commands that no page runs, each with its reason; that they exist is tested all the same."""
+"""Commands that no page runs, each with its reason; their existence is tested."""
 
 
 def agrees(printed: str, shown: str) -> bool:
-    """Whether it was printed, spaces at line ends apart; `...` stands for what is left out."""
+    """Return True if the text was printed, apart from spaces at line ends; `...` omits a part."""
 
     def lines(text: str) -> str:
         return "\n".join(line.rstrip() for line in text.strip().splitlines())
@@ -43,7 +43,7 @@ def agrees(printed: str, shown: str) -> bool:
 
 
 def is_excerpt(lines: str, file: str) -> bool:
-    """Whether all its lines that are not empty are lines of the file, in their order."""
+    """Return True if all non-empty lines of a block are lines of the file, in order."""
     left = iter([line.strip() for line in file.splitlines()])
     return all(line.strip() in left for line in lines.splitlines() if line.strip())
 
@@ -68,7 +68,7 @@ class Run:
     _running: list[subprocess.Popen[bytes]] = field(default_factory=list)
 
     def page(self, found: list[Block]) -> None:
-        """All blocks, one after the other, each with the block of text after it."""
+        """Run all blocks in sequence, each with the block of text after it."""
         for name in CHECKOUT:
             if (ROOT / name).is_dir():
                 shutil.copytree(ROOT / name, name)
@@ -93,7 +93,7 @@ class Run:
                 process.wait()
 
     def _block(self, block: Block) -> str:
-        """What a block prints."""
+        """Return the output of a block."""
         if block.language in FILES:
             name, _, text = file_of(block).partition("\n")
             there = ROOT / name
@@ -112,7 +112,7 @@ class Run:
         return "".join(map(self._command, filter(None, lines)))
 
     def _command(self, line: str) -> str:
-        """What a line of a shell prints; pindrive runs in this process."""
+        """Return the output of a line of a shell; pindrive runs in this process."""
         if line in self.done or any(line.startswith(given) for given in NOT_RUN):
             return ""
         words = shlex.split(line, comments=True)
@@ -151,7 +151,7 @@ class Run:
 
 @contextlib.contextmanager
 def printed() -> Iterator[io.StringIO]:
-    """What is printed meanwhile."""
+    """Collect the output of the enclosed code."""
     output = io.StringIO()
     with contextlib.redirect_stdout(output):
         yield output

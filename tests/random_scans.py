@@ -137,7 +137,7 @@ def parting(whole: PinScan, halves: tuple[PinScan, PinScan]) -> float:
 
 
 def mirrors(pin: PinScan, other: PinScan) -> bool:
-    """Return True if one is the mirror image of the other, to the bit."""
+    """Return True if two scans are mirror images, to the bit."""
     t = np.linspace(pin.begin, pin.end, 500)
     return (
         np.array_equal(pin.commands.times, other.commands.times)

@@ -24,9 +24,9 @@ ORDER = (
 )
 """Packages in order: each imports from itself and from earlier packages."""
 MOST_LAYERS = 10
-"""Longest chain of packages, each of which imports the package before."""
+"""Longest chain of packages in which every package imports its predecessor."""
 MOST_FLOORS = 12
-"""Longest chain of files, each of which imports the file before."""
+"""Longest chain of files in which every file imports its predecessor."""
 
 USING = {".py", ".pyi", ".md"}
 """Places that may use a name."""
@@ -86,7 +86,7 @@ def circle(graph: Graph) -> list[str]:
 
 
 def longest_chain(graph: Graph) -> list[str]:
-    """Return the longest chain of modules, each of which imports the module before."""
+    """Return the longest chain of modules in which every module imports its predecessor."""
     chains: dict[str, list[str]] = {}
     for module in TopologicalSorter(graph).static_order():
         below = max((chains[name] for name in graph[module]), key=len, default=[])
@@ -230,3 +230,12 @@ def test_an_import_of_a_later_package_is_found() -> None:
     found = upward(without_own(imports(files)))
     assert ("pindrive.motion.a", "pindrive.plot.b") in found
     assert {module for module, _ in found} == {"pindrive.motion.a"}
+
+
+def test_public_classes_have_names_of_their_own() -> None:
+    found = Counter(
+        name
+        for path in SOURCE.rglob("*.py")
+        for name in re.findall(r"^class ([A-Z]\w+)", path.read_text("utf-8"), re.MULTILINE)
+    )
+    assert [name for name, count in found.items() if count > 1] == []

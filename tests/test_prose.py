@@ -69,7 +69,9 @@ def test_summaries_of_python_are_read_from_docstrings_and_attributes() -> None:
     assert [*of_python(text)] == ["A.", "B.", "C."]
 
 
-PYTHON = sorted((ROOT / "src" / "pindrive").rglob("*.py"))
+PYTHON = sorted(
+    path for folder in ("src", "tasks", "tests") for path in (ROOT / folder).rglob("*.py")
+)
 CPP = [
     path
     for folder in ("include", "capi", "fmu", "src")

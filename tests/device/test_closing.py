@@ -221,7 +221,7 @@ def test_pulses_come_to_their_steady_swing(frequency: float, duty: float, force:
 
 
 def test_the_energy_taken_is_warmed_stored_and_given_to_the_closing() -> None:
-    """U i - R i² enters the field, and λ²/2 (1/L_open - 1/L) of it each closing."""
+    """U i - R i² enters the field, of which λ²/2 (1/L_open - 1/L) enters each closing."""
     made, made_of = DRIVEN["on and off"], coil(**LIFT)
     current = made.current(Commands(np.array([0.0])), CoilState(-1.0))
     t = np.linspace(0.0, made.closing_time, 20_001)

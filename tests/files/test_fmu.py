@@ -45,7 +45,7 @@ class Archive:
         return Unit(self.folder, self.description, **events)
 
     def motion(self) -> Any:
-        """Return the simulation with the inputs of these tests."""
+        """Return the simulation with the inputs of the unit."""
         release = Release(
             Profile(TIMES, VELOCITIES),
             displacement=self.device.release.displacement,

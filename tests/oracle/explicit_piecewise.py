@@ -31,7 +31,7 @@ class Run:
 
 
 def before(t: float, times: Any, values: Any) -> float:
-    """What rows come to at time t, before the step that they may make there."""
+    """Return the left limit of rows at time t, before a step there."""
     i = int(np.searchsorted(times, t))
     at_row = i < len(times) and times[i] == t
     return float(values[i] if at_row else np.interp(t, times, values))
@@ -143,7 +143,7 @@ class ExplicitModes:
         )
 
     def finger_force(self, t: float, v: float, s: float) -> float:
-        """Of the finger that slides or grips."""
+        """Return the force of the finger in slip or stick."""
         if self.finger.absent:
             return 0.0
         if self.grips:

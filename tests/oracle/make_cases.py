@@ -115,7 +115,7 @@ def near_critical(rng: random.Random) -> Inputs:
 
 
 def critical(rng: random.Random) -> Inputs:
-    """b^2 = 4 m k: exactly in half of the draws, to the last bit in the others."""
+    """Draw b^2 = 4 m k: exactly in half of the draws, otherwise to the last bit."""
     pin = maybe_static(rng)
     if rng.random() < 0.5:
         root_m = round(math.sqrt(pin["mass"]) * 2**22)
@@ -134,7 +134,7 @@ def over_damped(rng: random.Random) -> Inputs:
 
 
 def static_at_plate(rng: random.Random) -> Inputs:
-    """Lightly damped, finger weak or absent: many of these end in a stick-slip cycle."""
+    """Draw light damping with a weak or absent finger; many motions end in a stick-slip cycle."""
     pin = common(rng)
     damp(pin, rng.choice([0.0, rng.uniform(0.0, 0.1)]))
     set_friction(pin, "finger", rng.choice([0.0, 0.1, 1.0]) * pin["finger_kinetic"])
@@ -165,7 +165,7 @@ def negative_mouse_velocity(rng: random.Random) -> Inputs:
 
 
 def zero_mouse_velocity(rng: random.Random) -> Inputs:
-    """Both contacts share one level; in some draws one of them is absent."""
+    """Draw two contacts with equal velocity; in some draws only one is present."""
     pin = common(rng)
     pin["mouse_velocity"] = 0.0
     pin["velocity"] = rng.choice([None, short(rng.uniform(-0.2, 0.2))])
@@ -366,7 +366,7 @@ def answer(family: str, pin: Inputs, rng: random.Random) -> tuple[dict[str, Any]
 
 
 def sample_times(rng: random.Random, events: list[float], duration: float) -> list[float]:
-    """Both ends and one random time in each of equal parts, away from the events."""
+    """Return both ends and one random time in every equal part, away from the events."""
     parts = SAMPLES - 2
     times = [0.0, duration]
     for part in range(parts):

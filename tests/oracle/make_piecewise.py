@@ -110,7 +110,7 @@ def sensitivity(case: dict[str, Any], rng: random.Random) -> float:
 
 
 def sample_times(rng: random.Random, kinks: list[float], duration: float) -> list[float]:
-    """Both ends and one random time in each of equal parts, away from events and knots."""
+    """Return both ends and one random time in every equal part, away from events and knots."""
     times = [0.0, duration]
     for part in range(PARTS):
         for _ in range(100):

@@ -62,7 +62,7 @@ def remez(f: Function, weight: Function, low: Any, high: Any, degree: int) -> tu
 def rounded_error(
     coefficients: list[Any], f: Function, weight: Function, low: Any, high: Any
 ) -> Any:
-    """The same maximum once the coefficients are doubles."""
+    """Return the largest error with the coefficients rounded to doubles."""
     doubles = [mpf(float(c)) for c in coefficients][::-1]
     grid = (low + (high - low) * i / 2000 for i in range(2001))
     return max(abs(weight(x) * (mp.polyval(doubles, x) - f(x))) for x in grid)
@@ -118,7 +118,7 @@ def main() -> None:
 
 
 def split(value: Any, bits: int, count: int) -> list[str]:
-    """So many parts of so many bits each, rounded down, and the rest as a double."""
+    """Return parts of a number with equal bit counts, rounded down, and the rest as a double."""
     parts = []
     for _ in range(count):
         scale = mpf(2) ** (bits - 1 - mp.floor(mp.log(value, 2)))

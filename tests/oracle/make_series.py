@@ -120,7 +120,7 @@ def draw(kind: int, rng: random.Random) -> Case:
 
 
 def grows(case: Case) -> float:
-    """How many times e a small error may grow."""
+    """Return the growth of a small error in powers of e."""
     most_load = max(case.load[0], case.load[0] + case.load[1] * case.duration)
     found = max(0.0, -case.plate_branch[3] * most_load - case.damping) / case.mass
     if case.finger_stiffness and case.finger_branch[3] < 0:

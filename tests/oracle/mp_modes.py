@@ -51,7 +51,7 @@ class Case:
 
 @dataclass(frozen=True)
 class Answer:
-    """What ends it (0: nothing within the duration), when, and the state there."""
+    """Ending guard (0: none within the duration), its time, and the state there."""
 
     guard: int
     time: mpf
@@ -62,7 +62,7 @@ class Answer:
 
 @dataclass
 class Series:
-    """Of every quantity of a mode, over a time h: coefficients of t/h."""
+    """Series of the quantities of a mode over a time h: coefficients of t/h."""
 
     x: Poly
     v: Poly
@@ -193,7 +193,7 @@ def expand(case: Case, t: mpf, x0: mpf, v0: mpf, q0: mpf, h: mpf) -> Series:
 
 
 def guards(case: Case, s: Series, t: mpf, h: mpf, first: bool) -> list[tuple[int, Guard]]:
-    """What ends the mode: numbered, positive while it lasts."""
+    """Return the guards of the mode: numbered, positive while it lasts."""
     found: list[tuple[int, Guard]] = []
 
     def add(number: int, poly: Poly, scale: mpf) -> None:

@@ -140,7 +140,7 @@ class _Oblique:
         return xs, v, q
 
     def balance(self, inertia: mpf, strength: mpf, rest: mpf) -> mpf:
-        """Where inertia q + strength q / sqrt(1 + q^2) is the rest, by bisection and Newton."""
+        """Solve inertia q + strength q / sqrt(1 + q^2) = rest, by bisection and Newton."""
         if inertia < 0 and abs(rest) >= strength * mpf("0.98"):
             raise DoubtError("friction nearly all used")
         low, high = (
@@ -160,7 +160,7 @@ class _Oblique:
     # -- steps ---------------------------------------------------------------------------------
 
     def reach(self, series: Poly, size: mpf) -> mpf:
-        """How far a series serves."""
+        """Return the range of a series."""
         last = (series[n] for n in range(ORDER - 4, ORDER))
         far = (abs(c) / size for c in last)
         return min(

@@ -56,7 +56,7 @@ class Level:
 
 @dataclass(frozen=True)
 class Event:
-    """What happened at a level: "stick", "slip" or "reverse"; time, position and velocity in SI."""
+    """Event at a level: "stick", "slip" or "reverse"; time, position and velocity in SI."""
 
     time: mpf
     contact: str

@@ -236,7 +236,7 @@ class _Simulation:
         return [self.touch(self.t), self.touch.slope(self.t) * h]
 
     def pushed(self, h: mpf) -> Poly:
-        """What pushes the pin beside friction: inertia, and the external force."""
+        """Return the forces on the pin beside friction: inertia, and the external force."""
         inertia = self.m * self.mouse.slope(self.t)
         return [inertia + self.push(self.t), self.push.slope(self.t) * h]
 
@@ -355,7 +355,7 @@ class _Simulation:
         self.note(was)
 
     def stretching(self, contact: str) -> mpf:
-        """How fast skin that slips stretches with its load."""
+        """Return the stretch rate of slipping skin under its load."""
         law = self.law[contact]
         return (
             self.touch.slope(self.t) * law.forces[0] / law.stiffness if contact == "finger" else 0
@@ -372,7 +372,7 @@ class _Simulation:
             self.grip(force)
 
     def take_load(self) -> None:
-        """What skin does at a row of its load: its stretch goes on unless the load is too small."""
+        """Apply a load step to the skin; the stretch stays unless the load is too small."""
         law, load = self.law["finger"], self.touch(self.t)
         if self.side["finger"] == 0:
             if law.stiffness * abs(self.stretch) > load * law.static:
@@ -433,7 +433,7 @@ class _Simulation:
         self.path.pieces.append(Piece(self.t, h, x, mode, finger, skin))
 
     def note(self, was: Sides) -> None:
-        """One event for each contact that changed; for both, if the same happened to both."""
+        """Return one event for every contact that changed; for both, if they changed alike."""
         kinds = {}
         for contact in self.law:
             before, after = was[contact], self.side[contact]

@@ -75,7 +75,7 @@ class Guard:
 
     @property
     def order(self) -> int:
-        """Of its zero at s = 0."""
+        """Order of its zero at s = 0."""
         return next(n for n, c in enumerate(self.poly) if abs(c) > TINY * self.scale)
 
     @property
@@ -85,7 +85,7 @@ class Guard:
 
     @property
     def idle(self) -> bool:
-        """Whether it is zero for ever."""
+        """True if it is zero at all times."""
         return all(abs(c) <= TINY * self.scale for c in self.poly)
 
 
@@ -125,7 +125,7 @@ def earliest_zero(guard: Guard, unit: mpf, doubt: Callable[[str, mpf], None]) ->
 
 
 def root(g: Poly, slope: Poly, low: mpf, high: mpf) -> mpf:
-    """Where g falls through 0 in [low, high]: bisection, then Newton's iteration."""
+    """Return the downward zero of g in [low, high]: bisection, then Newton's iteration."""
     for _ in range(36):
         middle = (low + high) / 2
         low, high = (middle, high) if horner(g, middle) > 0 else (low, middle)

@@ -64,7 +64,7 @@ class Path:
 
 
 def branches(curve: list[list[float]]) -> list[Branch]:
-    """Of a curve, whose last slope goes on."""
+    """Return the branches of a curve, whose last slope continues."""
     found = []
     for (u, f), (w, g) in pairwise([(mpf(u), mpf(f)) for u, f in curve]):
         slope = (g - f) / (w - u)
@@ -331,7 +331,7 @@ def apart(one: mpf, other: mpf) -> bool:
 
 
 def same(one: mpf, other: mpf) -> bool:
-    """Whether two numbers are one, found in two ways; a doubt is one case in between."""
+    """Return True if two numbers from two methods are equal; a doubtful case raises."""
     if abs(one - other) <= TINY * max(abs(one), abs(other)):
         return True
     if not apart(one, other):

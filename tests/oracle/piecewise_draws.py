@@ -32,7 +32,7 @@ def rounded(rows: Rows) -> Rows:
 
 
 def speed(pin: Inputs) -> float:
-    """Where the mouse starts, or what moves the pin as fast."""
+    """Return a start of the mouse, or an equivalent velocity of the pin."""
     start = abs(pin["mouse_velocity"][0][1])
     return float(start or frequency(pin) * abs(pin["displacement"]))
 

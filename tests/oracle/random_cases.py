@@ -57,7 +57,7 @@ KINDS: dict[str, Callable[[int], tuple[Case, Path]]] = {
 
 
 def events(case: Case, told: list[piecewise.Told]) -> list[list[piecewise.Told]]:
-    """Those that both tell: an oblique plate has none, nor a contact that is never loaded."""
+    """Return the events that both report: none of an oblique plate or of an unloaded contact."""
     if "across" in case["inputs"]:
         told = [event for event in told if event[1] != "plate"]
     told = piecewise.carried(case, told)
@@ -65,7 +65,7 @@ def events(case: Case, told: list[piecewise.Told]) -> list[list[piecewise.Told]]
 
 
 def deviation(case: Case, path: Path) -> float:
-    """How far the core is from the answer, as a part of the scales; infinity: other events."""
+    """Return the deviation of the core relative to the scales; infinity: other events."""
     motion = piecewise.release(case)
     told = events(case, piecewise.told_events(motion))
     answer: list[piecewise.Told] = [

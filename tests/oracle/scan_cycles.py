@@ -1,4 +1,4 @@
-"""A pin's scan under SUNDIALS: the same hand and pull, integrated by `sundials_modes`."""
+"""Scan of a pin under SUNDIALS: equal hand and pull, integrated by `sundials_modes`."""
 
 from __future__ import annotations
 
@@ -14,15 +14,16 @@ from pindrive.device import PinScan
 
 SAMPLES = 300
 JUST_BEFORE = 0.999
-"""Of the duration: at the very end, where the hand comes to rest, one may tell an event or not."""
+"""Fraction of the duration that is compared: at the end, where the hand stops, events may differ.
+"""
 
 
 @dataclass(frozen=True)
 class Distance:
-    """How far a pin's scan is from SUNDIALS'."""
+    """Distance of a pin's scan from SUNDIALS."""
 
     events: bool
-    """Whether the same happened in the same order."""
+    """True if equal events happened in equal order."""
     time: float
     """Between two times of one event at the most, s."""
     position: float

@@ -25,7 +25,7 @@ def curve(rng: random.Random, force: float, speed: float) -> list[list[float]]:
 
 
 def draw_load(rng: random.Random) -> dict[str, Any]:
-    """The same under a touch force that changes, or Coulomb friction that it presses and lifts."""
+    """Draw a drive under a varying touch force, or Coulomb friction with a varying load."""
     case = draw(rng)
     pin, duration = case["inputs"], case["duration"]
     loads = [short(rng.uniform(0.3, 1.8)) for _ in range(4)]

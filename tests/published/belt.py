@@ -51,7 +51,7 @@ def falling(u: Any) -> Any:
 
 @cache
 def period(rows: int) -> float:
-    """Period of the cycle with falling friction given by so many rows, s."""
+    """Return the period of the cycle with a falling curve of that number of points, s."""
     given = GIVEN["curve"]["parameters"]
     speeds = np.linspace(0.0, FASTEST, rows)
     drive = Drive(
@@ -66,7 +66,7 @@ def period(rows: int) -> float:
 
 @cache
 def integrated() -> float:
-    """The same with the curve itself, integrated: from where it breaks loose to the belt's speed.
+    """Return the period with the curve itself, integrated from breakaway to the belt's speed.
 
     The start is a little after the belt's velocity is left, with the first terms of the series.
     """

@@ -1,4 +1,4 @@
-"""A published case: where its numbers come from, and each of them beside the computed one."""
+"""Published case: source of its numbers, with the computed values."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ PUBLISHED: Final[dict[str, Any]] = {
     "ms": 7.0,
     "color": "#D55E00",
 }
-"""How published values are drawn."""
+"""Style of published values in a figure."""
 DIGITS: Final = "half a unit of the last printed digit"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Number:
-    """One number of a source beside the same number computed with pindrive."""
+    """Published number with the number computed by pindrive."""
 
     what: str
     """With its unit."""
@@ -38,9 +38,9 @@ class Number:
     allowed: float
     """Largest difference that the source justifies."""
     because: str
-    """Where `allowed` comes from."""
+    """Source of `allowed`."""
     deviates: bool = False
-    """Whether the source itself is off by more than it allows; its case says why."""
+    """True if the source itself deviates by more than allowed; its case explains the reason."""
 
     @property
     def difference(self) -> float:
@@ -56,21 +56,21 @@ class Case:
     """A case of the literature."""
 
     key: str
-    """Of its section and its figure."""
+    """Name of its section and its figure."""
     title: str
     source: Mapping[str, str]
     about: str
-    """What moves, and how the case is written as a drive."""
+    """Description of the system, and its notation as a drive."""
     numbers: Sequence[Number]
     draw: Callable[[Axes], None]
     """Draws the motion beside the published values."""
     remarks: str = ""
     missing: str = ""
-    """What of the case pindrive cannot express, and what is tested in its place."""
+    """Part of the case that pindrive cannot express, and its replacement."""
 
 
 def load(name: str) -> Any:
-    """What the data file of a case says."""
+    """Return the contents of the data file of a case."""
     return json.loads((DATA / f"{name}.json").read_text("utf-8"))
 
 

@@ -18,7 +18,7 @@ GIVEN = load("aster-sdnd101")
 
 
 TRAVEL = 0.1
-"""Where the stop is, m: its spring is at rest there, to which a force moves it."""
+"""Position of the stop, m: its spring is at rest there, to which a force moves it."""
 
 
 @cache

@@ -11,7 +11,7 @@ from .case import Case, Number
 
 CYCLE = [PALETTE["curve"], PALETTE["stick"], PALETTE["slip"], PALETTE["gripping"]]
 EDGE = 1.25
-"""Where a difference beyond the allowed one is drawn, in parts of that."""
+"""Place of a difference beyond the allowed one, in units of the allowed one."""
 
 
 def part(number: Number) -> float:

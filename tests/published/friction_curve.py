@@ -28,7 +28,7 @@ def friction(u: Any) -> Any:
 
 
 TRAVEL = 0.3
-"""How far the stop is from where the spring alone would rest, m: a force moves that."""
+"""Distance of the stop from the rest of the spring alone, m: a force moves the rest."""
 
 
 def moved() -> float:
@@ -39,7 +39,7 @@ def moved() -> float:
 
 @cache
 def motion_of(rows: int) -> Motion:
-    """The whole motion; its positions are `moved` less than those of the source."""
+    """Return the whole motion; its positions are `moved` less than in the source."""
     given = GIVEN["parameters"]
     speeds = np.linspace(0.0, given["fastest"], rows)
     drive = Drive(
@@ -67,7 +67,7 @@ def reference() -> NDArray[np.float64]:
 
 
 def turns_of(motion: Motion) -> list[Event]:
-    """Where the mass turns or sticks, after it has struck the stop."""
+    """Return the turns and sticks of the mass after its impact on the stop."""
     ends = [event for event in motion.events if event.contact == "finger" and event.velocity == 0.0]
     struck = next(event.time for event in motion.events if event.contact == "stop")
     return [e for e in ends if e.time > struck and e.kind in ("reverse", "stick")]

@@ -16,7 +16,7 @@ END: Final = "<!-- to here -->\n"
 
 
 def picture(case: Case) -> Path:
-    """Where the figure of a case is."""
+    """Return the place of the figure of a case."""
     return IMAGES / f"validation-{case.key}.png"
 
 
@@ -84,7 +84,7 @@ def _row(i: int, number: Number) -> str:
 
 
 def computed(number: Number) -> str:
-    """As many decimals as tell it from the published number, in the same notation."""
+    """Return enough decimals to tell it from the published number, in equal notation."""
     mantissa, marked, exponent = number.published.partition("e")
     scale = int(exponent or 0)
     if number.allowed == 0.0 or number.difference == 0.0:

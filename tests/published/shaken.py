@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 GIVEN = load("aster-sdnd104")
 ROWS = {15.0: 8000, 1.5: 8000, 1.01: 20_000, 0.99: 1000}
-"""Rows of a period at each amplitude: near 1 a short stretch of it alone slides."""
+"""Breakpoints of a period at each amplitude: near 1 only a short part slides."""
 
 
 @cache

@@ -31,7 +31,7 @@ def every() -> list[Case]:
 def test_published_numbers_are_met_to_what_their_source_justifies(
     compute: Callable[[], Case],
 ) -> None:
-    """Those that deviate are recorded as such, with the reason."""
+    """Deviating numbers are recorded as such, with the reason."""
     case = compute()
     assert case.numbers
     assert [number for number in case.numbers if number.agrees is number.deviates] == []
@@ -138,7 +138,7 @@ def test_a_page_without_its_marks_is_refused(every: list[Case]) -> None:
 
 
 def published_points() -> dict[str, tuple[str, list[float]]]:
-    """The label under which each figure draws published values, and those, in its unit."""
+    """Return the label of the published values in each figure, and the values in its unit."""
     stop, belt = load("aster-sdnd101"), load("stick-slip")["parameters"]
     curve = load("msl-friction-stop2")["published"]["turning"]
     power = load("aster-sdnd104")["published"]["power"]
@@ -177,7 +177,7 @@ def test_a_figure_draws_published_values_and_the_motion(compute: Callable[[], Ca
 
 
 def test_the_curves_go_through_the_published_points() -> None:
-    """Of the motions over time; the figure shows an agreement, not only two things in one frame."""
+    """Figures of motions over time show an agreement, not only two curves in one frame."""
     for case, label in (
         (decay.aster(), "published, sdnd100a"),
         (friction_curve.msl(), "its turning points"),

@@ -221,7 +221,7 @@ TOLERANCES = '[tolerances]\nplate.kinetic = "25 %"\n[specification]\nsettling_ti
 
 
 def test_no_draw_of_kinetic_friction_alone_is_impossible() -> None:
-    """With a fixed static friction a sixth of these draws would lie above it."""
+    """With a fixed static friction a sixth of the draws would exceed the static friction."""
     found = robustness(study(TOLERANCES), count=2000)
     assert found.refusals == ()
     assert found.designs == 2000

@@ -60,7 +60,7 @@ def test_numbers_are_those_of_simulate() -> None:
 
 
 def test_the_ledger_is_kept_where_it_is_named() -> None:
-    """Energy terms are only in files that name them, and equal those of `simulate`."""
+    """Energy terms are only in files that name them, with the values of `simulate`."""
     axes = '[axes]\nmouse_velocity = ["20 mm/s", "90 mm/s"]\n'
     plan(axes)
     run("study.toml", "-o", "without.nc")

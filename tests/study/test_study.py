@@ -1,4 +1,4 @@
-"""Studies from Python: equal to those of files, and rejected arguments."""
+"""Studies from Python: equal to studies from files, and rejected arguments."""
 
 from __future__ import annotations
 

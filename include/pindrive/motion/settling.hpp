@@ -127,7 +127,7 @@ class Settling {
         follow_to(low + turns.spacing, x.at(oscillator, low + turns.spacing));
     } else if (turns.spacing == never) {
       T step = -1 / oscillator.slowest_rate();
-      while (abs(x.at(oscillator, low + step) - x_end) > width && step < T(1e300)) step *= 2;
+      while (abs(x.at(oscillator, low + step) - x_end) > width && isfinite(2 * step)) step *= 2;
       follow_to(low + step, x.at(oscillator, low + step));
     }
     return since;

@@ -90,7 +90,7 @@ COMMAND: Final = "magnet_on"
 
 
 @dataclass(frozen=True, slots=True)
-class Variable:
+class FmuVariable:
     """A variable of the unit."""
 
     name: str
@@ -116,7 +116,7 @@ class Variable:
         return "input" if self.kind == "command" else self.kind
 
 
-def variables_of(device: DeviceFile) -> list[Variable]:
+def variables_of(device: DeviceFile) -> list[FmuVariable]:
     """The variables of a device's drive, in the order of their numbers, which begin with 1.
 
     Parameters are the keys as the file gives them, or whose values hold where it does not; rows
@@ -127,7 +127,7 @@ def variables_of(device: DeviceFile) -> list[Variable]:
     return [*_parameters(device), *_inputs(device), *_outputs(magnet)]
 
 
-def _parameters(device: DeviceFile) -> Iterator[Variable]:
+def _parameters(device: DeviceFile) -> Iterator[FmuVariable]:
     values = device.values()
     left_out = {*device.derived, *ELSEWHERE, *(f"motion.{name}" for name in inputs_of(device))}
     for contact in ("plate", "finger"):
@@ -153,9 +153,9 @@ def _parameters(device: DeviceFile) -> Iterator[Variable]:
             yield _given(f"{key}.{along.rpartition('.')[2]}[{i}]", row, second)
 
 
-def _given(name: str, row: Quantity, value: float) -> Variable:
+def _given(name: str, row: Quantity, value: float) -> FmuVariable:
     least, largest = row.limits.lower, row.limits.upper
-    return Variable(name, "parameter", row.meaning, row.unit, value, least, largest)
+    return FmuVariable(name, "parameter", row.meaning, row.unit, value, least, largest)
 
 
 def inputs_of(device: DeviceFile) -> tuple[str, ...]:
@@ -166,41 +166,41 @@ def inputs_of(device: DeviceFile) -> tuple[str, ...]:
     return tuple(name for name in INPUTS if not (device.whole and name == "plate_load"))
 
 
-def _inputs(device: DeviceFile) -> Iterator[Variable]:
+def _inputs(device: DeviceFile) -> Iterator[FmuVariable]:
     for name in inputs_of(device):
         row = QUANTITIES[name]
         given: float | Profile = getattr(device.release, name)
         value = given(0.0) if isinstance(given, Profile) else given
         limits = row.limits
-        yield Variable(name, "input", row.meaning, row.unit, value, limits.lower, limits.upper)
+        yield FmuVariable(name, "input", row.meaning, row.unit, value, limits.lower, limits.upper)
         meaning = f"rate at which {name} continues until it is set again"
-        yield Variable(f"{name}_rate", "input", meaning, _RATES[row.unit], 0.0)
+        yield FmuVariable(f"{name}_rate", "input", meaning, _RATES[row.unit], 0.0)
     if device.whole:
         meaning = "whether the magnet is commanded on, as by the control block"
-        yield Variable(COMMAND, "command", meaning, "", 0.0)
+        yield FmuVariable(COMMAND, "command", meaning, "", 0.0)
 
 
-def _outputs(magnet: Iterable[Variable]) -> Iterator[Variable]:
+def _outputs(magnet: Iterable[FmuVariable]) -> Iterator[FmuVariable]:
     for name in _OUTPUTS:
-        yield Variable(name, "output", SERIES[name].meaning, SERIES[name].unit)
+        yield FmuVariable(name, "output", SERIES[name].meaning, SERIES[name].unit)
     meaning = (
         "no contact changes before, if the inputs continue as they do; 1.8e308 if none ever does"
     )
-    yield Variable("next_event_time", "output", meaning, "s")
+    yield FmuVariable("next_event_time", "output", meaning, "s")
     yield from magnet
     for contact in ("plate", "finger"):
         meaning = f"what the contact with the {contact} does: {_STATES}"
-        yield Variable(f"{contact}_state", "output", meaning, "", None, -1, 3, whole=True)
+        yield FmuVariable(f"{contact}_state", "output", meaning, "", None, -1, 3, whole=True)
 
 
-def _magnet_outputs(device: DeviceFile) -> Iterator[Variable]:
+def _magnet_outputs(device: DeviceFile) -> Iterator[FmuVariable]:
     assert device.whole
     meaning = "current in the coil, a part of the full one at 20 °C"
-    yield Variable("magnet_current", "output", meaning, "1")
-    yield Variable("magnet_pull", "output", "pull of the magnet on the plate", "N")
+    yield FmuVariable("magnet_current", "output", meaning, "1")
+    yield FmuVariable("magnet_pull", "output", "pull of the magnet on the plate", "N")
     coil = device.whole.magnet().coil
     if coil and coil.heat_capacity is not None:
-        yield Variable("magnet_warming", "output", "warming of the coil above 20 °C", "K")
+        yield FmuVariable("magnet_warming", "output", "warming of the coil above 20 °C", "K")
 
 
 # ---- the archive ---------------------------------------------------------------------------------
@@ -248,7 +248,7 @@ def _libraries(version: int) -> Iterator[tuple[str, bytes]]:
             yield f"binaries/{name}/{library.name}", library.read_bytes()
 
 
-def _listed(variables: Iterable[Variable]) -> tuple[str, bytes]:
+def _listed(variables: Iterable[FmuVariable]) -> tuple[str, bytes]:
     """A token of the variables with their start values, and the list that the library reads."""
     lines = [
         f"{variable.kind} {variable.name} {struct.pack('>d', variable.start or 0.0).hex()}"
@@ -282,7 +282,7 @@ def _root(device: DeviceFile, version: str, token_name: str, token: str) -> Elem
     )
 
 
-def _units(parent: Element, variables: Iterable[Variable]) -> None:
+def _units(parent: Element, variables: Iterable[FmuVariable]) -> None:
     units = SubElement(parent, "UnitDefinitions")
     for name in dict.fromkeys(v.unit for v in variables if v.unit in _BASE):
         unit = SubElement(units, "Unit", {"name": name})
@@ -292,7 +292,7 @@ def _units(parent: Element, variables: Iterable[Variable]) -> None:
             SubElement(unit, "DisplayUnit", {"name": shown, "factor": _number(scale)})
 
 
-def _attributes(variable: Variable) -> dict[str, str]:
+def _attributes(variable: FmuVariable) -> dict[str, str]:
     """Unit, bounds and start value."""
     found = {"unit": variable.unit} if variable.unit in _BASE else {}
     if variable.unit in DISPLAY and variable.unit in _BASE:
@@ -309,14 +309,14 @@ def _attributes(variable: Variable) -> dict[str, str]:
     return found
 
 
-def _variability(variable: Variable) -> str:
+def _variability(variable: FmuVariable) -> str:
     if variable.kind == "parameter":
         return "fixed"
     discrete = variable.type != "Float" or variable.name == "next_event_time"
     return "discrete" if discrete else "continuous"
 
 
-def _described(variable: Variable, reference: int) -> dict[str, str]:
+def _described(variable: FmuVariable, reference: int) -> dict[str, str]:
     initial = {"parameter": {"initial": "exact"}, "output": {"initial": "calculated"}}
     return {
         "name": variable.name,
@@ -339,7 +339,7 @@ def _document(root: Element) -> bytes:
     return text + b"\n"
 
 
-def _description_2(device: DeviceFile, variables: list[Variable], token: str) -> bytes:
+def _description_2(device: DeviceFile, variables: list[FmuVariable], token: str) -> bytes:
     root = _root(device, "2.0", "guid", token)
     SubElement(
         root,
@@ -373,7 +373,7 @@ def _description_2(device: DeviceFile, variables: list[Variable], token: str) ->
     return _document(root)
 
 
-def _description_3(device: DeviceFile, variables: list[Variable], token: str) -> bytes:
+def _description_3(device: DeviceFile, variables: list[FmuVariable], token: str) -> bytes:
     root = _root(device, "3.0", "instantiationToken", token)
     SubElement(
         root,

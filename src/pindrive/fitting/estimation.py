@@ -13,7 +13,7 @@ from pindrive.fitting.identifiability import Identifiability, rank, untouched
 from pindrive.fitting.least_squares import Optimum, Problem
 from pindrive.fitting.model import Model
 from pindrive.fitting.parameters import parameters
-from pindrive.fitting.profiles import BetterOptimum, Profile, profile
+from pindrive.fitting.profiles import BetterOptimum, ProfileLikelihood, profile
 from pindrive.fitting.recording import Recording
 from pindrive.fitting.residuals import first_noise, tested
 from pindrive.fitting.results import Estimate, Fit
@@ -116,7 +116,7 @@ def fit(
         return solved.result(solved.profiled(seed, workers))
 
 
-def _profiled(shared: tuple[Problem, Optimum, Array, float], i: int) -> Profile | Optimum:
+def _profiled(shared: tuple[Problem, Optimum, Array, float], i: int) -> ProfileLikelihood | Optimum:
     """The profile of one parameter, or the better optimum that it meets."""
     problem, best, covariance, threshold = shared
     try:
@@ -180,13 +180,13 @@ class _Solved:
             self.settle_noise()
             self._rank()
 
-    def profiled(self, seed: int, workers: Here | Cluster) -> list[Profile | None]:
+    def profiled(self, seed: int, workers: Here | Cluster) -> list[ProfileLikelihood | None]:
         """The profile of each parameter; a better fit that one meets is taken instead."""
         for turn in range(RESTARTS):
             hidden = {i for group in self.rank.groups for i in group}
             shown = [i for i in range(len(self._best.theta)) if i not in hidden]
             shared = (self._problem, self._best, self.rank.covariance, self._threshold)
-            traced: list[Profile | None] = [None] * len(self._best.theta)
+            traced: list[ProfileLikelihood | None] = [None] * len(self._best.theta)
             for i, found in zip(shown, workers.spread(_profiled, shared, shown), strict=True):
                 if isinstance(found, Optimum):
                     break
@@ -200,7 +200,7 @@ class _Solved:
         self._best = replace(self._best, converged=False)
         return [None] * len(self._best.theta)
 
-    def result(self, traced: Sequence[Profile | None]) -> Fit:
+    def result(self, traced: Sequence[ProfileLikelihood | None]) -> Fit:
         """Return the whole result."""
         theta, model = self._best.theta, self._model
         covariance = self.rank.covariance

@@ -33,7 +33,7 @@ class Optimum:
     converged: bool
 
 
-class Model(Protocol):
+class FittedModel(Protocol):
     """Fitted model, as far as the solver needs it: `pindrive.fitting.model.Model`."""
 
     parameters: tuple[Any, ...]
@@ -56,7 +56,7 @@ class Model(Protocol):
 class Problem:
     """A model with the weights of its samples, one over the noise of each."""
 
-    def __init__(self, model: Model, weights: Array) -> None:
+    def __init__(self, model: FittedModel, weights: Array) -> None:
         self.model, self.weights = model, weights
         self.lower = np.array([p.lower for p in model.parameters])
         self.upper = np.array([p.upper for p in model.parameters])

@@ -20,7 +20,7 @@ MOST: Final = 60
 
 
 @dataclass(frozen=True, slots=True)
-class Profile:
+class ProfileLikelihood:
     """Least cost over all other parameters, at values of one parameter.
 
     Attributes:
@@ -44,7 +44,7 @@ class BetterOptimum(Exception):
 
 def profile(
     problem: Problem, best: Optimum, i: int, covariance: Array, threshold: float
-) -> Profile:
+) -> ProfileLikelihood:
     """The profile of parameter i, from the optimum both ways past `threshold` or to its bound.
 
     Raises:
@@ -54,7 +54,7 @@ def profile(
     found = [side.follow() for side in sides]
     points = sorted({**sides[0].points, **sides[1].points, float(best.theta[i]): 0.0}.items())
     values, excess = np.array(points).T
-    return Profile(values, excess, (found[0], found[1]))
+    return ProfileLikelihood(values, excess, (found[0], found[1]))
 
 
 class _Side:

@@ -15,7 +15,7 @@ from pindrive import lazy
 from pindrive.fitting.identifiability import Identifiability
 from pindrive.fitting.model import Model
 from pindrive.fitting.parameters import Parameter
-from pindrive.fitting.profiles import Profile
+from pindrive.fitting.profiles import ProfileLikelihood
 from pindrive.fitting.recording import Recording
 from pindrive.fitting.residuals import Residuals
 from pindrive.lazy import mpl_figure, xr
@@ -57,7 +57,7 @@ class Estimate:
     interval: tuple[float, float]
     identifiability: Identifiability
     hidden_with: tuple[str, ...]
-    profile: Profile | None
+    profile: ProfileLikelihood | None
 
     @property
     def name(self) -> str:

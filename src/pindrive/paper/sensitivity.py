@@ -37,7 +37,7 @@ BASELINE: Final[dict[str, Any]] = {
 }
 
 
-class Parameter(NamedTuple):
+class PaperParameter(NamedTuple):
     """Parameter of the paper, and its appearance."""
 
     argument: str
@@ -52,14 +52,14 @@ class Parameter(NamedTuple):
 
 
 PARAMETERS: Final = (
-    Parameter("plate_kinetic", "surface friction", "F_p", "mN", 1e3, 0.0, 0.1),
-    Parameter("touch_force", "touch force", "N_f", "mN", 1e3, 1e-3, 0.04),
-    Parameter("damping", "damping", "b", "N·s/m", 1.0, 0.0, 0.9 * baseline.CRITICAL),
-    Parameter("stiffness", "stiffness", "k", "N/m", 1.0, 20.0, 400.0),
-    Parameter("mass", "mass", "m", "g", 1e3, 2e-3, 40e-3),
-    Parameter("mouse_velocity", "mouse speed", "v_p", "mm/s", 1e3, 2e-3, 0.3),
-    Parameter("displacement", "initial deflection", "x_0", "mm", 1e3, 0.1e-3, 5e-3),
-    Parameter("fall_time", "fall time of the pull", "t_f", "ms", 1e3, 0.0, 0.03),
+    PaperParameter("plate_kinetic", "surface friction", "F_p", "mN", 1e3, 0.0, 0.1),
+    PaperParameter("touch_force", "touch force", "N_f", "mN", 1e3, 1e-3, 0.04),
+    PaperParameter("damping", "damping", "b", "N·s/m", 1.0, 0.0, 0.9 * baseline.CRITICAL),
+    PaperParameter("stiffness", "stiffness", "k", "N/m", 1.0, 20.0, 400.0),
+    PaperParameter("mass", "mass", "m", "g", 1e3, 2e-3, 40e-3),
+    PaperParameter("mouse_velocity", "mouse speed", "v_p", "mm/s", 1e3, 2e-3, 0.3),
+    PaperParameter("displacement", "initial deflection", "x_0", "mm", 1e3, 0.1e-3, 5e-3),
+    PaperParameter("fall_time", "fall time of the pull", "t_f", "ms", 1e3, 0.0, 0.03),
 )
 _NUMBERS: Final = ("settling_time", "rest_time", "peak_displacement")
 
@@ -217,7 +217,7 @@ def displacement(data: xr.Dataset) -> Exhibit:
     )
 
 
-def _panels(height: float, draw: Callable[[Axes, Parameter], None], label: str) -> Figure:
+def _panels(height: float, draw: Callable[[Axes, PaperParameter], None], label: str) -> Figure:
     figure = page(height)
     panels = figure.subplots(2, 4).flat
     for i, (axes, p) in enumerate(zip(panels, PARAMETERS, strict=True)):
@@ -230,7 +230,7 @@ def _panels(height: float, draw: Callable[[Axes, Parameter], None], label: str) 
 
 
 def _draw_settling(data: xr.Dataset) -> Figure:
-    def draw(axes: Axes, p: Parameter) -> None:
+    def draw(axes: Axes, p: PaperParameter) -> None:
         of = data.sel(parameter=p.argument)
         x = p.scale * of.value.values
         _jumping(axes, x, 1e3 * of.rest_time.values, PALETTE["resting"], "rest")
@@ -255,7 +255,7 @@ def _draw_settling(data: xr.Dataset) -> Figure:
 def _draw_displacement(data: xr.Dataset) -> Figure:
     low, high = 1.95, 2.6
 
-    def draw(axes: Axes, p: Parameter) -> None:
+    def draw(axes: Axes, p: PaperParameter) -> None:
         of = data.sel(parameter=p.argument)
         x, y = p.scale * of.value.values, 1e3 * of.peak_displacement.values
         start = x if p.argument == "displacement" else np.full_like(x, 1e3 * _X0)
@@ -297,7 +297,7 @@ def _jumping(
 
 
 def _mark_baseline(
-    axes: Axes, p: Parameter, values: NDArray[np.float64], y: NDArray[np.float64]
+    axes: Axes, p: PaperParameter, values: NDArray[np.float64], y: NDArray[np.float64]
 ) -> None:
     at = baseline.value(p.argument)
     height = float(np.interp(at, values, y))
