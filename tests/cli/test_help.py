@@ -29,8 +29,8 @@ SHARED = {
     *("design_tables", "fit_tables", "scan_tables", "study_tables", "tables"),
 }
 HEADINGS = (
-    *("Arguments", "What is written", "What is on the page", "What is asked"),
-    *("How it is computed", "Files", "Help", "Example"),
+    *("Arguments", "Contents", "Page", "Analysis"),
+    *("Computation", "Files", "Help", "Example"),
 )
 BEFORE_OTHERS = ("init", "sweep")
 """Commands whose files the examples of further commands need."""
@@ -81,7 +81,7 @@ def test_a_file_added_is_a_command_added(tmp_path: Path) -> None:
         return subprocess.run(command, capture_output=True, text=True, check=True).stdout
 
     assert said("--help").endswith("\nBalances:\n  weigh        Weigh a pin.\n")
-    assert "What is asked:\n  --twice" in said("weigh", "--help")
+    assert "Analysis:\n  --twice" in said("weigh", "--help")
     assert said("weigh", "--twice") == "10 g10 g\n"
 
 

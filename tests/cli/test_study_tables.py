@@ -90,7 +90,7 @@ def test_indices_stand_under_their_order(found: SobolIndices, order: str, title:
 
 
 def test_quantiles_of_the_designs(scattered: Robustness, plan: Study) -> None:
-    heads, *rows = table(robustness_report(plan, scattered), "How the designs scatter")
+    heads, *rows = table(robustness_report(plan, scattered), "Quantiles of the designs")
     assert heads == ["number", "design", "1 %", "5 %", "50 %", "95 %", "99 %", "unit", "exists in"]
     for row in rows:
         (name,) = (name for name in scattered.values if label(name) == row[0])

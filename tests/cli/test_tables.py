@@ -140,7 +140,7 @@ def test_a_device_in_words(evaluated: Evaluation) -> None:
 
 
 def test_what_became_of_the_lines(evaluated: Evaluation) -> None:
-    heads, *rows = table(evaluation_report(evaluated), "What became of the lines")
+    heads, *rows = table(evaluation_report(evaluated), "Counts of the lines")
     assert heads == ["symbol", "count", "meaning"]
     found = {row[2]: int(row[1]) for row in rows}
     assert len(found) == len(rows) == 9
@@ -210,9 +210,7 @@ def test_speeds() -> None:
             beyond=None,
         ),
     ]
-    heads, units, one, other = table(
-        speed_report(limits, 0.5, Criteria()), "How fast the hand may move"
-    )
+    heads, units, one, other = table(speed_report(limits, 0.5, Criteria()), "Largest hand speed")
     assert heads == ["pitch", "width", "distinct up to", "settled up to", "a faster hand"]
     assert units[:4] == ["mm", "mm", "mm/s", "mm/s"]
     assert one[:4] == ["2.000", "1.000", "200.0", "100.0"]

@@ -89,7 +89,7 @@ def test_each_sign_is_explained(figure: Figure) -> None:
 
 def test_the_title_says_whose_and_by_what(figure: Figure) -> None:
     title = figure.get_suptitle()
-    assert title.startswith(r"How fast the hand may move: a \$ mouse of 5 \$")
+    assert title.startswith(r"Largest hand speed: a \$ mouse of 5 \$")
     assert "at least 40% of its way" in " ".join(title.split())
 
 

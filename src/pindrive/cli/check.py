@@ -15,17 +15,15 @@ from pindrive.cli.options import OverridesOption
 @command("Device and study files", "pindrive check device.toml")
 def check(
     file: Annotated[
-        Path, typer.Argument(metavar="FILE", help="Device file (TOML), or an input of one (CSV).")
+        Path, typer.Argument(metavar="FILE", help="Device file (TOML), or an input file (CSV).")
     ],
     overrides: OverridesOption = None,
 ) -> None:
-    """Say what is wrong with a device file and the CSVs it names, or what it describes.
+    """Check a device file and its CSV files; report errors, or the device.
 
-    Of a CSV of an input, such as mouse_velocity or touch, it says how many rows it has, and from
-    where to where.
-
-    Of a recording of the hand: its rate and resolution, and its peak speed before and after
-    smoothing.
+    For a CSV of an input, such as mouse_velocity or touch, the number of rows and the time range
+    are reported; for a recording of the hand its rate, its resolution, and its peak speed before
+    and after smoothing.
     """
     if file.suffix.lower() == ".csv":
         from pindrive.cli.tables import path_words

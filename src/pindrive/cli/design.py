@@ -34,11 +34,11 @@ NONE_MEETS = 1
 def design(
     problem: Annotated[Path, typer.Argument(metavar="PROBLEM", help="Problem file (TOML).")],
     output: Annotated[
-        list[Path] | None, output_option("Its device file: .toml; the numbers: .nc or .json.")
+        list[Path] | None, output_option("Device file of the design: .toml; numbers: .nc or .json.")
     ] = None,
     plot: PlotOption = None,
     force: ForceOption = False,
-    seed: Annotated[int, count_option("--seed", "Of all draws.", least=0)] = 1,
+    seed: Annotated[int, count_option("--seed", "Seed of the random numbers.", least=0)] = 1,
     threads: ThreadsOption = None,
     cluster: ClusterOption = None,
     overrides: OverridesOption = None,

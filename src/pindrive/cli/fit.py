@@ -38,40 +38,46 @@ def fit(
     device: Annotated[Path, typer.Argument(metavar="DEVICE", help="Device file (TOML).")],
     recordings: Annotated[
         list[Path],
-        typer.Argument(metavar="RECORDING...", help="Of releases (CSV with units in its header)."),
+        typer.Argument(
+            metavar="RECORDING...",
+            help="Recordings of releases (CSV files with units in the header).",
+        ),
     ],
     free: Annotated[
         list[str] | None,
-        option(ASKED, f'What is fitted, with bounds or not: "{EXAMPLE}".', metavar="KEYS"),
+        option(ASKED, f'Free parameters, optionally with bounds: "{EXAMPLE}".', metavar="KEYS"),
     ] = None,
-    output: Annotated[Path | None, output_option("The fitted device file: .toml.")] = None,
+    output: Annotated[Path | None, output_option("Device file of the fit: .toml.")] = None,
     mouse_velocity: Annotated[
         list[str] | None,
-        option(
-            ASKED, "Of each recording, in their order, or of all; its column.", metavar="SPEED|CSV"
-        ),
+        option(ASKED, "Mouse velocity of each recording, or of all.", metavar="SPEED|CSV"),
     ] = None,
     window: Annotated[
-        str | None, option(ASKED, 'Samples used: "5 ms..150 ms".', metavar="FROM..TO")
+        str | None,
+        option(ASKED, 'Time range of the samples, for example "5 ms..150 ms".', metavar="FROM..TO"),
     ] = None,
     noise: Annotated[
         list[str] | None,
-        option(ASKED, 'Known noise: "position=5 um"; else estimated.', metavar="CHANNEL=SIZE"),
+        option(
+            ASKED,
+            'Known noise, for example "position=5 um"; else estimated.',
+            metavar="CHANNEL=SIZE",
+        ),
     ] = None,
     compare: Annotated[
-        bool, option(COMPUTED, "Compare laws of friction by AICc too.", "--compare")
+        bool, option(COMPUTED, "Compare friction laws by AICc.", "--compare")
     ] = False,
     plot: PlotOption = None,
-    seed: Annotated[int, count_option("--seed", "Of the candidates.", least=0)] = 1,
+    seed: Annotated[int, count_option("--seed", "Seed of the candidates.", least=0)] = 1,
     cluster: ClusterOption = None,
     overrides: OverridesOption = None,
     force: ForceOption = False,
 ) -> None:
-    """Fit a device to recordings of its pin, and say what they cannot tell.
+    """Fit a device to recordings of its pin, and report undetermined parameters.
 
     A recording has columns time and position, velocity, acceleration or force, and mouse_velocity
-    and plate_load where they change, such as "time [s], position [m]". What may be fitted: the
-    keys of a drive and its motion, time_offset, and position_offset or that of another channel.
+    and plate_load if they vary, for example "time [s], position [m]". Parameters of a fit are the
+    keys of a drive and its motion, time_offset, and the offset of a channel (position_offset).
     """
     from pindrive.files.device import load_device
     from pindrive.files.output import DEVICE_FILE

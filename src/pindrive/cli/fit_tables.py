@@ -51,7 +51,7 @@ def _noise(found: Fit) -> Table:
         ">Ljung-Box p",
         "rest",
     )
-    table = new_table("What is left", *heads)
+    table = new_table("Residuals", *heads)
     for left in found.residuals:
         channel = CHANNELS[left.channel]
         table.add_row(

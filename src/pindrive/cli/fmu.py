@@ -16,23 +16,22 @@ from pindrive.cli.outputs import ForceOption, output_option
 @command("Other simulators", "pindrive fmu device.toml -o drive.fmu")
 def fmu(
     file: DeviceArgument,
-    output: Annotated[Path | None, output_option("The unit: .fmu; FILE.fmu unless given.")] = None,
+    output: Annotated[Path | None, output_option("Unit: .fmu; default FILE.fmu.")] = None,
     force: ForceOption = False,
     fmi: Annotated[
         int,
-        count_option("--fmi", "2 or 3, the version of FMI.", "2|3", least=2, most=3, panel=WRITTEN),
+        count_option("--fmi", "Version of FMI: 2 or 3.", "2|3", least=2, most=3, panel=WRITTEN),
     ] = 3,
     overrides: OverridesOption = None,
 ) -> None:
     """Write the drive of a device file as a functional mock-up unit (FMU) for co-simulation.
 
-    What a release lets change over time is an input, with its rate: mouse velocity, plate load,
-    force, velocity across and finger load. Of a file of the whole device, the
-    unit is one pin with its magnet: an input magnet_on, as the control block has it, takes the
-    place of the plate load. All other values that the motion depends on are parameters. It follows
-    the pin exactly, whatever the steps of the importer.
+    Inputs, each with its rate, are mouse velocity, plate load, force, transverse velocity and
+    finger load. For a file of a whole device, the unit is one pin with its magnet: the input
+    magnet_on, a command of the control block, replaces the plate load. All further values on which
+    the motion depends are parameters. The simulation is exact for all step sizes of the importer.
 
-    Rows of an input in the file are not in it: what the importer sets takes their place.
+    Input tables of the file are not part of the unit: the importer sets the inputs.
     """
     from pindrive.files.device import load_device
     from pindrive.files.fmu import COMMAND, inputs_of, variables_of, write_fmu

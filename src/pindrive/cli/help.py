@@ -27,10 +27,10 @@ COMMAND_GROUPS: Final = (
 )
 """The order in which the help lists them; a group that is not here comes after them."""
 
-WRITTEN: Final = "What is written"
-PAGE: Final = "What is on the page"
-ASKED: Final = "What is asked"
-COMPUTED: Final = "How it is computed"
+WRITTEN: Final = "Contents"
+PAGE: Final = "Page"
+ASKED: Final = "Analysis"
+COMPUTED: Final = "Computation"
 FILES: Final = "Files"
 _PANELS: Final = ("Arguments", WRITTEN, PAGE, ASKED, COMPUTED, FILES, "Help")
 """The groups of options, in the order of a command's help; the program's own are in the last."""

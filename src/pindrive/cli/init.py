@@ -18,16 +18,20 @@ if TYPE_CHECKING:
 
 @command("Device and study files", "pindrive init device.toml --device")
 def init(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="Where to write it.")],
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="File to write.")],
     force: ForceOption = False,
     device: Annotated[
-        bool, option(WRITTEN, "With magnet, control block, pin array and hand.", "--device")
+        bool,
+        option(WRITTEN, "Whole device: magnet, control block, pin array and hand.", "--device"),
     ] = False,
     study: Annotated[
-        bool, option(WRITTEN, "A study file: a device, and what to vary of it.", "--study")
+        bool, option(WRITTEN, "Study file: a device with varied keys.", "--study")
     ] = False,
     problem: Annotated[
-        bool, option(WRITTEN, "A problem file: a device, and what is wanted of it.", "--problem")
+        bool,
+        option(
+            WRITTEN, "Problem file: a device with variables, constraints and goals.", "--problem"
+        ),
     ] = False,
 ) -> None:
     """Write a commented device file, study file, or problem file, to start from."""

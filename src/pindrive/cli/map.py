@@ -18,25 +18,25 @@ if TYPE_CHECKING:
 
 @command("Studies", "pindrive map study.nc --number settling_time --plot map.png")
 def map_study(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="What a sweep wrote (NetCDF).")],
-    x: Annotated[str | None, option(ASKED, "Along the abscissa.", "--x", metavar="KEY")] = None,
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="Results of a sweep (NetCDF).")],
+    x: Annotated[str | None, option(ASKED, "Key of the abscissa.", "--x", metavar="KEY")] = None,
     y: Annotated[
-        str | None, option(ASKED, "Along the ordinate; curves if none.", "--y", metavar="KEY")
+        str | None, option(ASKED, "Key of the ordinate; curves if none.", "--y", metavar="KEY")
     ] = None,
     number: Annotated[
         list[str] | None,
-        option(ASKED, "What to draw; settling_time or shown_part if none.", metavar="NAME"),
+        option(ASKED, "Number to draw; default settling_time or shown_part.", metavar="NAME"),
     ] = None,
     at: Annotated[
         list[str] | None,
-        option(ASKED, "A slice at the nearest value.", "--at", metavar="KEY=VALUE"),
+        option(ASKED, "Slice at the nearest value of a key.", "--at", metavar="KEY=VALUE"),
     ] = None,
     plot: PlotOption = None,
     force: ForceOption = False,
 ) -> None:
     """Draw a study: maps over two keys, curves over one, slices side by side.
 
-    The least and the largest values of each slice are printed.
+    The smallest and the largest value of each slice are printed.
     """
     from pindrive.study.slices import Slice
 

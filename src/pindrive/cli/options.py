@@ -52,24 +52,28 @@ OverridesOption = Annotated[
     list[str] | None,
     option(
         ASKED,
-        'Another value, as in --set mass="12 g"; static friction keeps its ratio to kinetic.',
+        'Value of a key, for example mass="12 g"; static friction keeps its ratio to kinetic.',
         "--set",
         metavar="KEY=VALUE",
     ),
 ]
 RateOption = Annotated[
     str | None,
-    file_option('Samples of the CSV, as in "1 kHz".', "--rate", metavar="FREQUENCY"),
+    file_option(
+        'Sampling rate of the CSV file, for example "1 kHz".', "--rate", metavar="FREQUENCY"
+    ),
 ]
 ClusterOption = Annotated[
     str | None,
     option(
         COMPUTED,
-        "Work on a Dask cluster instead: its scheduler, or the file of it.",
+        "Dask scheduler whose workers compute: address or scheduler file.",
         metavar="ADDRESS",
     ),
 ]
-ThreadsOption = Annotated[int | None, count_option("--threads", "All cores unless given.")]
+ThreadsOption = Annotated[
+    int | None, count_option("--threads", "Number of threads; default: all cores.")
+]
 
 
 def measures(text: str, name: str, example: str, option: str) -> list[float]:

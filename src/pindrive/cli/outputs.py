@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
 Result = TypeVar("Result")
 
-PlotOption = Annotated[Path | None, file_option("Draw it: .png, .svg or .pdf.", "--plot")]
-ForceOption = Annotated[bool, option(FILES, "Replace files that are there.", "--force")]
+PlotOption = Annotated[Path | None, file_option("Figure: .png, .svg or .pdf.", "--plot")]
+ForceOption = Annotated[bool, option(FILES, "Replace existing files.", "--force")]
 
 
 def output_option(help: str) -> Any:
@@ -30,7 +30,7 @@ def output_option(help: str) -> Any:
     return file_option(help, "--output", "-o")
 
 
-ResultOption = Annotated[list[Path] | None, output_option("The numbers: .csv, .nc or .json.")]
+ResultOption = Annotated[list[Path] | None, output_option("Numbers: .csv, .nc or .json.")]
 
 
 @dataclass(frozen=True, slots=True)

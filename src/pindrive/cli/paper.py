@@ -18,14 +18,14 @@ from pindrive.cli.progress import steps
 def paper(
     output: Annotated[
         Path | None,
-        file_option("The report: a page, figures, data.", "--output", "-o", metavar="DIR"),
+        file_option("Folder of the report: page, figures, data.", "--output", "-o", metavar="DIR"),
     ] = None,
     docs: Annotated[
-        Path | None, file_option("The report as Markdown, with pictures.", metavar="DIR")
+        Path | None, file_option("Folder of the report in Markdown, with pictures.", metavar="DIR")
     ] = None,
     force: ForceOption = False,
 ) -> None:
-    """Recompute the paper, correct it, and judge what it says."""
+    """Recompute the paper, correct its equations, and evaluate its statements."""
     from pindrive.files.output import REPORT, Output, check_folder, check_outputs, write_files
     from pindrive.quantities.quantity import counted
 

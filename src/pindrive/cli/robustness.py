@@ -26,17 +26,17 @@ def robustness(
     plot: PlotOption = None,
     force: ForceOption = False,
     draws: Annotated[
-        int | None, count_option("--draws", "Random draws; 100 000 unless given, of scans 1000.")
+        int | None, count_option("--draws", "Number of draws; default 100 000, of scans 1000.")
     ] = None,
-    seed: Annotated[int, count_option("--seed", "Of the draws and the search.", least=0)] = 1,
+    seed: Annotated[int, count_option("--seed", "Seed of the draws and the search.", least=0)] = 1,
     threads: ThreadsOption = None,
     overrides: OverridesOption = None,
 ) -> None:
     """Analyse a design within its tolerances: spread, yield, worst case.
 
     Static friction and friction curves keep their ratio to kinetic friction, and the skin's stretch
-    to the largest that it can have, unless they have a tolerance of their own. Draws that cannot
-    exist all the same are counted apart, with the reason.
+    to its largest value, unless they have a tolerance of their own. Contradictory draws are counted
+    separately, with the reason.
     """
     from pindrive.study.robustness import Robustness
     from pindrive.study.robustness import robustness as analyse

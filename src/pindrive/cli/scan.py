@@ -44,39 +44,38 @@ STROKES = "strokes"
 def scan(
     file: DeviceArgument,
     text: Annotated[
-        str | None, option(PAGE, r"What is on the page; \n begins a line.", metavar="TEXT")
+        str | None, option(PAGE, r"Text of the page; \n begins a line.", metavar="TEXT")
     ] = None,
-    image: Annotated[
-        Path | None, option(PAGE, "A picture of the page instead.", metavar="FILE")
-    ] = None,
+    image: Annotated[Path | None, option(PAGE, "Picture of the page.", metavar="FILE")] = None,
     grating: Annotated[
-        str | None, option(PAGE, 'Lines instead, as in "4 mm, 2 mm".', metavar="PITCHES")
+        str | None, option(PAGE, 'Pitches of lines, for example "4 mm, 2 mm".', metavar="PITCHES")
     ] = None,
     font: Annotated[
-        Path | None, option(PAGE, "Font of the text; DejaVu Sans if none.", metavar="FILE")
+        Path | None, option(PAGE, "Font of the text; default DejaVu Sans.", metavar="FILE")
     ] = None,
     path: Annotated[
-        str, option(PAGE, "How the hand moves: a CSV of time, x, y.", metavar="strokes|FILE")
+        str,
+        option(PAGE, "Path of the hand: strokes, or a CSV of time, x, y.", metavar="strokes|FILE"),
     ] = STROKES,
     overrides: OverridesOption = None,
     output: Annotated[
         list[Path] | None,
         output_option(
-            "The scan: .csv at even times, with its events in FILE-events.csv; .nc with units; "
+            "Scan: .csv at even times, with its events in FILE-events.csv; .nc with units; "
             ".json of the lines, without samples."
         ),
     ] = None,
     plot: PlotOption = None,
     force: ForceOption = False,
     rate: RateOption = None,
-    lines: Annotated[Path | None, file_option("Each line under each pin: .csv.")] = None,
+    lines: Annotated[Path | None, file_option("Lines under the pins: .csv.")] = None,
     pin: Annotated[
-        int | None, file_option("The pin drawn in detail, from 0.", metavar="NUMBER")
+        int | None, file_option("Pin drawn in detail, from 0.", metavar="NUMBER")
     ] = None,
-    film: Annotated[Path | None, file_option("Film it: .gif or .mp4.", "--animate")] = None,
-    slow: Annotated[float, option(FILES, "How many times slower the film is.")] = 4.0,
+    film: Annotated[Path | None, file_option("Animation: .gif or .mp4.", "--animate")] = None,
+    slow: Annotated[float, option(FILES, "Slow-motion factor of the animation.")] = 4.0,
 ) -> None:
-    """Move the device over a page and say what its pins do."""
+    """Simulate the device moving over a page, and evaluate the lines."""
     from pindrive.files.device import load_device
 
     with refusing():

@@ -115,7 +115,7 @@ def evaluation_report(evaluation: Evaluation) -> RenderableType:
 
 
 def _counts(evaluation: Evaluation) -> Table:
-    table = new_table("What became of the lines", "symbol", ">count", "meaning")
+    table = new_table("Counts of the lines", "symbol", ">count", "meaning")
     for name in COUNTED:
         quantity = QUANTITIES[f"lines.{name}"]
         table.add_row(quantity.symbol, str(evaluation.counts[quantity.name]), quantity.meaning)
@@ -185,7 +185,7 @@ def speed_report(limits: Sequence[SpeedLimit], part: float, criteria: Criteria) 
     """The largest hand speed for each pitch, and by which criterion."""
     length, speed = QUANTITIES["speed.pitch"], QUANTITIES["hand_speed"]
     table = new_table(
-        "How fast the hand may move over two lines",
+        "Largest hand speed over two lines",
         ">pitch",
         ">width",
         ">distinct up to",
@@ -228,7 +228,7 @@ def page_speed_report(found: PageSpeeds) -> RenderableType:
         ">direction sure",
         ">false lines",
     )
-    table = new_table(f"How fast the hand may move over {found.title}", *headings)
+    table = new_table(f"Largest hand speed over {found.title}", *headings)
     table.add_row(speed.display_unit, style="dim")
     for tried, counts in found.counts.items():
         numbers = (str(counts[f"lines.{name}"]) for name in page_speed.COUNTED)

@@ -32,28 +32,30 @@ def sensitivity(
     plot: PlotOption = None,
     force: ForceOption = False,
     tolerances: Annotated[
-        bool, option(ASKED, "Over [tolerances] instead of [axes].", "--tolerances")
+        bool, option(ASKED, "Ranges of [tolerances] instead of [axes].", "--tolerances")
     ] = False,
     number: Annotated[
         list[str] | None,
-        option(ASKED, "A number to analyse; all unless given.", metavar="NAME"),
+        option(ASKED, "Number to analyse; default: all.", metavar="NAME"),
     ] = None,
     rows: Annotated[
         int | None,
         count_option(
             "--rows",
-            "Rows of the design, a power of 2 from 128 on; 8192 unless given, of scans 256.",
+            "Rows of the design, a power of 2, >= 128; default 8192, of scans 256.",
             least=128,
             power_of_2=True,
         ),
     ] = None,
-    seed: Annotated[int, count_option("--seed", "Of the design and the bootstrap.", least=0)] = 1,
+    seed: Annotated[
+        int, count_option("--seed", "Seed of the design and the bootstrap.", least=0)
+    ] = 1,
     threads: ThreadsOption = None,
     overrides: OverridesOption = None,
 ) -> None:
-    """Say which parameter matters: elasticities at the device, Sobol' indices over the ranges.
+    """Compute elasticities at the device, and Sobol' indices over the ranges.
 
-    What keeps its ratio to a varied value changes with it, as for `robustness`.
+    Values with a ratio to a varied value change with it, as for `robustness`.
     """
     from pindrive.study.outputs import known_output
     from pindrive.study.sensitivity import SobolIndices, askable, sobol

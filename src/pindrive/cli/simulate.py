@@ -32,18 +32,19 @@ def simulate(
     output: Annotated[
         list[Path] | None,
         output_option(
-            "The motion: .csv at even times, with its events in FILE-events.csv; .nc with units; "
+            "Motion: .csv at even times, with its events in FILE-events.csv; .nc with units; "
             ".json without samples."
         ),
     ] = None,
     plot: PlotOption = None,
     force: ForceOption = False,
     samples: Annotated[
-        int, count_option("--samples", "Even times in CSV and NetCDF.", least=2, panel=FILES)
+        int,
+        count_option("--samples", "Number of even times in CSV and NetCDF.", least=2, panel=FILES),
     ] = 1001,
     rate: RateOption = None,
 ) -> None:
-    """Release the pin of a device file and say how it moves."""
+    """Simulate the release of the pin of a device file."""
     from pindrive.files import export
     from pindrive.files.device import load_device
     from pindrive.files.output import EVENTS_CSV, JSON, MOTION_CSV, MOTION_NETCDF

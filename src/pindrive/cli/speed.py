@@ -42,27 +42,32 @@ USUAL = "1 mm, 1.5 mm, 2 mm, 3 mm, 4 mm, 5 mm, 6 mm, 8 mm"
 def speed(
     file: DeviceArgument,
     pitch: Annotated[
-        list[str] | None, option(PAGE, f"From line to line; {USUAL} if none.", metavar="LENGTHS")
+        list[str] | None, option(PAGE, f"Pitches of the lines; default {USUAL}.", metavar="LENGTHS")
     ] = None,
     width: Annotated[
-        str | None, option(PAGE, "Of the lines; half the pitch if none.", metavar="LENGTH")
+        str | None, option(PAGE, "Width of the lines; default half the pitch.", metavar="LENGTH")
     ] = None,
     text: Annotated[
-        str | None, option(PAGE, r"A text instead of two lines; \n begins a line.", metavar="TEXT")
+        str | None, option(PAGE, r"Text instead of two lines; \n begins a line.", metavar="TEXT")
     ] = None,
     part: Annotated[
-        float, option(ASKED, "Part of its way that the pin must be back in between.")
+        float,
+        option(ASKED, "Fraction of its stroke by which the pin must return between two lines."),
     ] = 0.5,
-    slowest: Annotated[str, option(ASKED, "Hand tried.", metavar="SPEED")] = "5 mm/s",
-    fastest: Annotated[str, option(ASKED, "Hand tried.", metavar="SPEED")] = "1000 mm/s",
+    slowest: Annotated[
+        str, option(ASKED, "Lowest hand speed of the search.", metavar="SPEED")
+    ] = "5 mm/s",
+    fastest: Annotated[
+        str, option(ASKED, "Highest hand speed of the search.", metavar="SPEED")
+    ] = "1000 mm/s",
     overrides: OverridesOption = None,
     output: ResultOption = None,
     plot: PlotOption = None,
     force: ForceOption = False,
 ) -> None:
-    """Say how fast the hand may move before two lines run into one.
+    """Compute the largest hand speed at which two lines are distinct.
 
-    Or, of a text, up to which peak speed of its strokes all lines of the letters are shown.
+    For a text: the largest peak speed of the strokes at which all lines of the letters are shown.
     """
     from pindrive.cli.tables import show
     from pindrive.files.device import load_device

@@ -24,7 +24,7 @@ PLACE = '<script type="application/json" id="device"></script>'
 def studio(
     file: Annotated[
         Path | None,
-        typer.Argument(metavar="[FILE]", help="Device file (TOML) to begin with."),
+        typer.Argument(metavar="[FILE]", help="Initial device file (TOML)."),
     ] = None,
     no_browser: Annotated[
         bool,

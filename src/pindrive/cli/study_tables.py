@@ -241,7 +241,7 @@ def robustness_report(study: Study, found: Robustness) -> RenderableType:
 def _spread(found: Robustness) -> Table:
     """Quantiles over all designs of which the number exists."""
     heads = ("number", ">design", *(f">{100 * q:g} %" for q in QUANTILES), "unit", ">exists in")
-    made = new_table("How the designs scatter: quantiles", *heads)
+    made = new_table("Quantiles of the designs", *heads)
     for name, values in found.values.items():
         quantity = NUMBERS[name]
         known = values[np.isfinite(values)]

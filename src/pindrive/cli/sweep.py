@@ -24,11 +24,16 @@ from pindrive.cli.progress import points_bar
 @command("Studies", "pindrive sweep study.toml -o study.nc")
 def sweep(
     study: StudyArgument,
-    output: Annotated[Path | None, output_option("All points: .nc; STUDY.nc unless given.")] = None,
+    output: Annotated[
+        Path | None, output_option("Points of the study: .nc; default STUDY.nc.")
+    ] = None,
     force: ForceOption = False,
-    resume: Annotated[bool, option(COMPUTED, "Go on with a run cut short.", "--resume")] = False,
+    resume: Annotated[bool, option(COMPUTED, "Resume an interrupted run.", "--resume")] = False,
     stop_after: Annotated[
-        int | None, count_option("--stop-after", "Stop there; --resume continues.", "POINTS")
+        int | None,
+        count_option(
+            "--stop-after", "Points after which the run stops; --resume continues.", "POINTS"
+        ),
     ] = None,
     threads: ThreadsOption = None,
     cluster: ClusterOption = None,
@@ -36,7 +41,7 @@ def sweep(
 ) -> None:
     """Compute all points of a study and write them into one NetCDF file.
 
-    What keeps its ratio to a varied value changes with it, as for `robustness`.
+    Values with a ratio to a varied value change with it, as for `robustness`.
     """
     from pindrive.study.runner import on_cluster, on_threads
     from pindrive.study.runner import sweep as compute

@@ -72,7 +72,7 @@ def plot_speeds(
         axes.set_ylim(0.0, top)
         axes.set_xlabel("pitch of the lines (mm)")
         axes.set_ylabel("hand speed (mm/s)")
-        title = f"How fast the hand may move{f': {device}' if device else ''}"
+        title = f"Largest hand speed{f': {device}' if device else ''}"
         words = fill(criterion(part, criteria.direction), 78)
         figure.head(f"{plain(title, 66)}\n{words}")
     return figure
@@ -105,7 +105,7 @@ def plot_page_speeds(found: PageSpeeds, device: str = "") -> Figure:
         axes.set_ylim(-3.0, 106.0)
         axes.set_xlabel("hand speed (mm/s)")
         axes.set_ylabel("lines (%)")
-        about = f"How fast the hand may move over {found.title}{f': {device}' if device else ''}"
+        about = f"Largest hand speed over {found.title}{f': {device}' if device else ''}"
         figure.head(plain(about, 66))
     return figure
 
