@@ -102,6 +102,8 @@ class Study:
         zip: Iterable[Iterable[str]] | None = None,
         name: str = "",
     ) -> None:
+        from pindrive.study.tables import parts_of
+
         if not isinstance(device, DeviceFile):
             raise ValueError(refusal("device", "what load_device reads", repr(device)))
         tables: dict[str, Any] = {
@@ -119,7 +121,11 @@ class Study:
             whole.check("page.{}")
             tables["page"] = whole
         text = json.dumps(tables, indent=1, ensure_ascii=False, default=repr)
-        self._take(tables, device, path=device.path, place=_PLACE, text=text, problems=[], si=True)
+        problems: list[str] = []
+        parts = parts_of(
+            tables, device, path=device.path, place=_PLACE, text=text, problems=problems, si=True
+        )
+        self._set(parts, _PLACE, problems)
 
     @classmethod
     def of_tables(
@@ -148,28 +154,17 @@ class Study:
         Raises:
             ConfigError: An entry is unknown, malformed, out of bounds or contradictory.
         """
-        study = cls.__new__(cls)
-        study._take(tables, device, path=path, place=place, text=text, problems=[*problems], si=si)
+        from pindrive.study.tables import parts_of
+
+        study, found = cls.__new__(cls), [*problems]
+        parts = parts_of(tables, device, path=path, place=place, text=text, problems=found, si=si)
+        study._set(parts, place, found)
         return study
 
-    def _take(
-        self,
-        tables: Mapping[str, Any],
-        device: DeviceFile,
-        *,
-        path: Path,
-        place: str,
-        text: str,
-        problems: list[str],
-        si: bool,
-    ) -> None:
-        """Set all attributes from tables; arguments as for `of_tables`."""
-        from pindrive.study.tables import parts_of
+    def _set(self, parts: Mapping[str, Any], place: str, problems: list[str]) -> None:
+        """Set all attributes; raise the errors found before and the contradictions."""
         from pindrive.study.validation import conflicts
 
-        parts = parts_of(
-            tables, device, path=path, place=place, text=text, problems=problems, si=si
-        )
         for name, value in parts.items():
             object.__setattr__(self, name, value)
         problems += self._too_much()
