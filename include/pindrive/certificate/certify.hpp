@@ -417,7 +417,7 @@ class Certifier {
     const T slope = is_slip(mode.finger) ? finger.branch(mode.finger_branch).slope : T(0);
     const T limit = finger.static_limit;
     const T follows = slope > 0 ? 1 / slope : limit > 0 ? abs(v) / limit : T(0);
-    const T known = (detail::first_grip<T> + detail::rounding<T>)*time;
+    const T known = time * (detail::first_grip<T> + detail::rounding<T>);
     return load.value <= known * (finger.stiffness * follows - load.rate);
   }
 
