@@ -43,7 +43,7 @@ void changes() {
     const long double bend = (16 * (at(1) + at(-1)) - (at(2) + at(-2)) - 30 * at(0)) / (12 * h * h);
     const double size = 0.04 * (1 + 1 / speed);
     rates = rates && std::abs(slip.force_rate(branch, load) - rate) < 1e-10 * size;
-    bends = bends && std::abs(slip.force_bend(branch, load) - bend) < 1e-6 * size / speed;
+    bends = bends && std::abs(slip.force_second_rate(branch, load) - bend) < 1e-6 * size / speed;
     ObliqueSlip<double> faster = slip, slower = slip;
     faster.u.value += 1e-6 * speed;
     slower.u.value -= 1e-6 * speed;

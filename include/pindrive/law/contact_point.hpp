@@ -178,18 +178,18 @@ struct ContactPoint {
     if (!sliding()) return {};
     if (has_slider_state()) return slip_force_rate(v, acceleration);
     const Branch<T> range = branch();
-    const T faster = acceleration - surface.rate;
-    T rate{}, bend{};
+    const T relative = acceleration - surface.rate;
+    T rate{}, second{};
     if (oblique()) {
       const ObliqueSlip<T> speed = oblique_slip(v, acceleration);
       rate = speed.force_rate(range, load);
-      bend = speed.force_bend(range, load);
+      second = speed.force_second_rate(range, load);
     } else {
-      rate = -range.slope * load.value * faster - mode.slip_sign * start.friction * load.rate;
-      bend = -2 * range.slope * load.rate * faster;
+      rate = -range.slope * load.value * relative - mode.slip_sign * start.friction * load.rate;
+      second = -2 * range.slope * load.rate * relative;
     }
-    const T unsure = range.rounding * load.value * abs(faster);
-    return {rate, abs(rate) + unsure / rounding<T>, bend};
+    const T slope_error = range.rounding * load.value * abs(relative);
+    return {rate, abs(rate) + slope_error / rounding<T>, second};
   }
   /// Error of the force from rounding of the pin velocity, N; large if the plate hardly slides
   /// across.

@@ -43,8 +43,8 @@ class Guards {
   }
 
   /// Adds the margin of a stick force on one side; called before the guards of speeds are added.
-  void add_force(const Path<T>& left, bool plate, int side) {
-    add(left, ActiveGuard::none, plate, side);
+  void add_force(const Path<T>& margin, bool plate, int side) {
+    add(margin, ActiveGuard::none, plate, side);
     forces_ = count_;
   }
   /// Adds a guard, unless it neither oscillates nor falls.
@@ -61,15 +61,15 @@ class Guards {
   /// elastic stick.
   void add(const ContactPoint<T>& side, const Segment<T>& segment, bool plate) {
     if (side.elastic()) {
-      const Path<T> most = Line<T>{side.stick_limit(), side.contact.static_limit * side.load.rate};
+      const Path<T> limit = Line<T>{side.stick_limit(), side.contact.static_limit * side.load.rate};
       const int near = -leading_sign(segment.finger_force);
       for (const int to : {near, -near}) {
-        Path<T> left = most + T(to) * segment.finger_force;
-        if (most.drift != 0 && side.mode.guard == ActiveGuard::upper && to == near) {
-          left.start = T(0);
-          if (side.excess_velocity(segment.flow.velocity.start) == 0) left.drift = -left.slope;
+        Path<T> margin = limit + T(to) * segment.finger_force;
+        if (limit.drift != 0 && side.mode.guard == ActiveGuard::upper && to == near) {
+          margin.start = T(0);
+          if (side.excess_velocity(segment.flow.velocity.start) == 0) margin.drift = -margin.slope;
         }
-        add(left, ActiveGuard::none, plate, to);
+        add(margin, ActiveGuard::none, plate, to);
       }
     }
     if (!side.sliding()) return;
@@ -193,9 +193,9 @@ class Guards {
     if (nearest >= 0 && list_[nearest].path.drift == path.drift) {
       Guard<T>& other = list_[nearest];
       const T apart = path.start - other.path.start;
-      const T one = rounding<T> * (std::max(path.start, other.path.start) + abs(v));
-      if (apart > one) return;
-      if (apart < -one) {
+      const T error = rounding<T> * (std::max(path.start, other.path.start) + abs(v));
+      if (apart > error) return;
+      if (apart < -error) {
         other = {path, bound, plate, 0};
         return;
       }

@@ -62,7 +62,7 @@ struct ObliqueSlip {
     return -load.rate * (strength * along() + branch.slope * u.value) -
            load.value * (strength * turning() + branch.slope * u.rate);
   }
-  T force_bend(const Branch<T>& branch, const Line<T>& load) const {
+  T force_second_rate(const Branch<T>& branch, const Line<T>& load) const {
     const T strength = at_rest(branch);
     return -2 * load.rate * (strength * turning() + branch.slope * u.rate) -
            load.value * strength * turning_rate();

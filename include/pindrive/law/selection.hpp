@@ -24,6 +24,23 @@ struct SelectedMotion {
 };
 
 /// Selection of the mode of a pin and of the motion that the mode starts.
+///
+/// Each contact lists its candidates (contact_point.hpp, skin.hpp), the end stops list theirs
+/// (stops.hpp). The combinations are tested in a fixed order, and the first consistent one is
+/// selected: a stop or a contact holds the pin (`try_stop`, `try_stick`), then the pin slips on both
+/// contacts (`try_slip`), each beside each state of the stops. Three decisions that follow:
+///
+/// - *Static friction above kinetic friction.* A contact sticks while the stick force is within
+///   `static_limit`; once it slips, its force is the kinetic friction, so that the force jumps. With
+///   both directions of slip consistent at that jump, the direction opposite to the stick force is
+///   selected (`prefer_direction`). A contact whose static friction still suffices is not released
+///   (`could_stick`), unless no other candidate is consistent.
+/// - *Two surfaces part.* A pin that sticks to both cannot follow both as soon as their
+///   accelerations differ: it stays on the one that stuck before, or on the plate, if the static
+///   friction there suffices, else on the other one; if neither suffices, it slips on both.
+/// - *A stop lets go.* A rigid stop holds the pin while its push is positive (`try_stop`); a push
+///   that is zero and falls is inconsistent, and the next candidate, without the stop, is tested.
+///   An elastic stop separates where its push becomes zero, possibly beyond the end of the travel.
 template <class T>
 class Selection {
  public:
@@ -39,20 +56,20 @@ class Selection {
     pin_.finger.enumerate_candidates(pin_.state);
     selected_.applied_force = pin_.drive.mass * pin_.plate.surface.rate;
     restoring_force_ = pin_.drive.stiffness * pin_.state.x + pin_.drive.damping * pin_.state.v;
-    T size =
+    T scale =
         pin_.drive.stiffness * pin_.state.position_scale + pin_.drive.damping * abs(pin_.state.v);
     selected_.applied_force += pin_.force.value;
-    size += abs(pin_.force.rate) * pin_.time;  // error from the time resolution
+    scale += abs(pin_.force.rate) * pin_.time;  // error from the time resolution
     pin_.stop.enumerate_candidates(pin_.state);
-    size += pin_.stop.force_scale(pin_.state);
-    pin_.state.force_error = rounding<T> * (size + 2 * abs(selected_.applied_force) +
+    scale += pin_.stop.force_scale(pin_.state);
+    pin_.state.force_error = rounding<T> * (scale + 2 * abs(selected_.applied_force) +
                                             pin_.plate.force_scale(pin_.state.v) +
                                             pin_.finger.force_scale(pin_.state.v));
-    const T pull = restoring_force_;
+    const T without_stop = restoring_force_;
     for (const bool stick : {true, false})
       for (int option = 0; option < pin_.stop.count(); ++option) {
         pin_.stop.choose(option);
-        restoring_force_ = pull - pin_.stop.force(pin_.state);
+        restoring_force_ = without_stop - pin_.stop.force(pin_.state);
         if (pin_.stop.is_holding() ? stick && try_stop() : stick ? try_any_stick() : try_any_slip())
           return true;
       }
@@ -114,14 +131,18 @@ class Selection {
     selected_.tangential = false;
     selected_.acceleration = T(0);
     const T end = stop_sign(pin_.stop.state);
-    const auto goes = [&](ContactPoint& side, T apart) {
+    const auto choose_admissible = [&](ContactPoint& side, T relative_acceleration) {
       for (int k = 0; k < side.candidates.size(); ++k) {
         side.choose(k);
-        if (side.stuck() ? apart == 0 : side.is_admissible(pin_.state, apart)) return true;
+        if (side.stuck() ? relative_acceleration == 0
+                         : side.is_admissible(pin_.state, relative_acceleration))
+          return true;
       }
       return false;
     };
-    if (!goes(pin_.plate, -pin_.plate.surface.rate) || !goes(pin_.finger, T(0))) return false;
+    if (!choose_admissible(pin_.plate, -pin_.plate.surface.rate) ||
+        !choose_admissible(pin_.finger, T(0)))
+      return false;
     const T force = selected_.applied_force - restoring_force_ + pin_.plate.force(pin_.state) +
                     pin_.finger.force(pin_.state);
     const auto rate = pin_.plate.force_rate(T(0), T(0)), skin = pin_.finger.force_rate(T(0), T(0));
@@ -147,44 +168,46 @@ class Selection {
     return restoring_force_ - (selected_.applied_force - pin_.drive.mass * on.surface.rate) -
            of_other;
   }
-  /// Stick force as a function of time; `size` is the magnitude of the terms of its slope.
+  /// Stick force as a function of time; `scale` is the magnitude of the terms of its slope.
   Path<T> holding_force_from(T force, const ContactPoint& on, const ContactPoint& other,
-                             T& size) const {
+                             T& scale) const {
     const T a = on.surface.rate, spring = stiffness() * pin_.state.v, damper = damping() * a;
     const auto rate = other.force_rate(pin_.state.v, a);
-    size = abs(spring) + abs(damper) + rate.scale;
+    scale = abs(spring) + abs(damper) + rate.scale;
     T drift = spring + damper - rate.value;
     drift -= pin_.force.rate;
-    size += abs(pin_.force.rate);
+    scale += abs(pin_.force.rate);
     return {force, T(0), T(0), drift, stiffness() * a - rate.second};
   }
 
   /// Tests the mode in which a contact, and `other` if it sticks too, keeps the pin on its surface.
   bool try_stick(const ContactPoint& on, const ContactPoint& other) {
-    const T apart = on.surface.rate - other.surface.rate;
-    if (other.stuck() ? apart != 0 : !other.is_admissible(pin_.state, apart)) return false;
+    const T relative_acceleration = on.surface.rate - other.surface.rate;
+    if (other.stuck() ? relative_acceleration != 0
+                      : !other.is_admissible(pin_.state, relative_acceleration))
+      return false;
     if (!pin_.stop.is_consistent(pin_.state.v, on.surface.rate, {})) return false;
-    const T of_on = on.contact.static_limit;
-    const T of_other = other.stuck() ? other.contact.static_limit : T(0);
-    const Line<T> most{of_on * on.load.value + of_other * other.load.value,
-                       of_on * on.load.rate + of_other * other.load.rate};
+    const T own_limit = on.contact.static_limit;
+    const T other_limit = other.stuck() ? other.contact.static_limit : T(0);
+    const Line<T> limit{own_limit * on.load.value + other_limit * other.load.value,
+                        own_limit * on.load.rate + other_limit * other.load.rate};
     const T force = holding_force(on, other.force(pin_.state));
     const int at_limit = pin_.stays_at_limit() ? pin_.stick_limit_side : 0;
-    if (most.value - abs(force) < -pin_.state.force_error && (force < 0 ? -1 : 1) != at_limit)
+    if (limit.value - abs(force) < -pin_.state.force_error && (force < 0 ? -1 : 1) != at_limit)
       return false;
-    T size;
-    selected_.stick_force = holding_force_from(force, on, other, size);
+    T scale;
+    selected_.stick_force = holding_force_from(force, on, other, scale);
     selected_.guards.clear();
     for (const int side : {1, -1}) {
-      Path<T> left = Path<T>(most) + T(-side) * selected_.stick_force;
-      if (!(left.start > pin_.state.force_error) || side == at_limit) {
-        left.start = T(0);
-        if (abs(left.drift) <= rounding<T> * (size + abs(most.rate)) ||
-            grazes(left.drift, left.curvature, pin_.state.force_error))
-          left.drift = T(0);
-        if ((left.drift != 0 ? left.drift : left.curvature) < 0) return false;
+      Path<T> margin = Path<T>(limit) + T(-side) * selected_.stick_force;
+      if (!(margin.start > pin_.state.force_error) || side == at_limit) {
+        margin.start = T(0);
+        if (abs(margin.drift) <= rounding<T> * (scale + abs(limit.rate)) ||
+            grazes(margin.drift, margin.curvature, pin_.state.force_error))
+          margin.drift = T(0);
+        if ((margin.drift != 0 ? margin.drift : margin.curvature) < 0) return false;
       }
-      selected_.guards.add_force(left, pin_.plate.stuck(), side);
+      selected_.guards.add_force(margin, pin_.plate.stuck(), side);
     }
     return true;
   }
@@ -196,51 +219,55 @@ class Selection {
     selected_.guards.clear();
     const T finger = pin_.finger.force(pin_.state);
     // On a plate that begins to slide across, all forces may balance within rounding.
-    const bool across = pin_.plate.oblique() && pin_.plate.across.value == 0 &&
-                        pin_.state.v == pin_.plate.surface.value;
-    const T parting = across
-                          ? oblique_departure(pin_.drive.mass, pin_.plate,
-                                              selected_.applied_force - restoring_force_ + finger)
-                          : T(0);
+    const bool starts_across = pin_.plate.oblique() && pin_.plate.across.value == 0 &&
+                               pin_.state.v == pin_.plate.surface.value;
+    const T departure = starts_across
+                            ? oblique_departure(pin_.drive.mass, pin_.plate,
+                                                selected_.applied_force - restoring_force_ + finger)
+                            : T(0);
     const T plate = pin_.plate.force(pin_.state);
     selected_.acceleration =
-        across ? pin_.plate.surface.rate + parting
-               : (selected_.applied_force - restoring_force_ + plate + finger) / pin_.drive.mass;
-    const auto parts = [&](const ContactPoint& side, T own, T of_other) {  // times the mass
+        starts_across
+            ? pin_.plate.surface.rate + departure
+            : (selected_.applied_force - restoring_force_ + plate + finger) / pin_.drive.mass;
+    // Relative acceleration times the mass.
+    const auto relative_force = [&](const ContactPoint& side, T own, T of_other) {
       if (!side.is_decided_by_acceleration(pin_.state.v)) return selected_.acceleration;
-      const T force = across ? pin_.drive.mass * (selected_.acceleration - side.surface.rate)
-                             : own - holding_force(side, of_other);
+      const T force = starts_across ? pin_.drive.mass * (selected_.acceleration - side.surface.rate)
+                                    : own - holding_force(side, of_other);
       const bool releases = side.before == ContactState::stick && pin_.stays_at_limit();
-      const T known = across ? T(0) : pin_.state.force_error + pin_.plate.force_error(pin_.state.v);
-      const bool none = abs(force) <= known;
+      const T error =
+          starts_across ? T(0) : pin_.state.force_error + pin_.plate.force_error(pin_.state.v);
+      const bool none = abs(force) <= error;
       if (!selected_.tangential && (none || releases || turns_at_once(side, force))) {
         selected_.tangential = true;
         selected_.acceleration = side.surface.rate;
       }
       return force;
     };
-    const T at_plate = parts(pin_.plate, plate, finger),
-            at_finger = parts(pin_.finger, finger, plate);
+    const T at_plate = relative_force(pin_.plate, plate, finger),
+            at_finger = relative_force(pin_.finger, finger, plate);
     if (pin_.stop.is_undecided() && !leaves_stop()) return false;
-    const auto leaves = [&](const ContactPoint& side, const ContactPoint& other, T force) {
+    const auto is_admissible = [&](const ContactPoint& side, const ContactPoint& other, T force) {
       if (side.oblique()) {
         const Line<T> jerk = this->jerk();
         return side.is_admissible(pin_.state, selected_.acceleration - side.surface.rate,
                                   jerk.value, jerk.rate);
       }
       if (!selected_.tangential) return side.is_admissible(pin_.state, force);
-      const T apart = selected_.acceleration - side.surface.rate;
-      if (pin_.drive.mass * abs(apart) > pin_.state.force_error ||
+      const T relative_acceleration = selected_.acceleration - side.surface.rate;
+      if (pin_.drive.mass * abs(relative_acceleration) > pin_.state.force_error ||
           !side.is_decided_by_acceleration(pin_.state.v))
-        return side.is_admissible(pin_.state, apart);
-      T size;
-      const Path<T> needed = holding_force_from(T(0), side, other, size);
+        return side.is_admissible(pin_.state, relative_acceleration);
+      T scale;
+      const Path<T> needed = holding_force_from(T(0), side, other, scale);
       const T own = side.force_rate(pin_.state.v, selected_.acceleration).value,
               jerk = own - needed.drift;
-      const bool none = abs(jerk) <= rounding<T> * (size + abs(own));
+      const bool none = abs(jerk) <= rounding<T> * (scale + abs(own));
       return side.is_admissible(pin_.state, T(0), none ? T(0) : jerk, -needed.curvature);
     };
-    return leaves(pin_.plate, pin_.finger, at_plate) && leaves(pin_.finger, pin_.plate, at_finger);
+    return is_admissible(pin_.plate, pin_.finger, at_plate) &&
+           is_admissible(pin_.finger, pin_.plate, at_finger);
   }
 
   /// True if the force that moves a sliding speed off a breakpoint changes its sign within the time
@@ -264,9 +291,9 @@ class Selection {
 
   /// Jerk of a slipping pin, m/s³, zero within its error; and the derivative of the jerk.
   Line<T> jerk() const {
-    const auto [rate, size, bend] = force_rate();
-    return {abs(rate) <= rounding<T> * size ? T(0) : rate / pin_.drive.mass,
-            bend / pin_.drive.mass};
+    const auto [rate, scale, second] = force_rate();
+    return {abs(rate) <= rounding<T> * scale ? T(0) : rate / pin_.drive.mass,
+            second / pin_.drive.mass};
   }
   /// Derivatives of the force on a slipping pin.
   ForceRate<T> force_rate() const {

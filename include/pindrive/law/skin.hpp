@@ -32,12 +32,12 @@ template <class T, class Point>
 void initialize_slider(Point& point, State<T>& s, T speed) {
   auto& mode = point.mode;
   const Branch<T> range = point.branch();
-  const T asked = range.at(speed);
+  const T friction = range.at(speed);
   point.start.slider_speed = speed;
-  s.skin = mode.slip_sign * asked * point.load.value;
+  s.skin = mode.slip_sign * friction * point.load.value;
   if (range.slope < 0) {
     const auto jump =
-        slider_of(point, mode.slip_sign, mode.slip_sign * speed).next_slower(mode.branch, asked);
+        slider_of(point, mode.slip_sign, mode.slip_sign * speed).next_slower(mode.branch, friction);
     point.start.slider_speed = jump.speed;
     mode = mode_after(jump, mode.slip_sign);
     mode.guard = ActiveGuard::none;
@@ -159,27 +159,27 @@ class SliderCandidates {
     if (!own_speed && guard != ActiveGuard::none &&
         is_nonzero(speed - (guard == ActiveGuard::upper ? range.to : range.from)))
       guard = ActiveGuard::none;  // the rate of the load has changed
-    const ActiveGuard came_to = guard;
+    const ActiveGuard reached = guard;
     if (guard == ActiveGuard::none && speed >= range.to) guard = ActiveGuard::upper;
     if (guard == ActiveGuard::none && !(speed > range.from)) guard = ActiveGuard::lower;
     // A slider without its own velocity follows a jump of the pin velocity.
-    const T jumps = guard == ActiveGuard::upper ? speed - range.to : range.from - speed;
-    must_jump_ = !own_speed && came_to == ActiveGuard::none && guard != ActiveGuard::none &&
-                 jumps > branch_end_error<T> * (range.from + (speed < 0 ? -speed : speed));
+    const T beyond_end = guard == ActiveGuard::upper ? speed - range.to : range.from - speed;
+    must_jump_ = !own_speed && reached == ActiveGuard::none && guard != ActiveGuard::none &&
+                 beyond_end > branch_end_error<T> * (range.from + (speed < 0 ? -speed : speed));
     start_.keeps_speed = !own_speed && !must_jump_;
     start_.slider_speed = guard == ActiveGuard::none    ? speed
                           : guard == ActiveGuard::upper ? range.to
                                                         : range.from;
     start_.friction = range.at(own_speed ? start_.slider_speed : range.from);
-    const T pulls = slip_sign * s_.skin, most = start_.friction * point_.load.value;
+    const T tension = slip_sign * s_.skin, most = start_.friction * point_.load.value;
     const int branch = present_.branch;
-    if (std::abs(plain(pulls - most)) > jump_error<T> * plain(pulls + most) + s_.force_error) {
+    if (std::abs(plain(tension - most)) > jump_error<T> * plain(tension + most) + s_.force_error) {
       must_jump_ = true;  // the load has jumped
       start_.keeps_speed = false;
-      const T asked = pulls / point_.load.value;
-      add_jump(
-          pulls > most ? slider.next_faster(branch, asked) : slider.next_slower(branch + 1, asked),
-          slider, slip_sign);
+      const T friction = tension / point_.load.value;
+      add_jump(tension > most ? slider.next_faster(branch, friction)
+                              : slider.next_slower(branch + 1, friction),
+               slider, slip_sign);
       return true;
     }
     if (guard == ActiveGuard::none) {
@@ -189,10 +189,11 @@ class SliderCandidates {
     const bool upper = guard == ActiveGuard::upper;
     if (!upper && branch == 0) return false;
     const int beyond = branch + (upper ? 1 : 0);
-    const T asked = start_.friction = contact_.branch(beyond).force;
-    const auto jump = upper ? slider.next_faster(beyond, asked) : slider.next_slower(beyond, asked);
+    const T friction = start_.friction = contact_.branch(beyond).force;
+    const auto jump =
+        upper ? slider.next_faster(beyond, friction) : slider.next_slower(beyond, friction);
     const bool sticks = jump.sticks && (contact_.static_limit != 0 || u_ == 0);
-    if (!upper && sticks && !(asked < contact_.static_limit)) return false;
+    if (!upper && sticks && !(friction < contact_.static_limit)) return false;
     if (!must_jump_) add_present();
     add_jump(jump, slider, slip_sign);
     return true;
@@ -203,18 +204,18 @@ class SliderCandidates {
     start_.friction = contact_.branch(0).force;
     must_jump_ = false;
     present_ = {ContactState::elastic_stick, ActiveGuard::none, 0, T(0)};
-    const T most = point_.stick_limit(), grows = point_.stretch_rate(contact_.static_limit);
+    const T most = point_.stick_limit(), stretch_rate = point_.stretch_rate(contact_.static_limit);
     const bool empty = !(most > 0) && s_.skin == 0;
-    point_.slips_either_way = empty && !(grows > 0);
+    point_.slips_either_way = empty && !(stretch_rate > 0);
     point_.slip_sign = (empty ? u_ > 0 : s_.skin > 0) ? T(-1) : T(1);  // sign of the force
-    const T slip_sign = -point_.slip_sign, pulls = slip_sign * s_.skin;
-    const bool exceeds = pulls > most + rounding<T> * most + s_.force_error;
-    if (!exceeds && (pulls < most || point_.slip_sign * u_ > -grows)) return add_present();
+    const T slip_sign = -point_.slip_sign, tension = slip_sign * s_.skin;
+    const bool exceeds = tension > most + rounding<T> * most + s_.force_error;
+    if (!exceeds && (tension < most || point_.slip_sign * u_ > -stretch_rate)) return add_present();
     present_.guard = ActiveGuard::upper;
     must_jump_ = exceeds;
     const auto slider = slider_of(point_, slip_sign, u_);
     SliderJump<T> jump =
-        slider.next_faster(0, must_jump_ ? pulls / point_.load.value : contact_.static_limit);
+        slider.next_faster(0, must_jump_ ? tension / point_.load.value : contact_.static_limit);
     if (jump.shortens_skin && jump.guard == ActiveGuard::lower && point_.load.rate < 0)
       jump = slider.sticking(jump);  // slip cannot continue either
     if (!must_jump_) add_present();

@@ -53,21 +53,22 @@ class Slider {
   /// Smallest speed from the begin of a branch upwards at which the friction curve has the given
   /// friction. If there is none, the speed is infinite for an instant until the skin tension equals
   /// the last friction.
-  [[gnu::noinline]] SliderJump<T> next_faster(int branch, T asked) const {
+  [[gnu::noinline]] SliderJump<T> next_faster(int branch, T friction) const {
     for (int j = branch;; ++j) {
       const Branch<T> range = contact_.branch(j);
       const bool last = j + 1 >= contact_.branches;
       if (range.slope > 0) {
-        const T most = last ? never : contact_.branch(j + 1).force;
-        if (!(asked > range.force) || same(asked, range.force))
+        const T largest = last ? unbounded : contact_.branch(j + 1).force;
+        if (!(friction > range.force) || same(friction, range.force))
           return {j, range.from, range.force, ActiveGuard::lower};
-        if (same(asked, most)) {
-          if (!(stationary_speed(most) > range.to)) return {j, range.to, most, ActiveGuard::upper};
-        } else if (asked < most) {
-          return {j, range.from + (asked - range.force) / range.slope, asked};
+        if (same(friction, largest)) {
+          if (!(stationary_speed(largest) > range.to))
+            return {j, range.to, largest, ActiveGuard::upper};
+        } else if (friction < largest) {
+          return {j, range.from + (friction - range.force) / range.slope, friction};
         }
       }
-      const bool shortens_skin = range.force < asked && !same(asked, range.force);
+      const bool shortens_skin = range.force < friction && !same(friction, range.force);
       if (!last && (range.slope != 0 || shortens_skin)) continue;
       const T speed = stationary_speed(range.force);
       if (speed < range.from && shortens_skin) {
@@ -84,25 +85,26 @@ class Slider {
 
   /// Largest speed below the begin of a branch at which the friction does not exceed the given
   /// friction; without one the slider sticks.
-  [[gnu::noinline]] SliderJump<T> next_slower(int branch, T asked) const {
+  [[gnu::noinline]] SliderJump<T> next_slower(int branch, T friction) const {
     for (int j = branch - 1; j >= 0; --j) {
       const Branch<T> range = contact_.branch(j);
-      const bool start = same(asked, range.force);
-      if (range.slope > 0 && asked > range.force && !start) {
-        const T most = j + 1 < contact_.branches ? contact_.branch(j + 1).force : never;
-        if (asked > most || same(asked, most)) return {j, range.to, most, ActiveGuard::upper};
-        return {j, range.from + (asked - range.force) / range.slope, asked};
+      const bool at_start = same(friction, range.force);
+      if (range.slope > 0 && friction > range.force && !at_start) {
+        const T largest = j + 1 < contact_.branches ? contact_.branch(j + 1).force : unbounded;
+        if (friction > largest || same(friction, largest))
+          return {j, range.to, largest, ActiveGuard::upper};
+        return {j, range.from + (friction - range.force) / range.slope, friction};
       }
       const T speed = stationary_speed(range.force);
-      const bool holds = j == 0 && asked < contact_.static_limit;
-      if (range.slope > 0 && start && speed > range.from && !holds)
+      const bool static_suffices = j == 0 && friction < contact_.static_limit;
+      if (range.slope > 0 && at_start && speed > range.from && !static_suffices)
         return {j, range.from, range.force, ActiveGuard::lower};
-      if (range.slope != 0 || (range.force > asked && !start)) continue;
+      if (range.slope != 0 || (range.force > friction && !at_start)) continue;
       if (!(speed > range.from)) continue;
       if (speed < range.to) return {j, speed, range.force};
       return {j, range.to, range.force, ActiveGuard::upper};
     }
-    return {0, T(0), asked, ActiveGuard::none, true};
+    return {0, T(0), friction, ActiveGuard::none, true};
   }
   /// Jump of a slider that has slowed down at once and would rest on a plateau.
   SliderJump<T> sticking(const SliderJump<T>& rests) const {
@@ -128,7 +130,7 @@ class Slider {
   }
 
  private:
-  static constexpr T never = std::numeric_limits<T>::infinity();
+  static constexpr T unbounded = std::numeric_limits<T>::infinity();
   /// True if two frictions are equal within their error.
   static bool same(T one, T other) {
     return one == other || abs(one - other) < rounding<T> * other;
