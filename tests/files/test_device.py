@@ -8,8 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pindrive.files.device import ConfigError, load_device
+from pindrive.files.device import load_device
 from pindrive.files.keys import KEYS, NUMERIC_KEYS, template
+from pindrive.files.overrides import ConfigError
 from pindrive.quantities.drive import DRIVE_QUANTITIES
 from pindrive.quantities.units import UnitError, to_si
 

@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from pindrive import Profile
-from pindrive.files.device import ConfigError, DeviceFile, load_device
+from pindrive.files.device import DeviceFile, load_device
+from pindrive.files.overrides import ConfigError
 
 GOOD = Path(__file__).parents[1].joinpath("minimal.toml").read_text(encoding="utf-8")
 PLATE, FINGER, SPEED = '"20 mN"', '"5 mN"', '"100 mm/s"'

@@ -14,8 +14,9 @@ from PIL import Image
 from command import GOOD, refused, run
 from pindrive.device import ControlBlock, Electromagnet, PinArray, scan
 from pindrive.device.reading import Reading
-from pindrive.files.device import ConfigError, load_device
+from pindrive.files.device import load_device
 from pindrive.files.keys import WHOLE, template
+from pindrive.files.overrides import ConfigError
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
 

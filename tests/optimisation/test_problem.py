@@ -10,7 +10,7 @@ import pytest
 
 import pindrive as pd
 from design_problems import EXAMPLES, MOUSE, PAPER
-from pindrive.files.device import ConfigError
+from pindrive.files.overrides import ConfigError
 from pindrive.optimisation import read_problem
 from pindrive.optimisation.problem import problem_of
 

@@ -12,8 +12,9 @@ import numpy as np
 import pytest
 
 from pindrive import Profile
-from pindrive.files.device import ConfigError, DeviceFile, load_device
+from pindrive.files.device import DeviceFile, load_device
 from pindrive.files.keys import DRIVE, NUMERIC_KEYS, template
+from pindrive.files.overrides import ConfigError
 from studio_cases import Ask, as_input
 
 EXAMPLES = [

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from command import GOOD, run
-from pindrive.files.device import ConfigError
+from pindrive.files.overrides import ConfigError
 from pindrive.study.spec import load_study
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")

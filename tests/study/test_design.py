@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
-from pindrive.files.device import ConfigError
+from pindrive.files.overrides import ConfigError
 from pindrive.quantities.status import Status
 from pindrive.study.distributions import BLOCK, Distribution, Even, Sample
 from pindrive.study.evaluate import evaluate, follow, is_slow, refusals

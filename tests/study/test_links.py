@@ -13,7 +13,8 @@ from typer.testing import CliRunner
 
 from pindrive import Contact, Drive, Release, simulate
 from pindrive.cli.app import app
-from pindrive.files.device import ConfigError, load_device
+from pindrive.files.device import load_device
+from pindrive.files.overrides import ConfigError
 from pindrive.motion.simulate import motion_of
 from pindrive.quantities.drive import DRIVE_QUANTITIES
 from pindrive.study.distributions import Linked

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from pindrive.files.device import ConfigError
+from pindrive.files.overrides import ConfigError
 from scan_studies import COILED, DEVICE, GRATING, study, swept
 
 

@@ -174,7 +174,7 @@ def _recordings(
 def _velocity(text: str, device: DeviceFile) -> Any:
     """Return a speed, or the velocity profile of a CSV or of a recorded hand."""
     from pindrive.files.device import load_device
-    from pindrive.files.recording import is_file
+    from pindrive.files.keys import is_file
 
     if not is_file("motion.mouse_velocity", text):
         return text

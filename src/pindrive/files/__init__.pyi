@@ -1,6 +1,6 @@
 # The module of each public name; `__init__.py` describes them.
 
-from .device import ConfigError as ConfigError
+from .overrides import ConfigError as ConfigError
 from .device import DeviceFile as DeviceFile
 from .device import load_device as load_device
 from .output import OutputError as OutputError

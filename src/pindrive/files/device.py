@@ -6,12 +6,12 @@ Whatever is wrong is found in one pass and said in lines that name file, key, va
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Container, Iterable, Mapping, Sequence
+from collections.abc import Collection, Container, Iterable, Mapping
 from dataclasses import dataclass
 from math import inf
-from numbers import Real
 from os import PathLike
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from pindrive.device.controller import ControlBlock
@@ -26,20 +26,23 @@ from pindrive.files.keys import (
     NUMERIC_KEYS,
     STUDY_KEYS,
     TABLES,
+    Tables,
     names_in_file,
     unknown_in_file,
     written,
 )
-from pindrive.files.recording import files_named, is_file, recording_words, with_files_read
+from pindrive.files.overrides import ConfigError, Setting, set_in_tables, settings_of
+from pindrive.files.ratios import Given, with_set
+from pindrive.files.recording import files_named, recording_words, with_files_read
 from pindrive.files.schema import (
     Place,
     Whole,
+    complete,
     contact_problems,
     drive_of,
     drive_problems,
-    keep_ratios,
     over_time,
-    read_values,
+    read_given,
     release_of,
     table_of,
 )
@@ -51,25 +54,6 @@ from pindrive.quantities.quantity import Quantity, Rows, counted
 from pindrive.quantities.refusal import quoted, refusal
 from pindrive.quantities.table import warn_of
 from pindrive.quantities.value import equal_by_value
-
-
-class Setting(NamedTuple):
-    """A value that is set otherwise than in a device file."""
-
-    key: str
-    """As it was written: plate.kinetic, plate_kinetic, mass."""
-    value: object
-    """As TOML has it."""
-    place: str
-    """Place of the file for messages."""
-
-
-class ConfigError(ValueError):
-    """A device file that cannot be used. `problems` holds one line each."""
-
-    def __init__(self, problems: Sequence[str]) -> None:
-        self.problems = tuple(problems)
-        super().__init__("\n".join(self.problems))
 
 
 @equal_by_value
@@ -89,8 +73,10 @@ class DeviceFile:
     release: Release
     duration: float | None
     settling_band: float
+    given: Given
+    """Value of each key that the file gives, SI, with the values that were set otherwise."""
     tables: Mapping[str, Any]
-    """Tables of the file, as text with units, with the values that were set otherwise."""
+    """The same as the file has them: text with units, and the names of CSV files."""
     settings: tuple[Setting, ...] = ()
     """The values that were set otherwise."""
     whole: Whole | None = None
@@ -98,7 +84,7 @@ class DeviceFile:
     @property
     def by_ratio(self) -> bool:
         """True if the damping is given as a ratio, which then holds for any mass and stiffness."""
-        return "damping_ratio" in self.tables["drive"]
+        return "drive.damping_ratio" in self.given
 
     @property
     def derived(self) -> tuple[str, ...]:
@@ -179,7 +165,31 @@ class DeviceFile:
 
     def with_whole(self) -> DeviceFile:
         """Return the file with `whole`, also for a file without that table."""
-        return device_of(self.path, self.tables, whole=True)
+        return self if self.whole else _assembled(self, self.given, self.tables, whole=True)
+
+    def with_values(self, values: Mapping[str, float | Rows], *, whole: bool = False) -> DeviceFile:
+        """Return the file with some values set otherwise.
+
+        Values that follow them keep their ratio, as in `load_device`.
+
+        Args:
+            values: Value of each key in full ("plate.kinetic"), SI.
+            whole: True for the whole device, also of a file without its tables.
+
+        Raises:
+            ConfigError: The values contradict each other or the values of the file.
+        """
+        changed = {k: v if isinstance(v, tuple) else float(v) for k, v in values.items()}
+        given = with_set(self.given, changed)
+        tables = {name: dict(table) for name, table in self.tables.items()}
+        for key in self.given.keys() | given.keys():
+            table, _, name = key.partition(".")
+            if key not in given:
+                del tables[table][name]
+            elif key not in self.given or given[key] != self.given[key]:
+                tables[table][name] = written(key, given[key])
+        settings = [Setting(key, written(key, value), "") for key, value in changed.items()]
+        return _assembled(self, given, tables, settings, whole=whole or self.whole is not None)
 
     @property
     def _whole(self) -> Whole:
@@ -263,55 +273,131 @@ def device_of(
 ) -> DeviceFile:
     """Return the device of the tables `given`, with values set otherwise in sequence.
 
-    The rest, and what it raises, as for `load`; `problems` are what was found wrong before.
+    Args:
+        file: File of the tables.
+        given: Tables as TOML has them.
+        settings: Values set otherwise.
+        whole: True for the whole device, also without its tables.
+        problems: Errors found before.
+
+    Raises:
+        ConfigError: As for `load_device`.
     """
     _refuse_study(file, given)
     settings = tuple(settings)
     tables = _with_all_tables(file, given)
-    places, found = _set(tables, settings)
-    problems = [*problems, *found]
-
-    def place(*keys: str) -> str:
-        return next((places[key] for key in keys if key in places), str(file))
-
-    whole = whole or any(tables[name] for name in AROUND)
+    before, _, _ = _read(tables, file.parent, Places(file)) if settings else ({}, {}, [])
+    places, found = set_in_tables(tables, settings)
+    place = Places(file, places)
+    values, malformed, unread = _read(tables, file.parent, place)
+    if places:
+        changed = {key: values[key] for key in places if key in values}
+        kept = with_set({k: v for k, v in before.items() if k not in malformed}, changed)
+        for key in kept.keys() - changed.keys():
+            if key in values and kept[key] != before[key]:
+                table, _, name = key.partition(".")
+                values[key], tables[table][name] = kept[key], written(key, kept[key])
     unknown = _unknown_keys(tables)
     meant = {name for key in unknown for name in names_in_file(key).nearest(key)[:1]}
-    problems += [f"{file}: {unknown_in_file(key)}" for key in unknown]
-    problems += _damping_problems(tables["drive"], meant, place)
-    problems += _text_problems(tables["device"], place)
+    said = [
+        *problems,
+        *found,
+        *(f"{file}: {unknown_in_file(key)}" for key in unknown),
+        *_damping_problems(tables["drive"], meant, place),
+        *_text_problems(tables["device"], place),
+        *unread,
+    ]
+    return _assembled(
+        _Source(
+            path=file,
+            name=tables["device"].get("name", ""),
+            description=tables["device"].get("description", ""),
+        ),
+        values,
+        tables,
+        settings,
+        whole=whole,
+        malformed=malformed,
+        meant=meant,
+        place=place,
+        problems=said,
+    )
+
+
+def _read(
+    tables: Tables, folder: Path, place: Place
+) -> tuple[dict[str, float | Rows], dict[str, str], list[str]]:
+    """Return the given values, SI, the malformed ones, and the errors of the CSV files."""
+    read, unread = with_files_read({name: dict(tables[name]) for name in TABLES}, folder, place)
+    given, malformed = read_given(read, place)
+    return given, malformed, unread
+
+
+class Places:
+    """Places of keys in messages: where a value was set, otherwise the file."""
+
+    def __init__(self, file: Path, places: Mapping[str, str] | None = None) -> None:
+        self._file, self._places = file, places or {}
+
+    def __call__(self, *keys: str) -> str:
+        """Return the place of the first of the keys that was set, otherwise the file."""
+        return next((self._places[key] for key in keys if key in self._places), str(self._file))
+
+
+class _Source(NamedTuple):
+    """File of a device, with the text that describes it."""
+
+    path: Path
+    name: str
+    description: str
+
+
+def _assembled(
+    source: _Source | DeviceFile,
+    given: Given,
+    tables: Mapping[str, Any],
+    settings: Iterable[Setting] = (),
+    *,
+    whole: bool,
+    malformed: Mapping[str, str] = MappingProxyType({}),
+    meant: Collection[str | None] = (),
+    place: Place | None = None,
+    problems: Iterable[str] = (),
+) -> DeviceFile:
+    """Return the device of the values that are given, SI; raise all errors."""
+    if place is None:
+        place = Places(source.path, {setting.key: setting.place for setting in settings})
+    whole = whole or any(tables[name] for name in AROUND)
     hand = whole and "mouse_velocity" not in tables["motion"]
     left_out = {"motion.mouse_velocity"} if hand else set()
     names = TABLES if whole else ALONE
-    read, unread = with_files_read(_copied(tables), file.parent, place)
-    values, found = read_values(read, names, place, meant | left_out)
-    found = [*unread, *found]
+    values, found = complete(given, malformed, names, place, {*meant, *left_out})
     if hand:  # a single release is at the hand's speed then
         values["motion.mouse_velocity"] = values.get("scan.hand_speed")
     found += contact_problems(values, place)
-    complete = all(key in values for key in NUMERIC_KEYS if key.partition(".")[0] in names)
-    around = Whole(values) if whole and complete and not found else None
-    if complete and not found:
+    all_known = all(key in values for key in NUMERIC_KEYS if key.partition(".")[0] in names)
+    around = Whole(values) if whole and all_known and not found else None
+    if all_known and not found:
         found += drive_problems(values, place)
     if around:
-        found += around.problems(tables, place)
+        found += around.problems(given, place)
     if problems := [*problems, *found]:
         raise ConfigError(problems)
     try:
         drive = drive_of(values)
     except ValueError as error:  # each value in range, but not all together
-        raise ConfigError([f"{file}: {error}"]) from None
-    motion = table_of(values, "motion")
+        raise ConfigError([f"{source.path}: {error}"]) from None
     device = DeviceFile(
-        path=file,
-        name=tables["device"].get("name", ""),
-        description=tables["device"].get("description", ""),
+        path=source.path,
+        name=source.name,
+        description=source.description,
         drive=drive,
         release=release_of(values),
-        duration=motion["duration"],
-        settling_band=motion["settling_band"],
+        duration=table_of(values, "motion")["duration"],
+        settling_band=table_of(values, "motion")["settling_band"],
+        given=given,
         tables=tables,
-        settings=settings,
+        settings=tuple(settings),
         whole=around,
     )
     _warn(device, place)
@@ -376,84 +462,6 @@ def _with_all_tables(file: Path, given: Mapping[str, Any]) -> dict[str, Any]:
             ]
         )
     return tables
-
-
-def settings_of(
-    overrides: Iterable[str] | Mapping[str, object],
-) -> tuple[list[Setting], list[str]]:
-    """Return the settings of "key=value" texts, or of a mapping, and their errors."""
-    if isinstance(overrides, Mapping):
-        return [_setting(str(key), value) for key, value in overrides.items()], []
-    if isinstance(overrides, str):
-        raise ConfigError([refusal("overrides", 'a list, like ["mass=12 g"]', quoted(overrides))])
-    settings, problems = [], []
-    for override in overrides:
-        given, equals, text = (part.strip() for part in override.partition("="))
-        place = f"--set {' '.join(given.split())}"
-        value: object = text
-        if not equals or not given:
-            problems.append(f"--set {quoted(override)}: must be key=value")
-            continue
-        keys = NAMES.matches(given)
-        if len(keys) == 1 and is_file(keys[0], text):
-            value = str(Path(text).absolute())
-        elif (
-            len(keys) == 1
-            and keys[0] in NUMERIC_KEYS
-            and NUMERIC_KEYS[keys[0]].rows
-            and text[:1] == "["
-        ):
-            try:
-                value = _rows_as_toml(text)
-            except (ValueError, RecursionError) as error:
-                problems.append(f"{place}: {keys[0]} is not valid TOML: {error}")
-                continue
-        settings.append(Setting(given, value, place))
-    return settings, problems
-
-
-def _setting(given: str, value: object) -> Setting:
-    """A value from Python: a number is SI."""
-    keys = NAMES.matches(given)
-    if len(keys) == 1 and keys[0] in NUMERIC_KEYS and isinstance(value, Real):
-        value = written(keys[0], float(value))
-    elif len(keys) == 1 and is_file(keys[0], value):
-        value = str(Path(str(value)).absolute())
-    return Setting(given, value, f"overrides[{quoted(given)}]")
-
-
-def _rows_as_toml(text: str) -> object:
-    given = tomllib.loads(f"rows = {text}")
-    if len(given) > 1:
-        raise ValueError("more than one value")
-    return given["rows"]
-
-
-def _set(tables: dict[str, Any], settings: Iterable[Setting]) -> tuple[dict[str, str], list[str]]:
-    """Set values in `tables`. Return where each set key was written, and what was wrong."""
-    before = _copied(tables)
-    places: dict[str, str] = {}
-    problems: list[str] = []
-    for given, value, place in settings:
-        try:
-            key = NAMES.find(given, place)
-        except ValueError as error:
-            problems.append(str(error))
-            continue
-        table, _, name = key.partition(".")
-        places[key] = place
-        tables[table][name] = value
-    for one, other in (("damping", "damping_ratio"), ("damping_ratio", "damping")):
-        if f"drive.{one}" in places and f"drive.{other}" not in places:
-            tables["drive"].pop(other, None)
-    if places:
-        keep_ratios(tables, before, places)
-    return places, problems
-
-
-def _copied(tables: Mapping[str, Any]) -> dict[str, Any]:
-    """The known tables as they stand."""
-    return {name: dict(tables[name]) for name in TABLES}
 
 
 def _unknown_keys(tables: Mapping[str, Any]) -> list[str]:

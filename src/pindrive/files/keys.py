@@ -11,13 +11,15 @@ from pindrive.motion.friction import COEFFICIENT_OF, PRESSED_BY
 from pindrive.quantities.device import READER
 from pindrive.quantities.drive import COLUMNS, DRIVE_QUANTITIES
 from pindrive.quantities.names import Names
-from pindrive.quantities.quantity import Quantity
+from pindrive.quantities.quantity import Quantity, Rows
 from pindrive.quantities.refusal import quoted, refusal
 from pindrive.quantities.table import DEVICE_INPUTS, QUANTITIES, check
 from pindrive.quantities.units import UnitError, to_si
 
 Tables = Mapping[str, Any]
 """The tables of a device file as TOML has them: text with units."""
+Value = float | Rows | None
+"""Value of a key, SI; None for a missing key without a default."""
 
 DRIVE: Final[dict[str, Quantity]] = {quantity.key: quantity for quantity in DRIVE_QUANTITIES}
 """The keys of a device file that describe the drive and its motion, in their order."""
@@ -35,6 +37,9 @@ KEYS: Final = ("device.name", "device.description", *NUMERIC_KEYS)
 AROUND: Final = ("magnet", "control", "array", "scan", "criteria")
 ALONE: Final = ("device", "drive", "plate", "finger", "motion")
 TABLES: Final = (*ALONE, *AROUND)
+SUFFIX: Final = ".csv"
+OVER_TIME: Final = ("profile", "steps")
+"""Interpolation of rows over time: linear, or constant until the next row."""
 
 
 def _spellings(key: str) -> tuple[str, ...]:
@@ -77,8 +82,17 @@ def number(
     return check(quantity.name, found, where=place, label=label, given=quoted(value))
 
 
-def written(key: str, value: float) -> str | float:
-    """A value in SI as a device file has it, to the last bit."""
+def is_file(key: str, value: object) -> bool:
+    """Return True if a value of a device file names a CSV and its key may change over time."""
+    over_time = key in NUMERIC_KEYS and NUMERIC_KEYS[key].rows_of in OVER_TIME
+    return over_time and isinstance(value, str) and value.strip().lower().endswith(SUFFIX)
+
+
+def written(key: str, value: float | Rows) -> Any:
+    """Return a value in SI as a device file has it, to the last bit."""
+    if isinstance(value, tuple):
+        across = QUANTITIES[COLUMNS[NUMERIC_KEYS[key].rows_of][0]]
+        return [[f"{x!r} {across.unit}", written(key, y)] for x, y in value]
     unit = NUMERIC_KEYS[key].unit
     return value if unit == "1" else f"{value!r} {unit}"
 

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 from pindrive.device.hand import RECORDED, HandPath
 from pindrive.device.recording import read_csv
-from pindrive.files.keys import NUMERIC_KEYS, Tables, number
+from pindrive.files.keys import NUMERIC_KEYS, OVER_TIME, Tables, is_file, number
 from pindrive.motion.release import CONTINUOUS
 from pindrive.quantities.csv_table import CsvTable
 from pindrive.quantities.quantity import Quantity, Rows, counted
@@ -17,18 +17,9 @@ from pindrive.quantities.results import SERIES
 from pindrive.quantities.rows import check_slopes, check_times
 from pindrive.quantities.table import QUANTITIES, default, duration
 
-SUFFIX: Final = ".csv"
-OVER_TIME: Final = ("profile", "steps")
-"""Interpolation of rows over time: linear, or constant until the next row."""
 _TIME: Final = QUANTITIES["profile.time"]
 SPEED: Final = "motion.mouse_velocity"
 """The input that a recording of the hand may give."""
-
-
-def is_file(key: str, value: object) -> bool:
-    """Return True if a value of a device file names a CSV and its key may change over time."""
-    over_time = key in NUMERIC_KEYS and NUMERIC_KEYS[key].rows_of in OVER_TIME
-    return over_time and isinstance(value, str) and value.strip().lower().endswith(SUFFIX)
 
 
 def with_files_read(

@@ -6,7 +6,7 @@ table of quantities.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Mapping
+from collections.abc import Callable, Container, Iterable, Mapping
 from dataclasses import dataclass
 from math import inf
 from typing import Any, Final
@@ -19,12 +19,10 @@ from pindrive.files.keys import (
     DRIVE,
     NUMERIC_KEYS,
     WHOLE,
-    Tables,
-    friction_parts,
+    Value,
     line,
     number,
     usual_rows,
-    written,
 )
 from pindrive.motion.drive import (
     SLOPES,
@@ -40,9 +38,7 @@ from pindrive.motion.drive import (
     check_within_travel,
 )
 from pindrive.motion.friction import (
-    COEFFICIENT_OF,
     COEFFICIENTS,
-    friction_force,
     normal_force,
 )
 from pindrive.motion.profile import Profile
@@ -57,8 +53,6 @@ _GRID: Final = ("columns", "rows", "pitch")
 
 Place = Callable[..., str]
 """Place of keys: the command line if it contains a key, otherwise the file."""
-Value = float | Rows | None
-"""Value of a key, SI; None for a missing key without a default."""
 
 
 class Problems(list[str]):
@@ -82,36 +76,58 @@ class Problems(list[str]):
                 self.append(f"{where}: {said}")
 
 
-def read_values(
-    tables: Mapping[str, Mapping[str, Any]],
+def read_given(
+    tables: Mapping[str, Mapping[str, Any]], place: Place
+) -> tuple[dict[str, float | Rows], dict[str, str]]:
+    """Return the value of each key in the tables, SI, and a line for each that is malformed.
+
+    Args:
+        tables: Tables of a device file, with the rows of the CSV files that it names.
+        place: Place of keys.
+    """
+    given: dict[str, float | Rows] = {}
+    malformed = {}
+    for key in NUMERIC_KEYS:
+        table, _, name = key.partition(".")
+        if name in tables[table]:
+            try:
+                given[key] = read_value(tables[table][name], key, place(key))
+            except ValueError as error:
+                malformed[key] = error.args[0]
+    return given, malformed
+
+
+def complete(
+    given: Mapping[str, Value],
+    malformed: Mapping[str, str],
     names: Container[str],
     place: Place,
     meant: Container[str | None] = (),
 ) -> tuple[dict[str, Value], list[str]]:
-    """The values of every key in the tables called `names`, and a line for each that is wrong.
+    """Return the value of every key of some tables, and a line for each malformed or missing key.
 
     Args:
-        tables: of a device file, as TOML has them.
-        names: the tables that are read.
-        place: where keys were written.
-        meant: known keys that an unknown one in the file seems to stand for: not called missing.
+        given: Values that the file gives, SI.
+        malformed: Line for each malformed value.
+        names: Names of the tables.
+        place: Place of keys.
+        meant: Known keys that an unknown key of the file seems to stand for: not called missing.
     """
     values: dict[str, Value] = {}
     problems = []
     for key, quantity in NUMERIC_KEYS.items():
-        table, _, name = key.partition(".")
-        if table not in names:
+        if key.partition(".")[0] not in names:
             continue
-        if name in tables[table]:
-            try:
-                values[key] = read_value(tables[table][name], key, place(key))
-            except ValueError as error:
-                problems.append(error.args[0])
+        if key in malformed:
+            problems.append(malformed[key])
+        elif key in given:
+            values[key] = given[key]
         elif not quantity.mandatory or any(
-            other.partition(".")[2] in tables[table] for other in quantity.alternative
+            other in given or other in malformed for other in quantity.alternative
         ):
             values[key] = quantity.absent
         elif key not in meant and not any(other in meant for other in quantity.alternative):
+            table = key.partition(".")[0]
             problems.append(f"{place(key)}: {key} is missing; write {line(quantity)} in [{table}]")
     return values, problems
 
@@ -297,17 +313,17 @@ class Whole:
             found |= dict.fromkeys((f"array.{name}" for name in _GRID), None)
         return found
 
-    def problems(self, given: dict[str, Any], place: Place) -> list[str]:
-        """Return all contradictions; `given` is the file's tables."""
+    def problems(self, given: Container[str], place: Place) -> list[str]:
+        """Return all contradictions; `given` holds the keys that the file gives."""
         values, problems = self.values, Problems(place)
         plate_keys = ("plate", "plate.curve", "plate.kinetic")
         problems.check(check_holds, contact_of(values, "plate"), keys=plate_keys)
-        magnet_keys = tuple(f"magnet.{name}" for name in given["magnet"]) or ("magnet",)
-        problems.check(self._check_magnet, set(given["magnet"]), keys=magnet_keys)
+        magnet_keys = tuple(key for key in WHOLE if key.startswith("magnet.") and key in given)
+        problems.check(self._check_magnet, magnet_keys, keys=magnet_keys or ("magnet",))
         band = values["control.threshold"], values["control.hysteresis"]
         problems.check(check_band, *band, keys=("control.hysteresis", "control.threshold"))
         if (places := values["array.places"]) is not None:
-            problems.check(_check_no_grid, given["array"], keys=("array.places",))
+            problems.check(_check_no_grid, given, keys=("array.places",))
             problems.check(check_apart, places, keys=("array.places",))
         slot = values["array.slot_length"], values["array.pin_diameter"]
         problems.check(check_slot, *slot, keys=("array.slot_length", "array.pin_diameter"))
@@ -322,95 +338,15 @@ class Whole:
         problems.check(check_pins, *(values[key] for key in counts), keys=counts)
         return problems
 
-    def _check_magnet(self, given: set[str]) -> None:
+    def _check_magnet(self, keys: Iterable[str]) -> None:
         """Refuse a magnet described by two ways or by half of one, or one that cannot be."""
-        check_one_way(given, "magnet")
+        check_one_way({key.partition(".")[2] for key in keys}, "magnet")
         self.magnet()
 
 
-def _check_no_grid(given: dict[str, Any]) -> None:
+def _check_no_grid(given: Container[str]) -> None:
     """Refuse a grid beside places."""
     for name in _GRID:
-        if name in given:
+        if f"array.{name}" in given:
             required = "left out where columns, rows or pitch are given"
             raise ValueError(refusal("places", required, f"it beside array.{name}"))
-
-
-# ---- ratios --------------------------------------------------------------------------------------
-
-
-def scaled_rows(rows: Rows | None, first: float) -> Rows | None:
-    """Return the points of a curve in proportion, so that the first value is `first`."""
-    if rows is None or rows[0][1] == first or not rows[0][1]:
-        return rows
-    return tuple((place, value / rows[0][1] * first) for place, value in rows)
-
-
-def keep_ratios(tables: dict[str, Any], before: Tables, placed: Container[str]) -> None:
-    """Change what follows the keys that were set, and was not set itself.
-
-    Without a ratio (one of the values is left out, zero or malformed) a value stays as it is.
-
-    Args:
-        tables: of a device file, some of their values set anew; changed.
-        before: the same before.
-        placed: the keys that were set, in full.
-    """
-    moved = {key for key in DRIVE if key in placed}
-    for key, quantity in DRIVE.items():
-        table, _, name = key.partition(".")
-        if name not in tables[table] and moved.intersection(friction_parts(key)):
-            moved.add(key)
-        if key in moved or not moved.intersection(quantity.follows):
-            continue
-        moved.add(key)
-        given = _given(before, key)
-        old, new = (_quotient(each, quantity.follows) for each in (before, tables))
-        if given is None or not old or new is None:
-            continue
-        if isinstance(given, float):
-            tables[table][name] = written(key, given / old * new)
-        elif rows := scaled_rows(given, new):
-            tables[table][name] = written_rows(key, rows)
-
-
-def _quotient(tables: Tables, keys: tuple[str, ...]) -> float | None:
-    """The value of the first key, over that of the second if there is one."""
-    values = [_value(tables, key) for key in keys]
-    if not all(values[1:]) or values[0] is None:
-        return None
-    return values[0] / values[1] if len(values) > 1 and values[1] else values[0]
-
-
-def _value(tables: Tables, key: str) -> float | None:
-    """The value of a key, SI, or of what holds where it is left out; None where there is none."""
-    table, _, name = key.partition(".")
-    found = _given(tables, key)
-    if found is None and name not in tables[table]:
-        if key in COEFFICIENT_OF and COEFFICIENTS["kinetic"] in tables[table]:
-            parts = [_value(tables, part) for part in friction_parts(key)]
-            if None not in parts:
-                return float(friction_force(key, lambda n: _value(tables, QUANTITIES[n].key)))
-        curve = _given(tables, f"{table}.curve") if name == "kinetic" else None
-        if isinstance(curve, tuple):
-            return curve[0][1]
-        follows, static = DRIVE[key].follows, ("static", COEFFICIENTS["static"])
-        return _value(tables, follows[0]) if name in static else DRIVE[key].absent
-    return found if isinstance(found, float) else None
-
-
-def _given(tables: Tables, key: str) -> Value:
-    """Return the value of a key in a file, SI; None for a missing or malformed one."""
-    table, _, name = key.partition(".")
-    if name not in tables[table]:
-        return None
-    try:
-        return read_value(tables[table][name], key, "")
-    except ValueError:  # said where the file is read
-        return None
-
-
-def written_rows(key: str, rows: Rows) -> list[list[Any]]:
-    """The rows of a key in SI as a device file has them, to the last bit."""
-    across = QUANTITIES[COLUMNS[DRIVE[key].rows_of][0]]
-    return [[f"{x!r} {across.unit}", written(key, y)] for x, y in rows]

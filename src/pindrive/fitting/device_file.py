@@ -9,7 +9,6 @@ from typing import Any
 from pindrive.files.device import DeviceFile
 from pindrive.files.device_text import device_text
 from pindrive.files.keys import written
-from pindrive.files.schema import written_rows
 from pindrive.fitting.parameters import SENSOR, key_of
 from pindrive.fitting.results import Estimate, Fit
 from pindrive.motion.profile import Profile
@@ -67,9 +66,7 @@ def _values(device: DeviceFile, found: Fit) -> dict[str, Any]:
         value = value.rows if isinstance(value, Profile) else value
         if value is None or value == before.get(key):
             continue
-        changed[key] = (
-            written_rows(key, value) if isinstance(value, tuple) else written(key, float(value))
-        )
+        changed[key] = written(key, value if isinstance(value, tuple) else float(value))
     return changed
 
 

@@ -17,8 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pindrive.device.page_description import Page
-from pindrive.files.device import ConfigError, DeviceFile, read_tables
+from pindrive.files.device import DeviceFile, read_tables
 from pindrive.files.keys import NAMES, STUDY_KEYS, TABLES, written
+from pindrive.files.overrides import ConfigError
 from pindrive.optimisation.catalogue import Catalogue, read_catalogue
 from pindrive.optimisation.goals import PRICE, SPEED, YIELD, DesignProblem, Goal, Variable
 from pindrive.quantities import budgets

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from pindrive.device.scanning import Progress, scan
 from pindrive.files.device import DeviceFile
 from pindrive.files.keys import variable
-from pindrive.files.schema import scaled_rows
+from pindrive.files.ratios import scaled_rows
 from pindrive.motion.batch import batched
 from pindrive.motion.drive import Contact, Drive
 from pindrive.motion.friction import COEFFICIENT_OF, COEFFICIENTS
@@ -262,7 +262,8 @@ def _motion(given: Mapping[str, Any]) -> Motion:
     for table, stiffness in (("plate", inf), ("finger", given["finger_stiffness"] or inf)):
         own = {n: given[f"{table}_{n}"] for pair in COEFFICIENTS.items() for n in pair}
         for kinetic, curve in (("kinetic", "curve"), ("coefficient", "coefficient_curve")):
-            own[curve] = scaled_rows(own[curve], own[kinetic])
+            if own[curve] is not None:
+                own[curve] = scaled_rows(own[curve], own[kinetic])
         body[table] = Contact(**own, stiffness=stiffness)
     return simulated(
         Drive(**body),

@@ -10,11 +10,9 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, Final
 
-from pindrive.files.device import (
-    ConfigError,
-    read_tables,
-)
+from pindrive.files.device import read_tables
 from pindrive.files.keys import STUDY_KEYS, TABLES
+from pindrive.files.overrides import ConfigError
 from pindrive.quantities.names import Names
 from pindrive.quantities.refusal import quoted
 from pindrive.study.study import Study

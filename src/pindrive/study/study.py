@@ -14,8 +14,9 @@ from typing import Any, Final
 import numpy as np
 
 from pindrive.device.page_description import Page
-from pindrive.files.device import ConfigError, DeviceFile, Setting, device_of
-from pindrive.files.keys import has_part, written
+from pindrive.files.device import DeviceFile
+from pindrive.files.keys import has_part
+from pindrive.files.overrides import ConfigError
 from pindrive.lazy import xr
 from pindrive.quantities import budgets
 from pindrive.quantities.quantity import counted
@@ -255,8 +256,7 @@ class Study:
         Raises:
             ConfigError: The values contradict each other.
         """
-        given = [Setting(key, written(key, value), "") for key, value in at.items()]
-        return device_of(self.device.path, self.device.tables, given, whole=self.page is not None)
+        return self.device.with_values(at, whole=self.page is not None)
 
     def identity(self) -> dict[str, Any]:
         """All that its numbers follow from: two studies with one identity have one answer."""

@@ -10,16 +10,9 @@ from pathlib import Path
 from typing import Any, Final
 
 from pindrive.device.page_description import Page
-from pindrive.files.device import (
-    ConfigError,
-    DeviceFile,
-    Setting,
-    device_of,
-    read_tables,
-    settings_of,
-)
-from pindrive.files.keys import NAMES, TABLES, variable
-from pindrive.files.recording import is_file
+from pindrive.files.device import DeviceFile, device_of, read_tables
+from pindrive.files.keys import NAMES, TABLES, is_file, variable
+from pindrive.files.overrides import ConfigError, Setting, settings_of
 from pindrive.quantities import budgets
 from pindrive.quantities.refusal import quoted, refusal
 from pindrive.study.axes import AxisReader, sweepable, written_axes

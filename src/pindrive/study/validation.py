@@ -10,6 +10,7 @@ import numpy as np
 from pindrive.device.electromagnet import check_one_way
 from pindrive.device.pin_array import check_count
 from pindrive.files.keys import NUMERIC_KEYS
+from pindrive.files.schema import table_of
 from pindrive.motion.coefficients import KINETIC, within
 from pindrive.motion.drive import check_one_kind
 from pindrive.motion.friction import COEFFICIENTS, normal_force
@@ -74,7 +75,7 @@ def _among(device: DeviceFile, axes: Mapping[str, Axis]) -> Iterator[str]:
     for table in ("plate", "finger"):
         names = [name for pair in COEFFICIENTS.items() for name in pair]
         varied = [name for name in names if f"{table}.{name}" in axes]
-        own = [name for name in names if name in device.tables[table]]
+        own = [name for name in names if f"{table}.{name}" in device.given]
         try:
             check_one_kind([*own, *varied], table)
         except ValueError as error:
@@ -102,16 +103,16 @@ def _around(study: Study, axes: Mapping[str, Axis]) -> Iterator[str]:
     magnet = {name for table, _, name in (key.partition(".") for key in axes) if table == "magnet"}
     if magnet:
         try:
-            check_one_way(magnet | study.device.tables["magnet"].keys(), table="magnet")
+            check_one_way(magnet | table_of(study.device.given, "magnet").keys(), table="magnet")
         except ValueError as error:
             yield str(error)
-    if "places" in study.device.tables["array"]:
+    if "array.places" in study.device.given:
         for key in ("array.columns", "array.rows", "array.pitch"):
             if key in axes:
                 yield f"{key} cannot be varied beside array.places"
     if "scan.touch" in axes and study.device.drive.finger.coefficient is None:
         yield "scan.touch cannot be varied where finger.kinetic is a force"
-    if "finger.touch_force" in axes and "touch" in study.device.tables["scan"]:
+    if "finger.touch_force" in axes and "scan.touch" in study.device.given:
         yield "finger.touch_force has no effect beside scan.touch, which gives the touch force"
     for key in COUNTS:
         axis = axes.get(key)
