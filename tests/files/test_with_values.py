@@ -1,4 +1,4 @@
-"""Setting values of a device file in SI is the same as setting them in its text."""
+"""Values of a device file set in SI equal values set in its text."""
 
 from __future__ import annotations
 

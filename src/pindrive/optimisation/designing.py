@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from pindrive.device.scanning import Progress
 from pindrive.files.device import DeviceFile
 from pindrive.lazy import qmc
-from pindrive.optimisation.around import alternatives, at_ends, maps
 from pindrive.optimisation.design_space import (
     DesignSpace,
     first_cases,
@@ -25,7 +24,15 @@ from pindrive.optimisation.effort import Count, Effort, usual_effort
 from pindrive.optimisation.goals import PRICE, DesignProblem, Goal
 from pindrive.optimisation.line_speed import speeds
 from pindrive.optimisation.problem import problem_of, read_problem
-from pindrive.optimisation.results import ConstraintResult, Design, Front, Reached
+from pindrive.optimisation.results import (
+    ConstraintResult,
+    Design,
+    Front,
+    Reached,
+    alternatives,
+    at_ends,
+    maps,
+)
 from pindrive.optimisation.scan_search import search_scans
 from pindrive.optimisation.search import Population, non_dominated, search
 from pindrive.optimisation.tolerance import excess_as_built, reserves, share_of

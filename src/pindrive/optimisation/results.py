@@ -1,13 +1,14 @@
-"""Results of `optimise`: the design, its binding constraints, the front, and maps."""
+"""Results of `optimise`: the design, its binding constraints, the front, and its neighbourhood."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import combinations
 from math import isfinite, nan
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +27,9 @@ from pindrive.quantities.value import concise, equal_by_value
 from pindrive.study.distributions import with_links
 from pindrive.study.evaluate import follow
 from pindrive.study.outputs import NUMBERS, Constraint, Share, attributes
+
+if TYPE_CHECKING:
+    from pindrive.optimisation.design_space import DesignSpace
 
 __all__ = ["Alternative", "ConstraintResult", "Design", "Front", "Map", "Reached"]
 
@@ -325,3 +329,113 @@ def designed_file(found: Design, target: Path) -> str:
     ]
     comments = {key: ["chosen by the design"] for v in found.problem.variables for key in v.axes}
     return device_text(found.device, {}, target, [*head, *found.warnings], comments)
+
+
+# ---- neighbourhood of a design -------------------------------------------------------------------
+
+MAPPED: Final = 3
+"""Variables of which each pair is drawn; of scans two."""
+NEAREST: Final = 5
+"""Parts that are compared with the chosen one."""
+_END: Final = 2e-3
+"""Part of a range that is its end."""
+
+
+def maps(space: DesignSpace, point: Array, resolution: int) -> tuple[Map, ...]:
+    """The first goal, and where all constraints are met, over pairs of variables.
+
+    Args:
+        space: what designs are worth.
+        point: the design, which is one of the places.
+        resolution: places along an axis that is a range; 0: no map.
+    """
+    if not resolution:
+        return ()
+    space = replace(space, coarse=True)
+    found = []
+    count = 2 if space.scans else MAPPED
+    for i, j in combinations(range(min(count, len(point))), 2):
+        one, other = space.variables[i], space.variables[j]
+        x, y = (_parts(v, resolution, float(point[k])) for v, k in ((one, i), (other, j)))
+        across, up = np.meshgrid(x, y)
+        points = np.tile(point, (across.size, 1))
+        points[:, i], points[:, j] = across.ravel(), up.ravel()
+        goals, violation = space(points)
+        first = goals[:, 0].reshape(across.shape)
+        first = np.where(np.isinf(first), np.nan, first)
+        along = tuple(_first(v, parts) for v, parts in ((one, x), (other, y)))
+        here = tuple(float(_first(v, point[[k]])[0]) for v, k in ((one, i), (other, j)))
+        found.append(
+            Map(
+                (one, other),
+                (along[0], along[1]),
+                -first if space.goals[0].maximise else first,
+                (violation <= 0.0).reshape(across.shape),
+                (here[0], here[1]),
+            )
+        )
+    return tuple(found)
+
+
+def _parts(variable: Variable, resolution: int, chosen: float) -> Array:
+    """Return the map's values of a variable; the design replaces the nearest one."""
+    if not variable.choices:
+        parts = np.linspace(0.0, 1.0, resolution)
+        parts[np.abs(parts - chosen).argmin()] = chosen
+        return parts
+    row = variable.index(np.array([chosen]))[0]
+    rows = np.linspace(0, variable.choices - 1, min(variable.choices, resolution)).round()
+    rows[np.abs(rows - row).argmin()] = row
+    return (np.unique(rows) + 0.5) / variable.choices
+
+
+def _first(variable: Variable, parts: Array) -> Array:
+    """The values of its first key."""
+    return next(iter(variable.columns(parts).values()))
+
+
+def alternatives(space: DesignSpace, point: Array) -> tuple[Alternative, ...]:
+    """The design with other parts of its catalogues, the nearest by their values first."""
+    found = []
+    for i, varied in enumerate(space.variables):
+        catalogue = varied.catalogue
+        if catalogue is None:
+            continue
+        chosen = int(varied.index(point[[i]])[0])
+        rows = catalogue.nearest(chosen, NEAREST)
+        if not rows:
+            continue
+        points = np.tile(point, (len(rows), 1))
+        points[:, i] = [varied.part(row) for row in rows]
+        numbers = space.numbers(points)
+        excess = space.excess(numbers).max(axis=2)
+        goals = space.minimised(numbers).max(axis=2)
+        for place, row in enumerate(rows):
+            violations = [
+                (constraint, float(over))
+                for constraint, over in zip(space.constraints, excess[:, place], strict=True)
+                if over > 0.0
+            ]
+            found.append(
+                Alternative(
+                    catalogue.name,
+                    catalogue.parts[row],
+                    {key: values[row] for key, values in catalogue.values.items()},
+                    catalogue.prices[row],
+                    tuple(
+                        float(-value if goal.maximise else value)
+                        for goal, value in zip(space.goals, goals[:, place], strict=True)
+                    ),
+                    tuple(violations),
+                )
+            )
+    return tuple(found)
+
+
+def at_ends(space: DesignSpace, point: Array) -> tuple[tuple[str, str], ...]:
+    """The variables that a design has at an end of their range, and which end."""
+    return tuple(
+        (variable.name, "lower" if part < 0.5 else "upper")
+        for variable, part in zip(space.variables, point, strict=True)
+        if not variable.choices and not _END < part < 1.0 - _END
+    )
