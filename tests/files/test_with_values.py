@@ -8,6 +8,7 @@ import pytest
 
 from pindrive.files.device import DeviceFile, device_of, load_device
 from pindrive.files.overrides import ConfigError
+from pindrive.quantities.quantity import Rows
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 MOUSE, READER = EXAMPLES / "tactile-mouse.toml", EXAMPLES / "tactile-reader.toml"
@@ -19,19 +20,24 @@ def same(one: DeviceFile, other: DeviceFile) -> bool:
     return all(getattr(one, name) == getattr(other, name) for name in names)
 
 
-ANY = [
+Values = dict[str, float | Rows]
+ANY: list[Values] = [
     {"drive.mass": 0.012},
     {"drive.damping": 0.2},
     {"drive.damping_ratio": 0.01},
     {"motion.mouse_velocity": ((0.0, 0.06), (0.04, 0.0))},
 ]
-OF_FORCES = [
+OF_FORCES: list[Values] = [
     {"plate.kinetic": 0.03},
     {"plate.kinetic": 0.03, "plate.static": 0.05},
     {"finger.kinetic": 0.011, "finger.stiffness": 150.0},
     {"finger.kinetic": 0.011, "finger.curve": ((0.0, 0.011), (0.1, 0.013))},
 ]
-OF_COEFFICIENTS = [{"plate.coefficient": 0.25}, {"finger.touch_force": 0.02}, {"scan.touch": 0.03}]
+OF_COEFFICIENTS: list[Values] = [
+    {"plate.coefficient": 0.25},
+    {"finger.touch_force": 0.02},
+    {"scan.touch": 0.03},
+]
 
 
 @pytest.mark.parametrize(
@@ -42,7 +48,7 @@ OF_COEFFICIENTS = [{"plate.coefficient": 0.25}, {"finger.touch_force": 0.02}, {"
     ],
     ids=lambda given: given.stem if isinstance(given, Path) else "-".join(given),
 )
-def test_values_in_si_equal_values_in_the_text(path: Path, values: dict[str, object]) -> None:
+def test_values_in_si_equal_values_in_the_text(path: Path, values: Values) -> None:
     scalar = {key: value for key, value in values.items() if isinstance(value, float)}
     device = load_device(path)
     found = device.with_values(values)
@@ -68,3 +74,15 @@ def test_a_drive_gets_the_usual_device_around_it() -> None:
     assert load_device(MOUSE).whole is None
     found = load_device(MOUSE).with_values({"drive.mass": 0.012}, whole=True)
     assert found.whole == load_device(MOUSE, {"mass": "12 g"}, whole=True).whole
+
+
+@pytest.mark.parametrize(
+    "path", [MOUSE, READER, EXAMPLES / "stribeck-skin.toml"], ids=lambda p: p.stem
+)
+def test_a_drive_and_a_release_make_the_device_of_their_file(path: Path) -> None:
+    device = load_device(path)
+    found = DeviceFile.of(device.drive, device.release)
+    assert (found.drive, found.release) == (device.drive, device.release)
+    assert found.with_values({"drive.mass": 0.02}).drive.mass == 0.02
+    ratio = found.drive.damping_ratio
+    assert found.with_values({"drive.damping_ratio": ratio}).drive.damping == found.drive.damping

@@ -75,7 +75,7 @@ def test_the_device_may_stand_in_the_study(tmp_path: Path) -> None:
     inline = study(tmp_path, text, INLINE)
     beside = study(tmp_path, text)
     assert inline.identity() == beside.identity()
-    assert "damping" in inline.text and "---- " in beside.text
+    assert "damping" in inline.source.text and "---- " in beside.source.text
 
 
 def test_ends_of_even_steps_are_met_exactly() -> None:

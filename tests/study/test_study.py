@@ -205,9 +205,19 @@ def test_refusals(mouse: DeviceFile, arguments: dict[str, Any], message: str) ->
     assert "\n" not in str(refused.value)
 
 
+def test_a_study_of_a_drive_and_its_release_equals_that_of_their_file(mouse: DeviceFile) -> None:
+    axes = {"plate.kinetic": [0.02, 0.03], "mouse_velocity": [0.05, 0.1]}
+    of_objects = pd.Study(mouse.drive, axes, release=mouse.release).run()
+    of_file = pd.Study(mouse, axes).run()
+    xr.testing.assert_equal(of_objects.drop_vars("damping"), of_file.drop_vars("damping_ratio"))
+
+
 def test_a_device_that_is_none_is_refused(mouse: DeviceFile) -> None:
-    with pytest.raises(ValueError, match="device must be what load_device reads, got"):
-        pd.Study(mouse.drive, {"mass": [0.01]})  # type: ignore[arg-type]
+    required = "device must be what load_device reads, or a Drive with its release"
+    with pytest.raises(ValueError, match=required):
+        pd.Study(mouse.drive, {"mass": [0.01]})
+    with pytest.raises(ValueError, match=required):
+        pd.Study(mouse, {"mass": [0.01]}, release=mouse.release)
     with pytest.raises(ValueError, match="device must be a Device, or what load_device reads"):
         pd.scan(mouse.drive, "A")  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="has no axes"):

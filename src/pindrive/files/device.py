@@ -50,7 +50,7 @@ from pindrive.motion.drive import Drive
 from pindrive.motion.friction import COEFFICIENTS
 from pindrive.motion.profile import Profile
 from pindrive.motion.release import Release
-from pindrive.quantities.quantity import Quantity, Rows, counted
+from pindrive.quantities.quantity import Rows, counted
 from pindrive.quantities.refusal import quoted, refusal
 from pindrive.quantities.table import warn_of
 from pindrive.quantities.value import equal_by_value
@@ -89,17 +89,7 @@ class DeviceFile:
     @property
     def derived(self) -> tuple[str, ...]:
         """Keys whose values follow from other keys of the file."""
-        drive = self.drive
-        contacts = {"plate": drive.plate, "finger": drive.finger}
-        return (
-            "drive.damping" if self.by_ratio else "drive.damping_ratio",
-            *(
-                f"{table}.{name}"
-                for table, contact in contacts.items()
-                if contact.coefficient is not None
-                for name in COEFFICIENTS
-            ),
-        )
+        return _derived(self.drive, by_ratio=self.by_ratio)
 
     @property
     def followed(self) -> tuple[str, ...]:
@@ -197,6 +187,24 @@ class DeviceFile:
         assert whole
         return whole
 
+    @classmethod
+    def of(cls, drive: Drive, release: Release, *, name: str = "") -> DeviceFile:
+        """Return the device of a drive and its release, as a file would describe it.
+
+        Args:
+            drive: Drive.
+            release: Start and inputs of its motion.
+            name: Name for titles.
+        """
+        derived = _derived(drive, by_ratio=False)
+        values = _values_of(drive, release).items()
+        given = {key: v for key, v in values if v is not None and key not in derived}
+        tables: dict[str, dict[str, Any]] = {table: {} for table in TABLES}
+        for key, value in given.items():
+            table, _, own = key.partition(".")
+            tables[table][own] = written(key, value)
+        return _assembled(_Source(Path("<drive>"), name, ""), given, tables, whole=False)
+
     def values(self) -> dict[str, float | Rows | None]:
         """The value of every key that holds a quantity, in SI; None where it was left out.
 
@@ -206,21 +214,36 @@ class DeviceFile:
 
     def values_of_drive(self) -> dict[str, float | Rows | None]:
         """Return the values of the drive and its motion alone."""
-        drive = self.drive
-        contacts = {"plate": drive.plate, "finger": drive.finger}
         own = {"motion.duration": self.duration, "motion.settling_band": self.settling_band}
+        return _values_of(self.drive, self.release) | own
 
-        def value(key: str, quantity: Quantity) -> Any:
-            table, _, name = key.partition(".")
-            if quantity.name == key:
-                return getattr(contacts[table], name)
-            return getattr(self.release if table == "motion" else drive, name)
 
-        values = {key: own[key] if key in own else value(key, q) for key, q in DRIVE.items()}
-        return {
-            key: value.rows if isinstance(value, Profile) else None if value == inf else value
-            for key, value in values.items()
-        }
+def _derived(drive: Drive, *, by_ratio: bool) -> tuple[str, ...]:
+    """Return the keys of a drive whose values follow from others."""
+    contacts = {"plate": drive.plate, "finger": drive.finger}
+    return (
+        "drive.damping" if by_ratio else "drive.damping_ratio",
+        *(
+            f"{table}.{name}"
+            for table, contact in contacts.items()
+            if contact.coefficient is not None
+            for name in COEFFICIENTS
+        ),
+    )
+
+
+def _values_of(drive: Drive, release: Release) -> dict[str, float | Rows | None]:
+    """Return the value of every key of a drive and its release, SI; None for no value."""
+    contacts = {"plate": drive.plate, "finger": drive.finger}
+    found: dict[str, float | Rows | None] = {}
+    for key, quantity in DRIVE.items():
+        table, _, name = key.partition(".")
+        if name in ("duration", "settling_band"):
+            continue
+        of = release if table == "motion" else contacts[table] if quantity.name == key else drive
+        value = getattr(of, name)
+        found[key] = value.rows if isinstance(value, Profile) else None if value == inf else value
+    return found
 
 
 def load_device(

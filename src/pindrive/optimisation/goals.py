@@ -115,7 +115,6 @@ class DesignProblem:
             None: none is required.
         goals: one to three, the first the most important.
         catalogues: whose parts are chosen.
-        si: whether bare numbers in `tables` are SI, as from Python.
     """
 
     study: Study
@@ -126,7 +125,6 @@ class DesignProblem:
     least_yield: float | None
     goals: tuple[Goal, ...]
     catalogues: tuple[Catalogue, ...]
-    si: bool
 
     @property
     def inputs(self) -> tuple[Path, ...]:

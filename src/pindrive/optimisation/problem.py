@@ -25,7 +25,7 @@ from pindrive.optimisation.goals import PRICE, SPEED, YIELD, DesignProblem, Goal
 from pindrive.quantities import budgets
 from pindrive.quantities.names import Names, label
 from pindrive.quantities.refusal import quoted, refusal
-from pindrive.study.axes import as_read, written_axes
+from pindrive.study.axes import Source, as_read, written_axes
 from pindrive.study.design import COUNTS, Dimension, read_page
 from pindrive.study.distributions import Distribution
 from pindrive.study.outputs import (
@@ -75,7 +75,7 @@ def read_problem(
         raise ConfigError([f"{file}: {what}; {_TEMPLATE}"])
     problems = [*_unknown(tables, file)]
     own, text = device_in(tables, file, overrides, problems)
-    return _problem(tables, device or own, file, str(file), text, problems, si=False)
+    return _problem(tables, device or own, Source(file, str(file), text), problems)
 
 
 def problem_of(device: DeviceFile, tables: Mapping[str, Any]) -> DesignProblem:
@@ -104,7 +104,7 @@ def problem_of(device: DeviceFile, tables: Mapping[str, Any]) -> DesignProblem:
     if isinstance(given.get("page"), Page):
         given["page"].check("page.{}")
     text = json.dumps(given, indent=1, ensure_ascii=False, default=repr)
-    return _problem(given, device, device.path, "problem", text, problems, si=True)
+    return _problem(given, device, Source(device.path, "problem", text, si=True), problems)
 
 
 def _unknown(tables: Mapping[str, Any], file: Path) -> Iterable[str]:
@@ -122,20 +122,16 @@ def _unknown(tables: Mapping[str, Any], file: Path) -> Iterable[str]:
 def _problem(
     tables: Mapping[str, Any],
     device: DeviceFile,
-    path: Path,
-    place: str,
-    text: str,
+    source: Source,
     problems: list[str],
-    *,
-    si: bool,
 ) -> DesignProblem:
-    scans = "page" in tables
+    scans, place = "page" in tables, source.place
     for name in (*_BESIDE, "axes", "tolerances", "specification"):
         if not isinstance(tables.get(name, {}), Mapping):
             problems.append(refusal(name, f"a table, [{name}]", quoted(tables[name]), place))
     if problems:
         raise ConfigError(problems)
-    catalogues = _catalogues(tables.get("catalogues", {}), path, place, scans, problems)
+    catalogues = _catalogues(tables.get("catalogues", {}), source.path, place, scans, problems)
     chosen = {key: c.name for c in catalogues for key in c.values}
     conditions = _keys(tables.get("conditions", {}))
     for name in ("axes", "conditions", "tolerances"):
@@ -165,9 +161,7 @@ def _problem(
     varied = rest | {"axes": axes, "zip": [*tables.get("zip", []), *groups]}
     chunk = (budgets.CHUNK_OF_SCANS if scans else budgets.CHUNK).most
     varied |= {"sample": {"count": 1}, "chunk": chunk}  # no points are computed of it
-    study = Study.of_tables(
-        varied, device, path=path, place=place, text=text, problems=problems, si=si
-    )
+    study = Study.of_tables(varied, device, source, problems)
     problems += _contradictions(study, required, goals, catalogues, place)
     problems += _no_ranges(study, conditions, place)
     if problems:
@@ -182,7 +176,6 @@ def _problem(
         least_yield=least,
         goals=goals,
         catalogues=catalogues,
-        si=si,
     )
 
 

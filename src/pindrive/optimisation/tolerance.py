@@ -48,8 +48,7 @@ def excess_as_built(
     tables = {"tolerances": problem.tables["tolerances"]}
     if problem.study.page:
         tables["page"] = problem.study.page.page
-    file = problem.study.path
-    study = Study.of_tables(tables, device, path=file, place=str(file), text="", si=problem.si)
+    study = Study.of_tables(tables, device, problem.study.source)
     keys = [*study.tolerances]
     varied = {*keys, *(key for condition in space.conditions for key in condition.axes)}
     parts = Sample(tuple(keys), draws, seed).parts(np.arange(draws)).T

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import inf
 from numbers import Integral, Real
+from pathlib import Path
 from typing import Any, Final, cast
 
 from pindrive.files.keys import DRIVE, NAMES, NUMERIC_KEYS, TABLES, has_part, number
@@ -14,6 +15,25 @@ from pindrive.quantities.quantity import Quantity
 from pindrive.quantities.refusal import quoted, refusal
 from pindrive.quantities.units import UnitError, to_si
 from pindrive.study.distributions import KINDS, Axis, Distribution, Even, Kind, Linked, Listed
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """Place where a study or a design problem is written.
+
+    Attributes:
+        path: File that a computation must not overwrite; paths in tables are relative to its
+            folder.
+        place: Name of the tables in messages.
+        text: Text that is stored with the numbers.
+        si: True if bare numbers are SI, as from Python.
+    """
+
+    path: Path
+    place: str
+    text: str = ""
+    si: bool = False
+
 
 _WAYS: Final = ("lin", "log", "list", *KINDS, "times")
 _BESIDE: Final = {"lin": ("count",), "log": ("count",), "list": (), "times": ("of",)}
@@ -48,17 +68,14 @@ def sweepable(given: str, place: str, scans: bool) -> str:
 
 
 class AxisReader:
-    """Reads what is written for one key; says mistakes with the file and the key.
-
-    With `si`, of what Python gave, bare numbers are SI.
-    """
+    """Reads what is written for one key; says mistakes with the place and the key."""
 
     def __init__(
-        self, file: str, table: str, key: str, base: float | None, *, scans: bool, si: bool
+        self, source: Source, table: str, key: str, base: float | None, *, scans: bool
     ) -> None:
-        self._file, self._label, self._key = file, f"{table}.{key}", key
+        self._file, self._label, self._key = source.place, f"{table}.{key}", key
         self._quantity: Quantity = NUMERIC_KEYS[key]
-        self._base, self._scans, self._si = base, scans, si
+        self._base, self._scans, self._si = base, scans, source.si
         self._tolerance = table == "tolerances"
 
     def read(self, spec: object) -> Axis:

@@ -15,6 +15,7 @@ from pindrive.files.keys import STUDY_KEYS, TABLES
 from pindrive.files.overrides import ConfigError
 from pindrive.quantities.names import Names
 from pindrive.quantities.refusal import quoted
+from pindrive.study.axes import Source
 from pindrive.study.study import Study
 from pindrive.study.tables import device_in
 
@@ -52,7 +53,7 @@ def load_study(path: str | PathLike[str], overrides: Iterable[str] = ()) -> Stud
         )
     problems = _unknown(tables, file)
     device, text = device_in(tables, file, overrides, problems)
-    return Study.of_tables(tables, device, path=file, place=str(file), text=text, problems=problems)
+    return Study.of_tables(tables, device, Source(file, str(file), text), problems)
 
 
 def _unknown(tables: Mapping[str, Any], file: Path) -> list[str]:

@@ -152,7 +152,7 @@ def lay_out(path: Path, study: Study) -> None:
                 "Conventions": "CF-1.11",
                 "title": study.name or "A study of a pin drive",
                 "source": f"pindrive {__version__}",
-                "study": study.text,
+                "study": study.source.text,
                 **({"page": study.page.page.words} if study.page else {}),
                 **({"links": links} if links else {}),
                 "specification": outputs.as_attribute(study.constraints),

@@ -9,7 +9,7 @@ from math import prod
 from os import PathLike
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 
@@ -18,17 +18,16 @@ from pindrive.files.device import DeviceFile
 from pindrive.files.keys import has_part
 from pindrive.files.overrides import ConfigError
 from pindrive.lazy import xr
+from pindrive.motion.drive import Drive
+from pindrive.motion.release import Release
 from pindrive.quantities import budgets
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.value import equal_by_value
-from pindrive.study.axes import as_read
+from pindrive.study.axes import Source, as_read
 from pindrive.study.design import CHUNK, SCANS, Columns, Dimension, StudyPage
 from pindrive.study.distributions import Axis, Distribution, Linked, with_links
 from pindrive.study.outputs import Constraint
-
-_PLACE: Final = "Study"
-"""Place of Python values in messages."""
 
 
 @equal_by_value
@@ -39,7 +38,7 @@ class Study:
     The points are the product of the dimensions; the last dimension changes fastest.
 
     Args:
-        device: as `load_device` reads it.
+        device: What `load_device` reads, or a `Drive`.
         axes: what varies, by key: "plate.kinetic", "plate_kinetic" as in Python, or the part after
             the dot where no other key has it ("latency"). A value is a sequence of values, or a
             mapping with one way to choose them: `lin` or `log` with two ends and `count`; `uniform`
@@ -47,6 +46,7 @@ class Study:
             and factor; `times` and `of`, a multiple of another key. A number is SI, text has a
             unit.
         outputs: the numbers to keep, as "settling_time"; the usual ones unless given.
+        release: Start and inputs of the motion of a `Drive`; a device file has its own.
         page: what is scanned at every point, a `Page` or text; None: every point is a release.
         sample: how sampled axes are drawn: `count`, `method` ("random" or "sobol"), `seed`.
         tolerances: as `axes`, each a distribution, or text: "20 %" about the device's own value.
@@ -72,12 +72,13 @@ class Study:
         >>> data = study.run()
         >>> data.transient_settling_time.dims
         ('mouse_velocity', 'plate_kinetic')
+        >>> pd.Study(device.drive, {"mass": ["8 g", "12 g"]}, release=device.release).shape
+        (2,)
     """
 
-    path: Path
+    source: Source
+    """Place of its tables: the study file, and the device file where it names one."""
     name: str
-    text: str
-    """The study file, and the device file where it names one."""
     device: DeviceFile
     dimensions: tuple[Dimension, ...]
     links: Mapping[str, Linked]
@@ -92,10 +93,11 @@ class Study:
 
     def __init__(
         self,
-        device: DeviceFile,
+        device: DeviceFile | Drive,
         axes: Mapping[str, Any] | None = None,
         outputs: Iterable[str] | None = None,
         *,
+        release: Release | None = None,
         page: Page | str | None = None,
         sample: Mapping[str, Any] | None = None,
         tolerances: Mapping[str, Any] | None = None,
@@ -105,8 +107,11 @@ class Study:
     ) -> None:
         from pindrive.study.tables import parts_of
 
-        if not isinstance(device, DeviceFile):
-            raise ValueError(refusal("device", "what load_device reads", repr(device)))
+        if isinstance(device, Drive) and isinstance(release, Release):
+            device = DeviceFile.of(device, release)
+        elif not isinstance(device, DeviceFile) or release is not None:
+            required = "what load_device reads, or a Drive with its release"
+            raise ValueError(refusal("device", required, f"{device!r}, release={release!r}"))
         tables: dict[str, Any] = {
             "name": name or None,
             "axes": as_read(axes, "axes"),
@@ -123,22 +128,16 @@ class Study:
             tables["page"] = whole
         text = json.dumps(tables, indent=1, ensure_ascii=False, default=repr)
         problems: list[str] = []
-        parts = parts_of(
-            tables, device, path=device.path, place=_PLACE, text=text, problems=problems, si=True
-        )
-        self._set(parts, _PLACE, problems)
+        source = Source(device.path, "Study", text, si=True)
+        self._set(parts_of(tables, device, source, problems), problems)
 
     @classmethod
     def of_tables(
         cls,
         tables: Mapping[str, Any],
         device: DeviceFile,
-        *,
-        path: Path,
-        place: str,
-        text: str,
+        source: Source,
         problems: Iterable[str] = (),
-        si: bool = False,
     ) -> Study:
         """Read a study from the tables of a study file.
 
@@ -146,11 +145,8 @@ class Study:
             tables: Tables of the file; `page` is a `Page`, or None for a rejected page, and
                 `conditions` are further axes, of a design problem (see `pindrive.optimisation`).
             device: Device with the keys to vary.
-            path: File that a sweep must not overwrite.
-            place: Place of the tables for messages.
-            text: Text of the tables, stored with the numbers.
+            source: Place of the tables.
             problems: Errors found before.
-            si: True if bare numbers are SI, as from Python.
 
         Raises:
             ConfigError: An entry is unknown, malformed, out of bounds or contradictory.
@@ -158,18 +154,17 @@ class Study:
         from pindrive.study.tables import parts_of
 
         study, found = cls.__new__(cls), [*problems]
-        parts = parts_of(tables, device, path=path, place=place, text=text, problems=found, si=si)
-        study._set(parts, place, found)
+        study._set(parts_of(tables, device, source, found), found)
         return study
 
-    def _set(self, parts: Mapping[str, Any], place: str, problems: list[str]) -> None:
+    def _set(self, parts: Mapping[str, Any], problems: list[str]) -> None:
         """Set all attributes; raise the errors found before and the contradictions."""
         from pindrive.study.validation import conflicts
 
         for name, value in parts.items():
             object.__setattr__(self, name, value)
         problems += self._too_much()
-        problems += conflicts(self, place)
+        problems += conflicts(self)
         if problems:
             raise ConfigError(list(dict.fromkeys(problems)))
 
@@ -184,6 +179,11 @@ class Study:
                 budget.check(count, words, where=str(self.path))
             except ValueError as error:
                 yield str(error)
+
+    @property
+    def path(self) -> Path:
+        """The file that it was read from; of a study from Python that of its device."""
+        return self.source.path
 
     @property
     def inputs(self) -> tuple[Path, ...]:
@@ -320,7 +320,7 @@ class Study:
         from pindrive.study.runner import on_cluster, on_threads, sweep
 
         if not self.dimensions:
-            raise ValueError(f"{_PLACE}: has no axes; say what to vary in axes")
+            raise ValueError(f"{self.source.place}: has no axes; say what to vary in axes")
         if threads is not None and cluster is not None:
             raise ValueError("give threads or cluster, not both: workers have their own")
         work = on_threads(threads) if cluster is None else on_cluster(cluster)

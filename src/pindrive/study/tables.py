@@ -15,7 +15,7 @@ from pindrive.files.keys import NAMES, TABLES, is_file, variable
 from pindrive.files.overrides import ConfigError, Setting, settings_of
 from pindrive.quantities import budgets
 from pindrive.quantities.refusal import quoted, refusal
-from pindrive.study.axes import AxisReader, sweepable, written_axes
+from pindrive.study.axes import AxisReader, Source, sweepable, written_axes
 from pindrive.study.design import CHUNK, SCANS, Dimension, StudyPage, read_page
 from pindrive.study.distributions import (
     MOST_SOBOL,
@@ -42,12 +42,8 @@ _SAMPLE: Final = ("method", "count", "seed")
 def parts_of(
     tables: Mapping[str, Any],
     device: DeviceFile,
-    *,
-    path: Path,
-    place: str,
-    text: str,
+    source: Source,
     problems: list[str],
-    si: bool,
 ) -> dict[str, Any]:
     """Return the attributes of a study from its tables; errors are appended to `problems`.
 
@@ -55,14 +51,13 @@ def parts_of(
     """
     page = None
     if isinstance(tables.get("page"), Page):
-        page = _gathered(tables["page"], place, problems)
-        device = device if device.whole else device.with_whole()
-    reader = _Reader(place, tables, device, problems, si)
-    required = constraints(reader.table("specification"), place, problems, reader.among)
+        page = _gathered(tables["page"], source.place, problems)
+        device = device.with_whole()
+    reader = _Reader(source, tables, device, problems)
+    required = constraints(reader.table("specification"), source.place, problems, reader.among)
     return {
-        "path": path,
+        "source": source,
         "name": reader.text("name") or device.name,
-        "text": text,
         "device": device,
         "dimensions": reader.dimensions,
         "links": reader.links,
@@ -165,14 +160,13 @@ class _Reader:
 
     def __init__(
         self,
-        file: str,
+        source: Source,
         tables: Mapping[str, Any],
         device: DeviceFile,
         problems: list[str],
-        si: bool,
     ) -> None:
-        self._file, self._tables, self._device = file, tables, device
-        self._problems, self._scans, self._si = problems, "page" in tables, si
+        self._source, self._file, self._tables = source, source.place, tables
+        self._device, self._problems, self._scans = device, problems, "page" in tables
         self.among = SCAN_OUTPUTS if self._scans else OUTPUTS
         axes = self._axes("axes") | self._axes("conditions")
         self.links = self._links(axes)
@@ -255,9 +249,8 @@ class _Reader:
                 names[key] = given
                 base = base_value(self._device, key)
                 number = base if isinstance(base, float) else None
-                found[key] = AxisReader(
-                    self._file, table, key, number, scans=self._scans, si=self._si
-                ).read(spec)
+                reader = AxisReader(self._source, table, key, number, scans=self._scans)
+                found[key] = reader.read(spec)
             except ValueError as error:
                 self._problems.append(str(error))
         return found

@@ -35,9 +35,9 @@ _MOST_COMPARED = 1 << 20
 """Points of one dimension that are compared one by one."""
 
 
-def conflicts(study: Study, file: str) -> list[str]:
+def conflicts(study: Study) -> list[str]:
     """A line for each contradiction among the axes, and between them and the device."""
-    problems = []
+    problems, file = [], study.source.place
     tolerances: dict[str, Axis] = {**study.tolerances, **study.tolerance_links}
     for table, axes in (("axes", study.axes), ("tolerances", tolerances)):
         if keys := circle({k: axis for k, axis in axes.items() if isinstance(axis, Linked)}):
