@@ -136,10 +136,49 @@ void judge(const pd::Motion<double>& motion, double until, const std::string& na
   }
 }
 
+/// A pin that comes to rest tangentially reaches zero velocity at the end of a segment only to
+/// rounding: its velocity crosses zero as often as its position turns.
+void coming_to_rest(std::vector<pd::Segment<double>>& segments) {
+  for (const int number : {656, 694, 976, 1053, 2279, 2305, 2473, 2747, 2769, 2785}) {
+    const fuzz::Case c = fuzz::Draw(1, number, fuzz::Family::aligned).next();
+    const fuzz::Given given(c);
+    const auto outcome = fuzz::run(given, segments);
+    const pd::Motion<double> motion(given.drive, given.inputs, segments.data(), segments.size(),
+                                    outcome);
+    int visits = 0, zeros = 0;
+    pd::extrema(motion, pd::Quantity::position, c.duration, [&](double, double) { ++visits; });
+    pd::crossings(motion, pd::Quantity::velocity, 0.0, c.duration, [&](double, int) { ++zeros; });
+    expect(zeros == visits - 2, "case " + std::to_string(number) + ": zeros of the velocity");
+  }
+}
+
+/// At a kink of the external force the acceleration is continuous: no extremum but for a turn.
+void kinks() {
+  for (int i = 0; i < 20; ++i) {
+    const double times[] = {0, 0.003, 0.007, 0.013, 0.021};
+    const double forces[] = {0, 0.0004 * i, -0.001 * i, 0.0003 * i, 0};
+    const pd::Drive<double> drive{0.01, 100.0, 0.02 * i, {0.02, 0.02}, {0.005, 0.005}};
+    pd::Inputs<double> inputs{0.1, 1.5e-3, 0.1};
+    inputs.force = pd::Profile<double>(times, forces, 5);
+    std::vector<pd::Segment<double>> segments;
+    const auto outcome =
+        pd::simulate(drive, inputs, [&](const auto& segment) { segments.push_back(segment); });
+    const pd::Motion<double> motion(drive, inputs, segments.data(), segments.size(), outcome);
+    double last = -1;
+    pd::extrema(motion, pd::Quantity::acceleration, 0.05, [&](double time, double) {
+      const bool kink = std::find(times, times + 5, time) != times + 5;
+      expect(!kink || time != last, "drive " + std::to_string(i) + ": a kink is no jump");
+      last = time;
+    });
+  }
+}
+
 }  // namespace
 
 int main() {
   std::vector<pd::Segment<double>> segments;
+  coming_to_rest(segments);
+  kinks();
   int judged = 0, cycles = 0;
   for (int number = 0; number < cases(4000); ++number) {
     const fuzz::Case c = fuzz::Draw(5, number).next();

@@ -37,12 +37,13 @@ void endings() {
          "... or grazes the velocity of the plate that it left along with it");
 }
 
-/// Releases from the plate every 0.5 s, at x = 1 + offset·q^n mm.
-int rounds_until_cycle(double offset, double q) {
+/// Releases from the plate every 0.5 s, at x = 1 + offset·q^n mm; from a round on at 1 mm.
+int rounds_until_cycle(double offset, double q, int steady_from = 3000) {
   const pd::Drive<double> drive{0.01, 100, 0, {0.1, 0.2}, {}};
   pd::detail::CycleDetector<double> cycles(drive);
   pd::Outcome<double> outcome;
-  for (int i = 0; i < 500; ++i, offset *= q) {
+  for (int i = 0; i < 3000; ++i, offset *= q) {
+    if (i == steady_from) offset = 0;
     pd::Segment<double> carried{};
     carried.begin = 0.5 * i;
     carried.end = 0.5 * i + 0.2;
@@ -66,6 +67,8 @@ void cycles() {
          "a cycle is closed when the next return is within 1e-10");
   expect(rounds_until_cycle(1e-2, 0.95) == 316, "... and all further returns are within 1e-9");
   expect(rounds_until_cycle(1e-9, 1.5) == -1, "states that part close none");
+  const int found = rounds_until_cycle(1e-2, -1.001, 1500);
+  expect(found > 1500 && found <= 1500 + 33, "a short period that begins late is found soon");
 }
 
 }  // namespace

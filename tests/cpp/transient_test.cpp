@@ -1,6 +1,10 @@
 // The numbers of a free decay, against its closed form: (13) to (19) of the paper, corrected.
 #include "pindrive/motion/transient.hpp"
 
+#include <vector>
+
+#include "../fuzz/draw.hpp"
+#include "../fuzz/judge.hpp"
 #include "check.hpp"
 #include "pindrive/motion/duration.hpp"
 
@@ -48,5 +52,19 @@ int main() {
   const double duration = pd::duration_of(motion, 0.05);
   expect(duration >= t.settling_time && std::abs(x(duration)) < 1e-3 * 1.5e-3,
          "without a duration it is followed until a thousandth is left");
+
+  // A pin that turns where a segment ends turns once: peak and trough are two instants.
+  std::vector<pd::Segment<double>> segments;
+  bool apart = true;
+  for (const int number : {336, 694, 1761, 2279, 2305}) {
+    const fuzz::Case c = fuzz::Draw(1, number, fuzz::Family::aligned).next();
+    const fuzz::Given given(c);
+    const auto ended = fuzz::run(given, segments);
+    const pd::Motion<double> drawn(given.drive, given.inputs, segments.data(), segments.size(),
+                                   ended);
+    const auto numbers = pd::Measurement<double>(drawn, c.duration).transient(0.02);
+    apart = apart && numbers.peak_time != numbers.trough_time;
+  }
+  expect(apart, "the trough is not the peak of a pin that turns at an event");
   return check::status();
 }

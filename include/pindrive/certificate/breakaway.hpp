@@ -49,8 +49,8 @@ T spare_stick_limit(const Drive<T>& drive, const Mode& mode, const Beginning<T>&
   return std::max(spare, T(0));
 }
 
-/// Checks the segments of a motion in order. Segments too short for any change count as one instant
-/// with the next segment, except for sticking within the limit.
+/// Checks the segments of a motion in order. Segments of zero length count as one instant with the
+/// next segment, except for sticking within the limit.
 template <class T>
 class Breakaways {
  public:
@@ -85,17 +85,8 @@ class Breakaways {
 
   template <class Trajectory>
   static bool is_brief(const EvaluatedSegment<T, Trajectory>& segment, const PinState<T>& s) {
-    const Scales<T>& scales = segment.scales;
-    const Drive<T>& drive = segment.drive;
-    const T rate = sqrt((drive.stiffness + drive.finger.stiffness) / drive.mass);
-    // A plate's direction may turn in no more time than that.
-    const auto turned = [&] {
-      return abs(segment.at(segment.span).plate_force - s.plate_force) >
-             T(brief_turn) * scales.force;
-    };
-    return segment.segment.end - segment.segment.begin <= T(brief_segment) / rate &&
-           !(within_limit(segment, s) > end_error<T> * scales.force) &&
-           !(segment.oblique() && turned());
+    return !(segment.segment.end > segment.segment.begin) &&
+           !(within_limit(segment, s) > end_error<T> * segment.scales.force);
   }
 
   /// Margin of the stick force to its limit, N; 0 without stick.
@@ -120,7 +111,8 @@ class Breakaways {
                     bool finger) {
     const Drive<T>& drive = segment.drive;
     const Line<T>& plate_velocity = segment.plate_velocity;
-    const T still = T(still_velocity) * segment.scales.v;
+    // A given velocity is exact: next to that of the plate, the pin slides.
+    const T still = segment.segment.begin > 0 ? T(still_velocity) * segment.scales.v : T(0);
     const bool with_plate = abs(s.v - plate_velocity.value) <= still;
     // Where both sliding velocities are zero, a plate's direction is that in which the pin sets out, or stays.
     const T drags = plate_velocity.rate, turns = hypot(drags, segment.across.rate);

@@ -28,6 +28,7 @@ template <class T>
 inline constexpr T difference_error = 4 * rounding<T>;
 
 /// Relative error of a force at the end of a segment: it is a sum whose terms are closed forms.
+/// Without it: crossings_test fails.
 template <class T>
 inline constexpr T end_error = 8 * rounding<T>;
 
@@ -64,8 +65,10 @@ inline constexpr T jump_error = 64 * rounding<T>;
 inline constexpr int standstill_limit = 100;
 
 /// Index of the first event whose state is kept for comparison: most motions come to rest after few.
+/// Without it: recurrence_test fails.
 inline constexpr long long first_kept_event = 3;
 /// Events after which the recent kept state is renewed, so that a short period is found soon.
+/// Without it: recurrence_test fails.
 inline constexpr long long short_memory = 32;
 
 /// Distance within which two states are equal, as a fraction of the natural scales of the motion:
@@ -105,10 +108,12 @@ inline constexpr T band_error = 16 * rounding<T>;
 inline constexpr double band_error_at_rest = 64 * rest_tolerance;
 
 /// Angle (rad) before the end of a segment within which a position belongs to the end: the velocity
-/// at an event is set exactly, and its closed form reaches zero slightly earlier or later.
+/// at an event is set exactly, and its closed form reaches zero slightly earlier or later. Without
+/// it: crossings_test fails.
 inline constexpr double at_end = 1e-6;
 
-/// Relative time before the end of a segment within which a turning point belongs to the next segment.
+/// Relative time before the end of a segment within which a turning point belongs to the next
+/// segment. Without it: transient_test fails.
 inline constexpr double turning_at_end = 1e-9;
 
 // ---- series ------------------------------------------------------------------------------------
@@ -127,10 +132,11 @@ inline constexpr T step_error = 2 * std::numeric_limits<T>::epsilon();
 template <class T>
 inline constexpr T eliminated_error = 2 * rounding<T>;
 /// Error of a sliding direction, rad, above which a step of an oblique slip is rejected; and relative
-/// velocity beside creep above which the pin does not creep.
+/// velocity beside creep above which the pin does not creep. Without it: fuzz fails.
 template <class T>
 inline constexpr T direction_error = 16 * rounding<T>;
-/// Largest error of the creep velocity close to the friction limit, as a fraction of the pin velocity.
+/// Largest error of the creep velocity close to the friction limit, as a fraction of the pin
+/// velocity. Without it: fuzz fails.
 template <class T>
 inline constexpr T creep_error = 1024 * rounding<T>;
 /// Longest step of a series in units of its fastest time constant, even at rest: rounding of the
@@ -162,9 +168,10 @@ inline constexpr double longest_segment = 1e6;
 /// fails.
 inline constexpr double near_tie = 1e-12;
 /// Smallest distance of an extremum of the velocity from the plate velocity, relative to the latter:
-/// closer, the time of the event has less than half of the digits.
+/// closer, the time of the event has less than half of the digits. Without it: kernel_test fails.
 inline constexpr double near_grazing = 1e-9;
 /// Smallest 1 − ζ² in the kernel: closer to critical damping the sine of a half period loses digits.
+/// Without it: kernel_test fails.
 inline constexpr double least_discriminant = 0.02;
 /// Relative change of an angle after which the kernel's iteration of order 4 ends: its next change
 /// is below the rounding. Without it: oscillation_test fails.
@@ -188,9 +195,6 @@ inline constexpr T unloaded_stretch = 256 * rounding<T>;
 /// Panels at each end of a segment that are evaluated before its middle is skipped. Without it:
 /// fuzz --replay fails.
 inline constexpr int walked_panels = 2048;
-/// Duration of a segment in time constants below which nothing changes, and relative change of the
-/// friction of an oblique plate below which its direction is constant.
-inline constexpr double brief_segment = 1e-11, brief_turn = 1e-10;
 /// Relative velocity, as a fraction of the largest velocity, below which a pin is at rest on a
 /// surface. Without it: fuzz fails.
 inline constexpr double still_velocity = 1e-12;
