@@ -135,7 +135,7 @@ def test_a_study_sets_values_of_its_device() -> None:
     assert (drive.mass, drive.stiffness, drive.damping) == (0.012, 90.0, 0.1)
     assert not plan.device.by_ratio
     assert (drive.plate.kinetic, drive.plate.static) == (0.044, 0.0265 / 0.022 * 0.044)
-    assert plan.source.text.endswith("# --set mass = 12 g\n# --set drive.stiffness = 90 N/m\n")
+    assert plan.source.text.endswith("# set mass = 12 g\n# set drive.stiffness = 90 N/m\n")
 
 
 @pytest.mark.parametrize(

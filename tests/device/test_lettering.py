@@ -101,7 +101,7 @@ def test_without_shaping_a_script_is_refused(
         draw(text, HEIGHT, HEIGHT, HEIGHT)
     assert str(refused.value) == (
         f"text: {named} is of a script that must be shaped, for which the library FriBiDi is not "
-        "installed; install it (libfribidi0, fribidi), or give a picture with --image"
+        "installed; install it (libfribidi0, fribidi), or give a picture with `image`"
     )
 
 

@@ -346,40 +346,39 @@ def test_all_problems_are_said_at_once(write: Write) -> None:
     text = "\n".join(lines)
     for key in ("drive.mas;", "drive.damping", "plate.kinetic", "finger.kinetic"):
         assert f"{key}" in text
-    for key in ("stiffness", "duration", "mouse_velocity", "--set velocity", "--set spring"):
+    for key in ("stiffness", "duration", "mouse_velocity", "` velocity", "` spring"):
         assert key in text
 
 
 @pytest.mark.parametrize(
     ("override", "problem"),
     [
-        ("mass=-1 g", '--set mass: drive.mass must be finite and greater than 0 kg, got "-1 g"'),
+        ("mass=-1 g", 'mass: drive.mass must be finite and greater than 0 kg, got "-1 g"'),
         (
             "mass=1 N",
-            '--set mass: drive.mass must be in kg or a unit alike, like "10 g", got "1 N"',
+            'mass: drive.mass must be in kg or a unit alike, like "10 g", got "1 N"',
         ),
         (
             "plate.static=1 mN",
-            "--set plate.static: plate.static must be at least the kinetic friction, "
-            "0.02 N, got 0.001 N",
+            "plate.static: plate.static must be at least the kinetic friction, 0.02 N, got 0.001 N",
         ),
-        ("kinetic=1 mN", "--set kinetic: kinetic may be plate.kinetic or finger.kinetic; give it "),
-        ("mas=1 g", "--set mas: unknown key mas; did you mean drive.mass?"),
-        ("plat.kinetic=1 N", "--set plat.kinetic: unknown key plat.kinetic; did you mean plate.k"),
-        ("ma\nss=1", "--set ma ss: unknown key"),
-        ("mass", '--set "mass": must be key=value'),
-        ("=3", '--set "=3": must be key=value'),
-        ("mass=", '--set mass: drive.mass must be a number with its unit, like "10 g", got ""'),
+        ("kinetic=1 mN", "kinetic: kinetic may be plate.kinetic or finger.kinetic; give it "),
+        ("mas=1 g", "mas: unknown key mas; did you mean drive.mass?"),
+        ("plat.kinetic=1 N", "plat.kinetic: unknown key plat.kinetic; did you mean plate.k"),
+        ("ma\nss=1", "ma ss: unknown key"),
+        ("mass", '"mass": must be key=value'),
+        ("=3", '"=3": must be key=value'),
+        ("mass=", 'mass: drive.mass must be a number with its unit, like "10 g", got ""'),
     ],
 )
 def test_a_bad_override_says_so(write: Write, override: str, problem: str) -> None:
     (line,) = problems(write(), override)
-    assert line.startswith(problem)
+    assert line.startswith(f"`overrides` {problem}")
 
 
 def test_both_dampings_overridden(write: Write) -> None:
     (line,) = problems(write(), "damping=1 N*s/m", "damping_ratio=1")
-    assert line.startswith("--set damping: give exactly one of")
+    assert line.startswith("`overrides` damping: give exactly one of")
 
 
 def test_unreadable_files(tmp_path: Path) -> None:

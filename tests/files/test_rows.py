@@ -276,22 +276,22 @@ def test_where_a_conflict_comes_from(write: Write) -> None:
     path = write(PLATE, PLATE + FALLING)
     load_device(path, ['plate_load=[["0 ms", 1], ["5 ms", 2]]'])  # a curve fits a load that changes
     (line,) = problems(path, 'plate.curve=[["0 m/s", "30 mN"]]')
-    assert line.startswith("--set plate.curve: plate.curve[0] force must be the kinetic friction")
+    assert line.startswith("`overrides` plate.curve: plate.curve[0] force must be the kinetic")
 
 
 @pytest.mark.parametrize(
     ("override", "problem"),
     [
-        ("plate_load=[1, 2", "--set plate_load: motion.plate_load is not valid TOML: "),
-        ('plate_load=[["0 ms", 1]]\nx = 3', "--set plate_load: motion.plate_load is not valid"),
-        ("plate_load=[[1, 2]]", "--set plate_load: motion.plate_load[0] time must be a number"),
-        ('mass=["1 g"]', "--set mass: drive.mass must be a number with its unit"),
-        ("curve=3", "--set curve: curve may be plate.curve or finger.curve; give it in full"),
+        ("plate_load=[1, 2", "plate_load: motion.plate_load is not valid TOML: "),
+        ('plate_load=[["0 ms", 1]]\nx = 3', "plate_load: motion.plate_load is not valid"),
+        ("plate_load=[[1, 2]]", "plate_load: motion.plate_load[0] time must be a number"),
+        ('mass=["1 g"]', "mass: drive.mass must be a number with its unit"),
+        ("curve=3", "curve: curve may be plate.curve or finger.curve; give it in full"),
     ],
 )
 def test_a_bad_override_says_so(write: Write, override: str, problem: str) -> None:
     (line,) = problems(write(), override)
-    assert line.startswith(problem)
+    assert line.startswith(f"`overrides` {problem}")
 
 
 def test_equal_rows_are_a_constant_load(write: Write) -> None:

@@ -41,7 +41,7 @@ def test_frames_are_even_in_time_and_end_with_the_scan(evaluated: Evaluation) ->
     assert times[0] == path.begin and times[-1] == path.end
     assert np.diff(times)[:-1] == pytest.approx(1.0 / (3.0 * FRAMES))
     for bad in (0.0, -1.0, float("nan"), 1e6):
-        with pytest.raises(ValueError, match=r"--slow must be (greater than 0|at most \d)"):
+        with pytest.raises(ValueError, match=r"`slow` must be (greater than 0|at most \d)"):
             frame_times(path, bad)
 
 

@@ -61,7 +61,7 @@ def test_a_disk_that_fills_up_keeps_finished_chunks(small_disk: Path) -> None:
                     pass
 
     words = r"study\.nc\.partial: cannot be written: No space left on device; \d+ finished chunks "
-    with pytest.raises(OutputError, match=words + "are kept, --resume continues with them"):
+    with pytest.raises(OutputError, match=words + "are kept, `resume=True` continues with them"):
         runner.sweep(study, target, tell=fill)
     ballast.unlink()
     result = runner.sweep(study, target, resume=True)

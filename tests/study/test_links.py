@@ -141,7 +141,7 @@ def test_what_is_given_by_itself_does_not_follow() -> None:
     assert plan.links == {}, "kinetic friction leads"
     device = load_device("device.toml", ["plate.kinetic=30 mN", "plate.static=31 mN"])
     assert device.drive.plate == Contact(0.030, 0.031)
-    with pytest.raises(ConfigError, match=r"--set plate\.static: plate\.static must be at least"):
+    with pytest.raises(ConfigError, match=r"`overrides` plate\.static: plate\.static must be at"):
         load_device("device.toml", ["plate.static=10 mN"])
 
 

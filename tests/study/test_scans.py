@@ -321,7 +321,7 @@ def test_processes_change_nothing_and_their_death_loses_nothing() -> None:
             for process in multiprocessing.active_children():
                 os.kill(process.pid or 0, signal.SIGKILL)
 
-    with pytest.raises(OutputError, match="died; finished chunks are kept, --resume continues"):
+    with pytest.raises(OutputError, match="died; finished chunks are kept, `resume=True`"):
         sweep(plan, Path("study.nc"), work=on_threads(2), tell=kill)
     result = sweep(plan, Path("study.nc"), work=on_threads(2), resume=True)
     assert result.worked_out < result.points

@@ -11,6 +11,7 @@ from typing import Annotated, Any
 
 import typer
 
+from pindrive.cli.errors import in_options
 from pindrive.cli.help import Program, register
 from pindrive.cli.interrupts import INTERRUPTED, STOPPED, ignore_more
 from pindrive.lazy import missing
@@ -86,7 +87,7 @@ def _brief_warnings() -> Iterator[None]:
 
     def show(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
         if issubclass(category, ImplausibleValueWarning):
-            typer.echo(f"warning: {message}", err=True)
+            typer.echo(f"warning: {in_options(str(message))}", err=True)
         else:
             usual(message, category, *place, **more)
 

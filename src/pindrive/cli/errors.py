@@ -2,12 +2,29 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import Final
 
 import typer
 
 from pindrive.cli.interrupts import INTERRUPTED, STOPPED, ignore_more
+
+_ARGUMENTS: Final = (
+    "at",
+    "cluster",
+    "font",
+    "force",
+    "image",
+    "number",
+    "resume",
+    "slow",
+    "x",
+    "y",
+)
+_OPTIONS: Final = {name: f"--{name}" for name in _ARGUMENTS} | {"overrides": "--set"}
+"""Options of the commands, by the arguments of Python that messages name."""
 
 
 @contextmanager
@@ -21,7 +38,7 @@ def refusing(stopped: Callable[[], str] = lambda: STOPPED) -> Iterator[None]:
         try:
             yield
         except ValueError as error:
-            typer.echo(str(error), err=True)
+            typer.echo(in_options(str(error)), err=True)
             raise typer.Exit(2) from None
 
 
@@ -32,5 +49,13 @@ def stopping(stopped: Callable[[], str] = lambda: STOPPED) -> Iterator[None]:
         yield
     except KeyboardInterrupt:
         ignore_more()
-        typer.echo(stopped(), err=True)
+        typer.echo(in_options(stopped()), err=True)
         raise typer.Exit(INTERRUPTED) from None
+
+
+def in_options(text: str) -> str:
+    """Return a message of the library with options in place of the arguments of Python.
+
+    The library writes `force=True` where a command has the option --force.
+    """
+    return re.sub(r"`([a-z]+)(?:=True)?`", lambda found: _OPTIONS.get(found[1], found[0]), text)

@@ -48,7 +48,7 @@ def map_study(
     with refusing():
         targets = pictures(plot, draw)
         with results(targets, [file], force=force) as write, Slice(file) as view:
-            over = [given and view.key(given, option) for given, option in ((x, "--x"), (y, "--y"))]
+            over = [given and view.key(given, axis) for given, axis in ((x, "x"), (y, "y"))]
             held = view.held(at or ())
             names = [view.number(name) for name in number or view.usual_numbers()]
             chosen = view.axes(over[0], over[1], held)

@@ -409,7 +409,7 @@ def _engine(text: str) -> ImageFont.Layout:
     called = f"{quoted(taking)} (U+{ord(taking):04X} {name(taking, 'without a name')})"
     raise ValueError(
         f"text: {called} is of a script that must be shaped, for which the library FriBiDi is not "
-        "installed; install it (libfribidi0, fribidi), or give a picture with --image"
+        "installed; install it (libfribidi0, fribidi), or give a picture with `image`"
     )
 
 
@@ -436,5 +436,5 @@ def _check_known(text: str, file: str) -> None:
         more = f" and {len(lacking) - 3} more" if len(lacking) > 3 else ""
         raise ValueError(
             f"text: the font {Path(file).name} lacks {quoted(''.join(lacking))} ({named}{more}); "
-            "give another with --font"
+            "give another with `font`"
         )

@@ -38,7 +38,7 @@ class Kind:
     name: str
     holds: Callable[[Path], bool]
     costly: bool = False
-    """True for files that took long to compute; only `--force` replaces them."""
+    """True for files that took long to compute; only `force=True` replaces them."""
     library: str = ""
     """That of the extra "complete" which writes one."""
 
@@ -90,10 +90,11 @@ def check_outputs(
             raise OutputError(f"{output}: is there, and cannot be read: {error.strerror}") from None
         if not alike:
             raise OutputError(
-                f"{output}: is there and is no {output.kind.name}; give another name, or --force"
+                f"{output}: is there and is no {output.kind.name}; "
+                "give another name, or `force=True`"
             )
         if output.kind.costly:
-            raise OutputError(f"{output}: exists already; --force replaces it")
+            raise OutputError(f"{output}: exists already; `force=True` replaces it")
 
 
 def check_unread(path: Path, inputs: Iterable[Path], label: str = "") -> None:

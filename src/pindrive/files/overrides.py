@@ -42,10 +42,10 @@ def settings_of(
     settings, problems = [], []
     for override in overrides:
         given, equals, text = (part.strip() for part in override.partition("="))
-        place = f"--set {' '.join(given.split())}"
+        place = f"`overrides` {' '.join(given.split())}"
         value: object = text
         if not equals or not given:
-            problems.append(f"--set {quoted(override)}: must be key=value")
+            problems.append(f"`overrides` {quoted(override)}: must be key=value")
             continue
         keys = NAMES.matches(given)
         if len(keys) == 1 and is_file(keys[0], text):

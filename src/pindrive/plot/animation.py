@@ -56,10 +56,10 @@ def animation_format(path: Path) -> str:
     """
     suffix = path.suffix.lower()
     if suffix not in FORMATS:
-        raise ValueError(f"--animate {path}: must end in {' or '.join(FORMATS)}")
+        raise ValueError(f"{path}: must end in {' or '.join(FORMATS)}")
     if suffix == ".mp4" and ffmpeg() is None:
         raise ValueError(
-            f"--animate {path}: MP4 takes ffmpeg, which is not here; install it, or "
+            f"{path}: MP4 takes ffmpeg, which is not here; install it, or "
             "pip install imageio-ffmpeg, or write a .gif"
         )
     return suffix.removeprefix(".")
@@ -85,14 +85,14 @@ def frame_times(path: HandPath, slow: float) -> NDArray[np.float64]:
         ValueError: `slow` is not greater than 0, or there would be too many frames.
     """
     if not slow > 0.0:
-        raise ValueError(refusal("--slow", "greater than 0", repr(slow)))
+        raise ValueError(refusal("`slow`", "greater than 0", repr(slow)))
     lasts = path.end - path.begin
     count = ceil(min(lasts * slow * FRAMES, 1e15)) + 1
     most = budgets.FRAMES.most
     if count > most:
         fit = (most - 1) / FRAMES / lasts
         given = f"{slow:g}, which makes {count} frames of at most {most}"
-        raise ValueError(refusal("--slow", f"at most {fit:.3g} for {lasts:.3g} s", given))
+        raise ValueError(refusal("`slow`", f"at most {fit:.3g} for {lasts:.3g} s", given))
     return np.minimum(path.begin + np.arange(count) / (slow * FRAMES), path.end)
 
 

@@ -182,7 +182,9 @@ def on_threads(threads: int | None = None) -> Work:
         try:
             yield from in_flight(chunks, count + 1, lambda k: pool.submit(work_out, study, k))
         except BrokenProcessPool:
-            raise OutputError(f"{DIED}; finished chunks are kept, --resume continues") from None
+            raise OutputError(
+                f"{DIED}; finished chunks are kept, `resume=True` continues"
+            ) from None
         finally:
             pool.shutdown(wait=False, cancel_futures=True)
 
@@ -229,7 +231,8 @@ def _check_target(target: Path, notes: Path, may_be_there: bool) -> None:
         raise OutputError(f"{target}: cannot be written: there is no folder {target.parent}")
     if notes.exists() and not may_be_there:
         raise OutputError(
-            f"{notes}: an unfinished run is there; --resume continues it, --force begins anew"
+            f"{notes}: an unfinished run is there; "
+            "`resume=True` continues it, `force=True` begins anew"
         )
 
 
@@ -281,7 +284,7 @@ def _kept(chunks: int) -> str:
     if not chunks:
         return "no chunk was finished yet"
     finished = counted(chunks, "finished chunk is", "finished chunks are")
-    return f"{finished} kept, --resume continues with {'it' if chunks == 1 else 'them'}"
+    return f"{finished} kept, `resume=True` continues with {'it' if chunks == 1 else 'them'}"
 
 
 def _drop_damaged(journal: Journal, store: Store, study: Study) -> None:
@@ -300,10 +303,10 @@ def _is_complete(target: Path, study: Study) -> bool:
             found: Any = file.attrs.get("identity")
         written = json.loads(found)
     except (OSError, ValueError, TypeError):
-        raise OutputError(f"{target}: is damaged; --force replaces it") from None
+        raise OutputError(f"{target}: is damaged; `force=True` replaces it") from None
     if written != study.identity():
         what = difference(written, study.identity())
-        raise OutputError(f"{target}: holds another study: {what}; --force replaces it")
+        raise OutputError(f"{target}: holds another study: {what}; `force=True` replaces it")
     return True
 
 
@@ -345,7 +348,7 @@ def on_cluster(address: str) -> Work:
     check_installed()
 
     def work(study: Study, chunks: list[int]) -> Iterator[tuple[int, list[Piece]]]:
-        kept = "finished chunks are kept, --resume continues with them"
+        kept = "finished chunks are kept, `resume=True` continues with them"
         with cluster_executor(address, kept) as (executor, threads):
             yield from in_flight(chunks, 2 * threads, lambda k: executor.submit(work_out, study, k))
 

@@ -206,7 +206,7 @@ class Slice:
 
     # ---- what is requested -----------------------------------------------------------------------
 
-    def key(self, given: str, option: str) -> str:
+    def key(self, given: str, argument: str) -> str:
         """The varied key that is meant.
 
         Raises:
@@ -217,14 +217,14 @@ class Slice:
         if len(found) == 1:
             return found[0]
         told = names.suggestion(given)
-        raise ValueError(f"{option} {given}: {self.path} does not vary it; {told}")
+        raise ValueError(f"`{argument}` {given}: {self.path} does not vary it; {told}")
 
     def number(self, given: str) -> str:
         """The number that is meant, if the file holds it."""
-        name = known_output(given, "--number", SCAN_OUTPUTS if self.page else OUTPUTS)
+        name = known_output(given, "`number`", SCAN_OUTPUTS if self.page else OUTPUTS)
         if name not in self.numbers:
             held = ", ".join(self.numbers)
-            raise ValueError(f"--number {given}: {self.path} does not hold it; it holds {held}")
+            raise ValueError(f"`number` {given}: {self.path} does not hold it; it holds {held}")
         return name
 
     def usual_numbers(self) -> list[str]:
@@ -253,15 +253,15 @@ class Slice:
         for text in given:
             name, equals, written = (part.strip() for part in text.partition("="))
             if not equals:
-                raise ValueError(f"--at {quoted(text)}: must be key=value")
-            key = self.key(name, "--at")
+                raise ValueError(f"`at` {quoted(text)}: must be key=value")
+            key = self.key(name, "at")
             if key in self.sampled:
-                raise ValueError(f"--at {name}: is sampled, and cannot be held at one value")
+                raise ValueError(f"`at` {name}: is sampled, and cannot be held at one value")
             quantity = QUANTITY[key]
             try:
                 found[key] = to_si(written, quantity.unit, quantity.usual)
             except UnitError as error:
-                raise ValueError(f"--at {name}: must be {error}, got {quoted(written)}") from None
+                raise ValueError(f"`at` {name}: must be {error}, got {quoted(written)}") from None
         return found
 
     def axes(self, x: str | None, y: str | None, held: Mapping[str, float]) -> tuple[str, str]:
@@ -273,7 +273,7 @@ class Slice:
         if not self.keys:
             raise ValueError(f"{self.path}: holds a single point, there is nothing to draw over")
         if x and y and not self._independent(x, y):
-            raise ValueError(f"--y {y}: does not change independently of {x} in this study")
+            raise ValueError(f"`y` {y}: does not change independently of {x} in this study")
         chosen = [key for key in (x, y) if key]
         for key in self.keys:
             if len(chosen) < (2 if x is None else len(chosen)) and all(
@@ -283,7 +283,7 @@ class Slice:
         if x is None and y:
             chosen = [*[key for key in chosen if key != y][:1], y]
         if not chosen or (x is None and chosen == [y]):
-            raise ValueError(f"{self.path}: nothing is left to draw over; leave out --at or --y")
+            raise ValueError(f"{self.path}: nothing is left to draw over; leave out `at` or `y`")
         return chosen[0], chosen[1] if len(chosen) > 1 else ""
 
     def _independent(self, one: str, other: str) -> bool:

@@ -73,7 +73,7 @@ class Store:
                 found = {name: (file[name].id.get_offset(), file[name].dtype) for name in names}
         except (OSError, KeyError) as error:
             reason = str(error).strip("'").replace("\n", " ")
-            raise OutputError(f"{path}: is damaged: {reason}; --force begins anew") from None
+            raise OutputError(f"{path}: is damaged: {reason}; `force=True` begins anew") from None
         self._places = found
         with naming(path):
             self._file = path.open("r+b", buffering=0)
@@ -260,7 +260,7 @@ class Journal:
         if begun != identity:
             what = difference(begun, identity)
             raise OutputError(
-                f"{self._path}: another study was begun there: {what}; --force begins anew"
+                f"{self._path}: another study was begun there: {what}; `force=True` begins anew"
             )
         return done
 

@@ -111,7 +111,7 @@ def _device(
     elif not given:
         raise ConfigError([f'{file}: has no device; write base = "device.toml" at the top'])
     if settings:
-        said = "\n".join(f"# {setting.place} = {setting.value}" for setting in settings)
+        said = "\n".join(f"# set {setting.key} = {setting.value}" for setting in settings)
         text = f"{text.rstrip()}\n\n{said}\n"
     device = device_of(
         source,

@@ -171,7 +171,7 @@ def check_installed() -> None:
         import distributed  # noqa: F401
     except ImportError:
         raise ValueError(
-            "--cluster needs Dask's distributed; pip install 'pindrive[cluster]'"
+            "`cluster` needs Dask's distributed; pip install 'pindrive[cluster]'"
         ) from None
 
 
@@ -194,14 +194,14 @@ def cluster_executor(address: str, kept: str) -> Iterator[tuple[Executor, int]]:
     except (OSError, ValueError) as error:
         required = "the address of a Dask scheduler, like tcp://10.0.0.1:8786, or its .json file"
         given = f"{address}: {str(error) or type(error).__name__}"
-        raise ValueError(refusal("--cluster", required, given)) from None
+        raise ValueError(refusal("`cluster`", required, given)) from None
     with client, client.get_executor(pure=False) as executor:
         _check_versions(client.run(_version))
         try:
             yield executor, max(1, sum(client.nthreads().values()))
         except KilledWorker as error:
             raise OutputError(
-                f"--cluster {address}: workers died one after the other: {error}; {kept}"
+                f"`cluster` {address}: workers died one after the other: {error}; {kept}"
             ) from None
 
 
