@@ -181,7 +181,8 @@ bool plain(const Releases& r, std::size_t i) {
   return r.of[4][i] > 0 && r.of[6][i] > 0 && r.of[8][i] != 0 && ratio < 0.98;
 }
 
-bool beside_core(const Releases& releases, const Answers& found, Drawn kind, std::size_t every) {
+bool beside_core(const Releases& releases, const Answers& found, Drawn drawn_kind,
+                 std::size_t every) {
   double worst[outputs] = {}, residual = 0;
   std::size_t certified = 0;
   std::size_t given_up = 0, unsure = 0, outside = 0, cycles = 0, wrong = 0;
@@ -279,12 +280,12 @@ bool beside_core(const Releases& releases, const Answers& found, Drawn kind, std
   std::printf(
       "%zu releases %s: given up %zu, of which not plain %zu, cycles %zu, rounding %zu; "
       "settling time left to the core %zu\n",
-      releases.size(), drawn_names[static_cast<int>(kind)], given_up, outside, cycles, rounding,
-      unsure);
+      releases.size(), drawn_names[static_cast<int>(drawn_kind)], given_up, outside, cycles,
+      rounding, unsure);
   std::printf("  %zu disagreements; of %zu motions the certificate finds residuals up to %.1e\n",
               wrong, certified, residual);
   for (int j = 0; j < outputs; ++j) std::printf("  %-22s within %.1e\n", names[j].name, worst[j]);
-  return wrong == 0 && (kind == Drawn::delicate || rounding <= releases.size() / 1000);
+  return wrong == 0 && (drawn_kind == Drawn::delicate || rounding <= releases.size() / 1000);
 }
 
 }  // namespace
