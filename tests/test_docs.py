@@ -154,6 +154,27 @@ def test_the_source_files_that_the_sections_of_the_theory_name_exist() -> None:
     assert [n for n in named if not any((folder / n).exists() for folder in folders)] == []
 
 
+def test_the_sections_of_the_theory_that_sources_cite_exist() -> None:
+    theory = (DOCS / "theory.md").read_text("utf-8")
+    headings = re.findall(r"^### (\w+)\. ", theory, re.M)
+    assert headings == [str(i + 1) for i in range(20)] + [*"ABCDEF"]
+    sources = [p for f in ("include", "src", "tests") for p in (ROOT / f).rglob("*.[hcp]*")]
+    pages = [page for page in DOCS.glob("*.md") if page.name != "theory.md"]
+    cited = [
+        (path, number)
+        for path in [*sources, *pages]
+        if path.suffix in (".hpp", ".cpp", ".py", ".md")
+        for number in re.findall(
+            r"theory(?:\.md)?\]?(?:\(theory\.md\))?, (?:sections? |appendix )(\w+)",
+            path.read_text("utf-8"),
+        )
+    ]
+    assert len(cited) > 15
+    assert [(path, number) for path, number in cited if number not in headings] == []
+    own = re.findall(r"(?:section|appendix) (\d+|[A-Z])\b", theory)
+    assert len(own) > 5 and {*own} <= {*headings}
+
+
 # ---- notebooks -----------------------------------------------------------------------------------
 
 

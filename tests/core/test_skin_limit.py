@@ -1,6 +1,6 @@
 """Stiff skin against the rigid finger that it tends to: how fast, and where it does not.
 
-The orders and formulas are derived in docs/theory.md, section 4.
+The orders and formulas are derived in docs/theory.md, appendix C.
 """
 
 from __future__ import annotations

@@ -104,7 +104,7 @@ void beside_taylor() {
       worst, slider, few, many);
 }
 
-/// A load that falls to zero is followed up to there, to the velocity of section 11 of docs/theory.md.
+/// A load that falls to zero is followed up to there, to the velocity of section 4 of docs/theory.md.
 void up_to_no_load() {
   const auto e = held_back(1e6, -50.0);
   const auto begins = follow(e, {1e-3, 0.05, 0.05}, 1e-4, false).state;

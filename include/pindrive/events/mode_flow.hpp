@@ -1,4 +1,4 @@
-/// Closed form of the motion in a mode (docs/theory.md, section 2).
+/// Closed form of the motion in a mode (docs/theory.md, sections 2 and 9).
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-/// Detection of steady motions by recurrence (docs/theory.md, section 5).
+/// Detection of steady motions by recurrence (docs/theory.md, section 14).
 ///
 /// A cycle is found in two phases (Brent 1980). `CycleDetector` finds its period during the simulation, by
 /// comparing the state after each event with kept states. `steady_since` (steady_since.hpp) finds its

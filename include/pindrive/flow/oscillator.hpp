@@ -1,4 +1,4 @@
-/// Free oscillator of a mode: propagator and zeros in every damping regime (docs/theory.md, section 2).
+/// Free oscillator of a mode: propagator and zeros in every damping regime (docs/theory.md, section 9).
 #pragma once
 
 #include <cmath>

@@ -21,7 +21,7 @@ struct PlainRelease {
   V settling_band;                  ///< band of the settling time, as a fraction of |x(0) − x_end|
 };
 
-/// Numbers of docs/theory.md, section 6, of a standard release; a number that does not exist is
+/// Numbers of docs/theory.md, section 15, of a standard release; a number that does not exist is
 /// NaN.
 struct PlainNumber {
   enum Name : signed char {

@@ -1,5 +1,5 @@
 /// Friction law at an instant: candidate modes of a contact and its transmitted force
-/// (docs/theory.md, section 4).
+/// (docs/theory.md, section 11).
 #pragma once
 
 #include <cmath>

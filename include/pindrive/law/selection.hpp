@@ -1,4 +1,4 @@
-/// Selection of the mode that follows an event (docs/theory.md, section 4).
+/// Selection of the mode that follows an event (docs/theory.md, section 11).
 #pragma once
 
 #include <cmath>

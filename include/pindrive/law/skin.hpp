@@ -1,4 +1,4 @@
-/// Skin and slider of a compliant contact (docs/theory.md, section 11).
+/// Skin and slider of a compliant contact (docs/theory.md, section 4).
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 /// Slider of a compliant contact: a massless point between the skin, which stretches, and the pin,
-/// on which the slider slides (docs/theory.md, section 11).
+/// on which the slider slides (docs/theory.md, section 4).
 ///
 /// The skin tension determines the friction of the slider. On a rising branch one speed has that
 /// friction; on a plateau the slider has the speed of the pin; on a falling branch no speed is

@@ -1,4 +1,4 @@
-/// End stops of the travel: candidate states and force (docs/theory.md, section 13).
+/// End stops of the travel: candidate states and force (docs/theory.md, section 6).
 #pragma once
 
 #include <array>

@@ -9,7 +9,7 @@
 
 namespace pindrive {
 
-/// Numbers of a motion over [0, duration] (docs/theory.md, section 6).
+/// Numbers of a motion over [0, duration] (docs/theory.md, section 15).
 template <class T>
 struct Summary {
   Transient<T> transient;

@@ -1,4 +1,4 @@
-/// Measurement of the numbers of a motion (docs/theory.md, section 6), from its segments, not from samples.
+/// Measurement of the numbers of a motion (docs/theory.md, section 15), from its segments, not from samples.
 #pragma once
 
 #include <algorithm>

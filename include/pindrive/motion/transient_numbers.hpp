@@ -1,4 +1,4 @@
-/// Numbers of a motion and their names (docs/theory.md, section 6).
+/// Numbers of a motion and their names (docs/theory.md, section 15).
 #pragma once
 
 #include <limits>

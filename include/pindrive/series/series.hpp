@@ -1,4 +1,4 @@
-/// Power series of modes without a closed form (docs/theory.md, section 11).
+/// Power series of modes without a closed form (docs/theory.md, section 12).
 ///
 /// The Taylor coefficients follow from the equation by recurrences. Order and length of a step
 /// follow from the series, with a proven bound of the truncation error.

@@ -11,7 +11,7 @@ rows of their inputs each x is, as a rule, one closed form, whose acceleration y
 with ω² = κ/m (times exp(|c| t/m) where friction that falls with speed makes c negative). Where c
 changes within a piece, as that of a friction curve under a changing load, the piece is a step of a
 power series, and |y| stays below the largest of the Bernstein coefficients of its acceleration
-(docs/theory.md, section 11). With |y| of both together below A, a gap is nowhere in a time h more
+(docs/theory.md, section 15). With |y| of both together below A, a gap is nowhere in a time h more
 than A h²/8 below both its ends. Times in which it might become smaller than what was found so far
 are cut into pieces until there are none: no smaller gap is missed by more than `CLOSE`.
 """
