@@ -289,6 +289,14 @@ void bounds() {
            half.velocity.degree);
     expect(abs(middle.v - half.at(half.span()).v) < 4e-17, "two steps differ", middle.v);
   }
+
+  // A pin at rest: its series has no terms, but the rounding of another start would grow in a step.
+  pd::detail::SeriesEquation<double> rests{0.01, 0.4, 100.0};
+  rests.side = 1;
+  rests.force = {0.02, 0};
+  const double rate = 0.4 / 0.01 + 100;
+  const pd::detail::SeriesFlow<double> flow(rests, {2e-4, 0, 0, 0}, 10.0);
+  expect(flow.span() > 7 / rate && flow.span() <= 8 / rate, "a step at rest lasts", flow.span());
 }
 
 /// The product of factors (root − σ), scaled.
