@@ -34,6 +34,19 @@ def of_python(text: str) -> Iterator[str]:
                     yield value
 
 
+ENTRY = re.compile(
+    r"^(what|how|whether|where|which|when|why|whose|of|by|as|to|with|that|likewise|it|its|they|their"
+    r"|from|for|in|on|the same)\b",
+    re.IGNORECASE,
+)
+
+
+def of_entries(docstring: str) -> Iterator[str]:
+    """Descriptions in the sections of arguments, attributes and errors of a docstring."""
+    for section in re.findall(r"^(?:Args|Attributes|Raises):\n((?: +.*\n?|\n)+)", docstring, re.M):
+        yield from re.findall(r"^    [\w*`][\w*, `]*: (.*)$", section, re.M)
+
+
 def of_cpp(text: str) -> Iterator[str]:
     """Documentation comments of a C++ text."""
     block: list[str] = []
@@ -95,3 +108,19 @@ def test_summaries_neither_begin_with_a_question_word_nor_lean_on_a_pronoun(
         count = sum(map(len, found.values()))
         assert sum(map(len, wrong.values())) <= share * count, wrong
         assert not {path: w for path, w in wrong.items() if len(w) > 0.1 * len(found[path])}
+
+
+def test_descriptions_of_arguments_are_noun_phrases() -> None:
+    assert [*of_entries("A.\n\nArgs:\n    a: of it.\n    b: Mass, kg.\n")] == [
+        "of it.",
+        "Mass, kg.",
+    ]
+    found, wrong = 0, []
+    for path in (ROOT / "src").rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef):
+                entries = [*of_entries(ast.get_docstring(node) or "")]
+                found += len(entries)
+                wrong += [(path, entry) for entry in entries if ENTRY.match(entry)]
+    assert found > 900
+    assert wrong == []

@@ -107,7 +107,7 @@ def require(name: str) -> None:
     """Refuse where a package of the extra "complete" is not installed; nothing is loaded.
 
     Raises:
-        ModuleNotFoundError: it is not; says how it is installed.
+        ModuleNotFoundError: The module is not installed; the message tells the installation.
     """
     from importlib.util import find_spec
 

@@ -32,7 +32,7 @@ def refusing(stopped: Callable[[], str] = lambda: STOPPED) -> Iterator[None]:
     """Bad input ends the command with a line for each problem and exit status 2.
 
     Args:
-        stopped: what is said after Ctrl-C.
+        stopped: Message after Ctrl-C.
     """
     with stopping(stopped):
         try:

@@ -59,8 +59,8 @@ def command(group: str, example: str) -> Callable[[Function], Function]:
     """Make a function the command of its file, whose name it has.
 
     Args:
-        group: of commands, under which the help lists it.
-        example: of its use, at the end of its help.
+        group: Group of commands under which the help lists the command.
+        example: Example of the use, at the end of the help.
     """
 
     def mark(function: Function) -> Function:

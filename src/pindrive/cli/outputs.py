@@ -52,7 +52,7 @@ def by_suffix(
     """Return the files at `paths`, each by the suffix of its name.
 
     Raises:
-        ValueError: a suffix asks for none.
+        ValueError: A suffix asks for none.
     """
     targets = []
     for path in paths:
@@ -70,7 +70,7 @@ def pictures(
     """The picture at `path`, if one is wanted, in the format of its suffix.
 
     Raises:
-        ValueError: the suffix asks for none.
+        ValueError: The suffix asks for none.
     """
 
     def writer(suffix: str) -> Callable[[Result, Path], None]:
@@ -91,9 +91,9 @@ def dataset_writers(
     """Return the writers of a dataset by file suffix: NetCDF, JSON, and CSV of the main table.
 
     Args:
-        title: what the files hold.
-        columns: the first of the CSV.
-        dataset: makes the dataset of a result.
+        title: Content of the files.
+        columns: The first of the CSV.
+        dataset: Makes the dataset of a result.
     """
     from pindrive.files import dataset as files
 
@@ -115,7 +115,7 @@ def datasets(
     """Files of a result that is a dataset, arguments as for `dataset_writers`.
 
     Raises:
-        ValueError: a suffix asks for no such file.
+        ValueError: A suffix asks for no such file.
     """
     return by_suffix(paths or (), dataset_writers(title, columns, dataset))
 
@@ -142,7 +142,8 @@ def results(
     """Begin the files, and give what writes them all of a result.
 
     Raises:
-        OutputError: one cannot be written, is one of the inputs, or is there and may not go.
+        OutputError: A file cannot be written, is one of the inputs, or exists and may not be
+            replaced.
     """
     with writing([target.output for target in targets], inputs, force=force) as parts:
         yield partial(_write, targets, parts)
@@ -164,7 +165,7 @@ def csv_rate(rate: str | None, outputs: Iterable[Path]) -> float | None:
     """The frequency of a CSV's samples, Hz; None where none is given.
 
     Raises:
-        ValueError: it is no frequency, or there is no CSV.
+        ValueError: The value is no frequency, or no CSV is written.
     """
     if rate is None:
         return None

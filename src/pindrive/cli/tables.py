@@ -356,8 +356,8 @@ def meeting_words(device: Device, speed: float) -> list[str]:
     """Return the clearances of pins, magnets and slots at the largest displacement.
 
     Args:
-        device: the device.
-        speed: of the hand at most, m/s.
+        device: The device.
+        speed: Largest speed of the hand, m/s.
     """
     array, length, reach = device.array, QUANTITIES["pin_gap"], device.excursion(speed)
     words = [

@@ -33,12 +33,12 @@ class Closing:
         """Return the continuation of the flux linkage from `start` at constant voltage.
 
         Args:
-            start: the flux linkage, a part.
-            target: to which it tends while the gap is closed.
-            constant: its time constant then, s.
+            start: The flux linkage, a part.
+            target: Limit of the flux linkage while the gap is closed.
+            constant: Time constant while the gap is closed, s.
 
         Returns:
-            to which it tends, its time constant (s), the inductance over that with the closed gap,
+            To which it tends, its time constant (s), the inductance over that with the closed gap,
             and how long until the gap closes or opens (s), inf where it does not.
         """
         # Just where it closes or opens, the flux's way tells.
@@ -60,13 +60,13 @@ def closing_at(
     """The closing of a gap that closes against a force (N).
 
     Args:
-        force: the pull beyond which it is closed, N.
-        inductance: with the open gap over that with the closed one.
-        pull: at a flux linkage, a part of that of the full current, N.
-        saturation: the part at which the pull stops growing.
+        force: The pull beyond which it is closed, N.
+        inductance: Inductance with the open gap over that with the closed gap.
+        pull: Pull at a flux linkage, given as a part of that of the full current, N.
+        saturation: The part at which the pull stops growing.
 
     Raises:
-        ValueError: it would never close, or never open.
+        ValueError: The gap would never close, or never open.
     """
     residual, most = pull(0.0), pull(inductance)
     if force <= residual:

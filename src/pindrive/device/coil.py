@@ -32,20 +32,22 @@ class Coil:
     Args:
         turns: N, at least 1.
         pole_area: A of one pole, m², greater than 0.
-        gap: g under each pole, closed, m, greater than 0.
-        wire_diameter: d of the copper, m, greater than 0.
-        turn_length: mean length of a turn, m, greater than 0.
+        gap: G under each pole, closed, m, greater than 0.
+        wire_diameter: D of the copper, m, greater than 0.
+        turn_length: Mean length of a turn, m, greater than 0.
         supply_voltage: U while it is on, V, greater than 0.
-        release_resistance: what the current dies away through beside its own, ohm, at least 0.
+        release_resistance: Resistance of the decaying current beside that of the coil, ohm, at
+            least 0.
         saturation_field: B_s, T, greater than 0.
         thermal_resistance: R_th, K/W, greater than 0.
         heat_capacity: C_th, J/K, greater than 0; None: its temperature is not simulated.
         temperature_rise: ΔT allowed, K, greater than 0.
-        lift: by how much wider each gap is while it is open, m, at least 0; None: it stays closed.
-        closing_force: the pull beyond which the gap is closed, N, greater than 0, with `lift`.
+        lift: Additional width of each gap while it is open, m, at least 0; None: the gap stays
+            closed.
+        closing_force: The pull beyond which the gap is closed, N, greater than 0, with `lift`.
 
     Raises:
-        ValueError: a value is no number or out of its range, or one of the last two without the
+        ValueError: A value is no number or out of its range, or one of the last two without the
             other.
 
     The formulas are those of magnetic circuits, as in Fitzgerald, Kingsley and Umans, "Electric

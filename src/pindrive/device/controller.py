@@ -36,12 +36,12 @@ class ControlBlock:
 
     Args:
         sample_rate: Hz, greater than 0; it looks at the whole multiples of 1/sample_rate.
-        latency: from looking to switching, s, at least 0.
-        threshold: luminance in [0, 1].
-        hysteresis: width of the band about it, in [0, 1]; the band lies within [0, 1].
+        latency: Delay from sampling to switching, s, at least 0.
+        threshold: Luminance in [0, 1].
+        hysteresis: Width of the band about it, in [0, 1]; the band lies within [0, 1].
 
     Raises:
-        ValueError: a value is no number or out of its range.
+        ValueError: A value is no number or out of its range.
     """
 
     sample_rate: Number = default("sample_rate")
@@ -76,10 +76,10 @@ class ControlBlock:
         """The commands that one spot's luminance leads to.
 
         Args:
-            luminance: at each look, shape (n,).
+            luminance: Luminance at each sample, shape (n,).
             looks: s, shape (n,), as from `looks`.
-            end: until when, s; a switching due then or later is left pending.
-            before: where the control block stands at the first look; None: all off.
+            end: Until when, s; a switching due then or later is left pending.
+            before: State of the control block at the first sample; None: all magnets off.
 
         Returns:
             The switchings before `end`, and where the control block stands then.

@@ -185,7 +185,7 @@ class Pulses:
         """Return the switchings of a coil in [begin, end) (s), with their directions.
 
         Raises:
-            ValueError: there would be too many.
+            ValueError: The number of switchings exceeds its budget.
         """
         spans = np.array(commands.spans(begin, end)).reshape(-1, 2)
         count = float(np.diff(spans).sum()) * self.frequency * 2.0
@@ -261,7 +261,7 @@ class VoltageSteps:
         """Rows (time since it was switched on in s, V) as parts of a full voltage (V).
 
         Raises:
-            ValueError: the first is not at 0 s, times do not increase, or a voltage is negative or
+            ValueError: The first is not at 0 s, times do not increase, or a voltage is negative or
                 beyond the full one.
         """
         if not rows or rows[0][0] != 0.0:

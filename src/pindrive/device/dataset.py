@@ -34,11 +34,11 @@ def dataset(scan: Scan, times: ArrayLike | None = None) -> xr.Dataset:
     """Variables over (pin, time), and tables of events and switchings with the pin of each row.
 
     Args:
-        scan: the scan.
+        scan: The scan.
         times: s, shape (n,), on the path's clock; each millisecond and the end unless given.
 
     Raises:
-        ValueError: too many samples.
+        ValueError: Too many samples.
     """
     from pindrive import __version__
 

@@ -25,13 +25,13 @@ class Device:
     """A tactile device: pins that are all alike, each with its own magnet and spot.
 
     Args:
-        drive: of each pin; its plate's friction is that with the magnet off.
-        magnet: of each pin.
-        control: the control block.
-        array: where the pins are.
+        drive: Drive of each pin; the friction of its plate is that with the magnet off.
+        magnet: Electromagnet of each pin.
+        control: The control block.
+        array: Places of the pins.
 
     Raises:
-        ValueError: a plate without friction, by which no magnet could hold.
+        ValueError: A plate without friction, by which no magnet could hold.
     """
 
     drive: Drive
@@ -68,7 +68,7 @@ class Device:
         m a / k. No pin goes beyond rigid end stops.
 
         Args:
-            speed: of the hand at most, m/s.
+            speed: Largest speed of the hand, m/s.
         """
         held = self.drive.plate.largest(speed) * self.load(self.magnet.hold_force)
         reach = held / self.drive.stiffness + speed / self.drive.natural_frequency
@@ -81,8 +81,8 @@ class Device:
         """Quasi-static drag of the plate on a pin that is off, m; 0 in stick on the finger.
 
         Args:
-            angle: between the hand's motion and the drive axis, rad.
-            finger_load: factor on the finger's friction, 0 where it is lifted.
+            angle: Angle between the motion of the hand and the drive axis, rad.
+            finger_load: Factor on the finger's friction, 0 where it is lifted.
         """
         plate = self.drive.plate.kinetic * self.load(self.magnet.residual) * abs(cos(angle))
         if plate <= self.drive.finger.static_friction * finger_load:
@@ -103,14 +103,14 @@ class Criteria:
     """Criteria of the evaluation, by the sources in the table of quantities.
 
     Args:
-        felt: motion that is felt as a pulse, m, greater than 0.
-        direction: motion of skin whose direction is perceived, m, greater than 0.
-        direction_sure: whose direction is told right in more than 95 % of cases, m.
-        direction_speed: at which that must be gone, m/s.
-        echo: a swing so high, a part of the line before it, is a false line; in (0, 1].
+        felt: Motion that is felt as a pulse, m, greater than 0.
+        direction: Motion of skin whose direction is perceived, m, greater than 0.
+        direction_sure: Deflection whose direction is recognised in more than 95 % of cases, m.
+        direction_speed: Speed below which a deflection must decay, m/s.
+        echo: A swing so high, a part of the line before it, is a false line; in (0, 1].
 
     Raises:
-        ValueError: a value is no number or out of its range.
+        ValueError: A value is no number or out of its range.
     """
 
     felt: Number = default("felt")

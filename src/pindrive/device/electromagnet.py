@@ -66,21 +66,22 @@ class Electromagnet:
 
     Args:
         hold_force: P_h, pull at full current, N, greater than 0.
-        rise_constant: time constant of the rising current, s, greater than 0.
-        fall_constant: of the falling current, s, greater than 0.
+        rise_constant: Time constant of the rising current, s, greater than 0.
+        fall_constant: Time constant of the falling current, s, greater than 0.
         saturation: σ, the part of the full current at which the pull stops growing, in (0, 1].
         residual: P_r, pull that remains without current, N, at least 0 and less than `hold_force`.
-        deviation: of the piecewise-linear pull, a part of `hold_force`, in (0, 0.1].
-        pwm_frequency: of the pulses in which it is switched while it is on, Hz, from 1 to 20000,
-            given with `pwm_duty`; None: it stays on.
-        pwm_duty: the part of each period for which it is on then, above 0 and at most 1.
-        outer_diameter: of the magnet, a cylinder, m, greater than 0; None: not known.
-        height: of it, m, greater than 0; None: not known.
-        coil: what it is made from, where known.
-        steps: the coil's voltage since it was switched on; None: full. Not with pulses.
+        deviation: Largest deviation of the piecewise-linear pull, as a part of `hold_force`, in (0,
+            0.1].
+        pwm_frequency: Frequency of the pulses while the magnet is on, Hz, from 1 to 20000, given
+            with `pwm_duty`; None: continuous current.
+        pwm_duty: The part of each period for which it is on then, above 0 and at most 1.
+        outer_diameter: Diameter of the cylindrical magnet, m, greater than 0; None: unknown.
+        height: Height of the magnet, m, greater than 0; None: unknown.
+        coil: Construction of the magnet, if known.
+        steps: The coil's voltage since it was switched on; None: full. Not with pulses.
 
     Raises:
-        ValueError: a value is no number or out of its range.
+        ValueError: A value is no number or out of its range.
     """
 
     hold_force: Number = default("hold_force")
@@ -125,18 +126,18 @@ class Electromagnet:
 
         Args:
             hold_force: N.
-            rise_time: from switching on until 90 % of the pull beyond the residual, s.
-            fall_time: from switching off until 10 % of it, s.
-            saturation: a part of the full current.
+            rise_time: Time from switching on to 90 % of the pull beyond the residual pull, s.
+            fall_time: Time from switching off to 10 % of the pull beyond the residual pull, s.
+            saturation: A part of the full current.
             residual: N.
-            deviation: a part of `hold_force`.
+            deviation: A part of `hold_force`.
             pwm_frequency: Hz.
-            pwm_duty: a part of each period.
+            pwm_duty: A part of each period.
             outer_diameter: m.
             height: m.
 
         Raises:
-            ValueError: as for the class.
+            ValueError: A value is invalid, as for the class.
         """
         rise, fall = TABLE.check("rise_time", rise_time), TABLE.check("fall_time", fall_time)
         sigma = TABLE.check("saturation", saturation)
@@ -169,18 +170,18 @@ class Electromagnet:
         """An electromagnet by how it is made; the rest as for the class.
 
         Args:
-            coil: how it is made.
+            coil: Construction of the coil.
             residual: N.
-            deviation: a part of the full pull.
+            deviation: A part of the full pull.
             pwm_frequency: Hz.
-            pwm_duty: a part of each period.
+            pwm_duty: A part of each period.
             outer_diameter: m.
             height: m.
-            voltage: rows (time since it was switched on in s, V), from 0 s on, at most the supply
+            voltage: Rows (time since it was switched on in s, V), from 0 s on, at most the supply
                 voltage; each holds until the next.
 
         Raises:
-            ValueError: as for the class.
+            ValueError: A value is invalid, as for the class.
         """
         return cls(
             hold_force=coil.pull,
@@ -295,10 +296,10 @@ class Electromagnet:
         """The current under commands that come after the coil's last switching.
 
         Args:
-            commands: of the control block.
-            before: the last switching.
-            begin: from when the commands hold, s; with pulses or a voltage.
-            end: until when, s; with pulses or a voltage.
+            commands: Commands of the control block.
+            before: The last switching.
+            begin: Time from which the commands hold, s; with pulses or a voltage.
+            end: Until when, s; with pulses or a voltage.
         """
         levels = None
         if self.steps is not None:
@@ -341,12 +342,12 @@ class Electromagnet:
         rows: a switching finds the pull on its line, and a moment later it is exact again.
 
         Args:
-            current: the current.
+            current: The current.
             end: s, after its begin.
-            first: the pull at its begin, N; None: the exact one.
+            first: The pull at its begin, N; None: the exact one.
 
         Raises:
-            ValueError: there would be too many rows.
+            ValueError: The number of rows exceeds its budget.
         """
         rows, pieces = 0, max(1, int(np.searchsorted(current.begins, end)))
         times: list[NDArray[np.float64]] = []

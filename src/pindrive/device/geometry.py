@@ -134,9 +134,9 @@ def smallest_gaps(
     """The smallest gap of each pair of neighbours.
 
     Args:
-        neighbours: as the array has them.
-        motions: of the pins, by their numbers, over one duration.
-        begin: when they begin on the path's clock, s.
+        neighbours: Neighbours of each pin in the array.
+        motions: Motion of each pin, by its number, over one duration.
+        begin: Begin of the motions on the clock of the path, s.
     """
     pieces = {i: _Pieces(motions[i]) for pair in neighbours for i in (pair.behind, pair.ahead)}
     found = []

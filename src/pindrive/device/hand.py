@@ -35,12 +35,12 @@ class HandPath:
 
     Args:
         times: s, shape (n,), n >= 2, increasing.
-        vx, vy: velocity on the page at these times, m/s, shape (n,); linear between them.
-        start: place on the page at the first, m.
-        about: how it was recorded, for reports.
+        vx, vy: Velocity on the page at these times, m/s, shape (n,); linear between them.
+        start: Place on the page at the first, m.
+        about: Description of the recording, for reports.
 
     Raises:
-        ValueError: times do not increase, shapes differ, or a number is not finite.
+        ValueError: Times do not increase, shapes differ, or a number is not finite.
     """
 
     times: NDArray[np.float64]
@@ -122,7 +122,7 @@ class HandPath:
         """The velocity at which the plate passes under the mouse, over the time since `begin`.
 
         Args:
-            axis: direction of the drive axis on the page, rad.
+            axis: Direction of the drive axis on the page, rad.
 
         Returns:
             The hand's velocity along that axis. Its sign is that of the hand: x, the pin's
@@ -135,7 +135,7 @@ class HandPath:
         """The velocity of the plate across the drive axis, over the time since `begin`.
 
         Args:
-            axis: direction of the drive axis on the page, rad.
+            axis: Direction of the drive axis on the page, rad.
 
         Returns:
             The hand's velocity a right angle from that axis, towards the left; 0 for a hand that
@@ -189,13 +189,14 @@ def strokes(
     """Straight strokes of minimum jerk from stop to stop, each from rest to rest.
 
     Args:
-        stops: places on the page, m, at least two, each another than the one before.
-        speeds: peak speed of each stroke, m/s, greater than 0; one for all of them, or one each.
-        pause: rest after each stroke, s, at least 0.
-        deviation: of the piecewise-linear speed from minimum jerk, a part of its peak, in (0, 0.1].
+        stops: Places on the page, m, at least two, each another than the one before.
+        speeds: Peak speed of each stroke, m/s, greater than 0; one for all of them, or one each.
+        pause: Rest after each stroke, s, at least 0.
+        deviation: Largest deviation of the piecewise-linear speed from minimum jerk, as a part of
+            its peak, in (0, 0.1].
 
     Raises:
-        ValueError: a value is no number or out of its range, or there are too many rows.
+        ValueError: A value is no number or out of its range, or there are too many rows.
 
     A stroke of length D in time T has the speed (D/T) 30 s² (1 − s)² at t = s T (Flash & Hogan
     1985). Its curvature is at most 60 D/T³, so that n even rows are within 60/(8 n²) D/T of it,
@@ -247,16 +248,16 @@ def lines(
     """Line by line over a page: along each row from left to right, then back to the next.
 
     Args:
-        rows: y of each line on the page, m, at least one.
+        rows: Y of each line on the page, m, at least one.
         left: x where the hand begins to read, m.
         right: x where it ends, m.
-        speed: peak speed while it reads, m/s.
-        return_speed: peak speed on the way back, m/s.
-        pause: rest after each stroke, s.
-        deviation: as for `strokes`.
+        speed: Peak speed while it reads, m/s.
+        return_speed: Peak speed on the way back, m/s.
+        pause: Rest after each stroke, s.
+        deviation: Largest deviation of the piecewise-linear speed, as for `strokes`.
 
     Raises:
-        ValueError: a value is no number or out of its range; no way between left and right.
+        ValueError: A value is no number or out of its range; no way between left and right.
     """
     if not rows:
         raise ValueError(refusal("rows", "at least one line", "none"))

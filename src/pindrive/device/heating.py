@@ -41,11 +41,11 @@ class Heat:
         """The warming a time later, K.
 
         Args:
-            warming: at first, K.
-            start: the current at first, a part of the full one.
-            target: to which it tends.
-            constant: its time constant, s.
-            lasts: how much later, s.
+            warming: Initial warming, K.
+            start: The current at first, a part of the full one.
+            target: Limit of the warming, K.
+            constant: Time constant of the warming, s.
+            lasts: Duration, s.
         """
         cooling = 1.0 / (self.thermal_resistance * self.heat_capacity)
         swing, found = start - target, warming * exp(-cooling * lasts)

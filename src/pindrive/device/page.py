@@ -51,14 +51,15 @@ class Scene:
     """A page. Made by `from_image`, `from_text`, `from_grating`, or from an array.
 
     Args:
-        luminance: in [0, 1], shape (rows, columns), the first row on top.
-        pixel: size of a pixel, m, greater than 0.
-        origin: place of its top left corner on the page, m.
-        lines: y of the middle of each line of text, m, where it has lines.
-        title: what it shows, in words.
+        luminance: Luminance in [0, 1], shape (rows, columns), first row on top.
+        pixel: Size of a pixel, m, greater than 0.
+        origin: Place of its top left corner on the page, m.
+        lines: Y of the middle of each line of text, m, where it has lines.
+        title: Description of the scene.
 
     Raises:
-        ValueError: no pixels, a luminance out of [0, 1], or a number out of its range.
+        ValueError: The scene has no pixels, a luminance is outside of [0, 1], or a number is out of
+            range.
     """
 
     luminance: NDArray[np.float64]
@@ -125,11 +126,11 @@ class Scene:
         """An image file of any kind that Pillow reads, turned as its EXIF data says.
 
         Args:
-            path: the file; of one with several pictures the first.
-            pixel: size of a pixel, m; None: what the file says of its resolution.
+            path: The file; of one with several pictures the first.
+            pixel: Size of a pixel, m; None: what the file says of its resolution.
 
         Raises:
-            ValueError: the file cannot be read, or says nothing of its resolution.
+            ValueError: The file cannot be read, or says nothing of its resolution.
         """
         file = fspath(path)
         try:
@@ -164,16 +165,16 @@ class Scene:
         """Text, black on white.
 
         Args:
-            text: one or more lines, apart by newlines.
-            height: of capital letters, m.
+            text: Text of one or more lines, separated by newlines.
+            height: Height of capital letters, m.
             pixel: m.
-            margin: white around it, m, at least; a tall accent may ask for more.
-            line_pitch: from line to line, m; None: twice the height.
-            font: a file FreeType reads; None: DejaVu Sans, which comes with Matplotlib.
+            margin: White around it, m, at least; a tall accent may ask for more.
+            line_pitch: Distance between lines, m; None: twice the height.
+            font: A file FreeType reads; None: DejaVu Sans, which comes with Matplotlib.
 
         Raises:
-            ValueError: nothing to show, a character that the font lacks, a font that cannot be
-                read, or a number out of its range.
+            ValueError: The text is empty, the font lacks a character or cannot be read, or a number
+                is out of range.
         """
         size, step = check("text_height", height), check("pixel", pixel)
         pitch = 2.0 * size if line_pitch is None else check("line_pitch", line_pitch)
@@ -195,14 +196,14 @@ class Scene:
         """Groups of upright black lines, each half as wide as its pitch.
 
         Args:
-            pitches: from line to line in each group, m, greater than 0.
-            count: lines in each group, at least 1.
+            pitches: Distances between lines in each group, m, greater than 0.
+            count: Lines in each group, at least 1.
             height: m.
-            pixel: m; a border between pixels is as dark as the part of the pixel it covers.
-            margin: white around the groups, m, and with the pitch between them.
+            pixel: M; a border between pixels is as dark as the part of the pixel it covers.
+            margin: White around the groups, m, and with the pitch between them.
 
         Raises:
-            ValueError: no pitch, no lines, or a number out of its range.
+            ValueError: No pitch is given, no line fits, or a number is out of range.
         """
         steps = [check("pitch", pitch) for pitch in pitches]
         if not steps:
@@ -248,8 +249,8 @@ def _covered(
 
     Args:
         borders: m, shape (n + 1,), increasing.
-        begins: of the lines, m, increasing, none before the end of the one before.
-        ends: of the lines.
+        begins: Begins of the lines, m, increasing, none before the end of the previous line.
+        ends: Ends of the lines, m.
     """
     edges = np.stack([begins, ends], axis=1)
     after = np.cumsum(edges[:, 1] - edges[:, 0])
@@ -339,18 +340,18 @@ def draw(
     """Text as luminance, and the middle of the capitals of each line from the top; in pixels.
 
     Args:
-        text: one or more lines.
-        height: of capital letters.
-        pitch: from line to line.
-        margin: white around it, at least.
-        font: a file that FreeType reads; None: `default_font`.
+        text: Text of one or more lines.
+        height: Height of capital letters, m.
+        pitch: Distance between lines, m.
+        margin: White around it, at least.
+        font: A file that FreeType reads; None: `default_font`.
 
     Returns:
         Luminance that cannot be written to, and the middles.
 
     Raises:
-        ValueError: nothing to show, too much of it, letters too small, a character that the font
-            lacks or that takes shaping where there is none, or no such font.
+        ValueError: The text is empty or too large, its letters are too small, the font does not
+            exist or lacks a character, or a script needs shaping that is not installed.
     """
     file = default_font() if font is None else fspath(font)
     budgets.CHARACTERS.check(len(text))
@@ -399,7 +400,7 @@ def _engine(text: str) -> ImageFont.Layout:
     """Return the layout engine: letter by letter, equal on all machines, or Raqm.
 
     Raises:
-        ValueError: it takes shaping, and this machine has none.
+        ValueError: The text needs shaping, which is not installed.
     """
     taking = next((c for c in text if _takes_shaping(c)), None)
     if taking is None:

@@ -33,14 +33,14 @@ class Page:
     """Content of a page, `text`, `image` or `grating`, and the movement of the hand.
 
     Args:
-        text: one or more lines.
-        image: a file that Pillow reads.
-        grating: from line to line in each of several groups, m.
-        font: a file for the text; None: DejaVu Sans.
-        path: a CSV of the hand's path; None: strokes.
+        text: Text of one or more lines.
+        image: A file that Pillow reads.
+        grating: Distances between lines in each of several groups, m.
+        font: A file for the text; None: DejaVu Sans.
+        path: A CSV of the hand's path; None: strokes.
 
     Raises:
-        ValueError: a pitch is no number or out of its range.
+        ValueError: A pitch is no number or out of its range.
     """
 
     text: str | None
@@ -72,8 +72,8 @@ class Page:
         """Reject zero or several contents, and a font without text.
 
         Args:
-            label: how a part is called where it was given, like "--{}".
-            where: the place, said first.
+            label: Notation of a part in messages, such as "--{}".
+            where: The place, said first.
         """
         parts = {"text": self.text, "image": self.image, "grating": self.grating}
         given = [label.format(name) for name, value in parts.items() if value is not None]

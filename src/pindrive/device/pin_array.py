@@ -43,14 +43,14 @@ class PinArray:
             mouse whose path is given. One pin at (0, 0) unless given.
         spots: (x, y) of the spot each of them shows, m, in the same frame; where it stands unless
             given.
-        axis: direction of the drive axis on the page, rad, from its x towards its y.
-        pin_diameter: of each pin, m, greater than 0.
-        slot_length: of the slot in which each pin moves along the drive axis, m, at least the
-            pin's diameter; None: not known.
+        axis: Direction of the drive axis on the page, rad, from its x towards its y.
+        pin_diameter: Diameter of each pin, m, greater than 0.
+        slot_length: Length of the slot in which each pin moves along the drive axis, m, at least
+            the diameter of the pin; None: unknown.
 
     Raises:
-        ValueError: no pins, two at one place, as many spots as pins are not given, or a number is
-            not finite.
+        ValueError: There are no pins, two pins at one place, or more or fewer spots than pins, or a
+            number is not finite.
     """
 
     places: Places
@@ -98,16 +98,16 @@ class PinArray:
         """Pins in columns along the drive axis and rows across it, about the middle, row by row.
 
         Args:
-            columns: how many stand side by side.
-            rows: how many rows there are.
-            pitch: from pin to pin, m.
-            spot_scale: their spots stand likewise, so many times as far apart.
-            axis: as for the class.
-            pin_diameter: as for the class.
-            slot_length: as for the class.
+            columns: Number of pins side by side.
+            rows: Number of rows.
+            pitch: Distance between pins, m.
+            spot_scale: Factor from the distances of the pins to those of their spots.
+            axis: Direction of the drive axis, as for the class.
+            pin_diameter: Diameter of each pin, as for the class.
+            slot_length: Length of each slot, as for the class.
 
         Raises:
-            ValueError: as for the class, or a count is no whole number.
+            ValueError: A value is invalid, as for the class, or a count is no whole number.
         """
         across, down = check_count("columns", columns), check_count("rows", rows)
         check_pins(across, down)

@@ -25,21 +25,24 @@ class Reading:
     """Reading hand: lines, strokes and speeds.
 
     Args:
-        hand_speed: peak speed of a reading stroke, m/s, greater than 0.
-        return_speed: the same on the way back to the next line, m/s.
-        pause: rest after each stroke, s, at least 0.
-        line_pitch: from line to line, m; None: twice the height of text, and of an image without
-            lines one stroke along its middle.
-        text_height: of capital letters, m, greater than 0.
-        pixel: of the scene, m; None: of an image its own, of text and lines 0.1 mm.
-        max_angle: between motion and drive axis before a warning, rad, from 0 to a right angle.
+        hand_speed: Peak speed of a reading stroke, m/s, greater than 0.
+        return_speed: Speed on the way back to the next line, m/s.
+        pause: Rest after each stroke, s, at least 0.
+        line_pitch: Distance between lines, m; None: twice the height of text or, of an image
+            without lines, one stroke along its middle.
+        text_height: Height of capital letters, m, greater than 0.
+        pixel: Size of a pixel of the scene, m; None: that of the image, or 0.1 mm for text and
+            lines.
+        max_angle: Angle between motion and drive axis above which a warning is given, rad, from 0
+            to a right angle.
         hand_acceleration: m/s²; more in a record is a jump of its speed.
-        mouse_resolution: of a record in counts of a mouse, counts per m.
-        smoothing_cutoff: with which a raw record is smoothed, Hz.
-        path_deviation: of the strokes' piecewise-linear speed, a part of its peak, in (0, 0.1].
+        mouse_resolution: Resolution of a mouse whose recording is in counts, counts per m.
+        smoothing_cutoff: Cut-off frequency of the smoothing of a raw recording, Hz.
+        path_deviation: Largest deviation of the piecewise-linear speed of strokes, as a part of its
+            peak, in (0, 0.1].
 
     Raises:
-        ValueError: a value is no number or out of its range.
+        ValueError: A value is no number or out of its range.
     """
 
     hand_speed: Number = default("hand_speed")
@@ -85,7 +88,7 @@ class Reading:
         top to bottom or, where none is given, once along its middle.
 
         Raises:
-            ValueError: the spots of the array find no room on the scene, or there are too many
+            ValueError: The spots of the array find no room on the scene, or there are too many
                 strokes or rows of the hand's speed.
         """
         left, right, top, bottom = scene.extent

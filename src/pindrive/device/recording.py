@@ -69,10 +69,11 @@ def through(
         t: s, shape (n,), n >= 2, increasing.
         x: m, shape (n,).
         y: m, shape (n,).
-        acceleration: of the hand, m/s²; more is taken for a jump of its speed, and refused.
+        acceleration: Largest acceleration of the hand, m/s²; a larger one is a jump of the speed,
+            and refused.
 
     Raises:
-        ValueError: too few places, times that do not increase, or a speed that jumps.
+        ValueError: Too few places, times that do not increase, or a speed that jumps.
     """
     most = check("hand_acceleration", acceleration, label="acceleration")
     time, px, py = (np.array(column, np.float64) for column in (t, x, y))
@@ -87,12 +88,12 @@ class HandRecording:
         t: s, shape (n,), n >= 2, increasing.
         x: m, shape (n,).
         y: m, shape (n,).
-        step: of the mouse, m, where its places are whole numbers of steps; None: found in them.
-        where: the file, for messages.
-        rows: number of each row in that file.
+        step: Step of the mouse, m, of positions in whole steps; None: found in the positions.
+        where: The file, for messages.
+        rows: Number of each row in that file.
 
     Raises:
-        ValueError: too few places, or times that do not increase.
+        ValueError: Too few places, or times that do not increase.
     """
 
     t: NDArray[np.float64]
@@ -121,12 +122,12 @@ class HandRecording:
         """A recording from a CSV, UTF-8, whose header is like `time [s], x [m], y [m]`.
 
         Args:
-            path: the file; `dx` and `dy` instead are the ways since the row before. Places may be
+            path: The file; `dx` and `dy` instead are the ways since the row before. Places may be
                 in `count`, the steps of a mouse. See `CsvTable` for the rest.
-            resolution: of the mouse, counts per m, where places are in counts.
+            resolution: Resolution of the mouse, counts per m, of positions in counts.
 
         Raises:
-            ValueError: the file cannot be read, the header lacks a column or a unit, a cell is no
+            ValueError: The file cannot be read, the header lacks a column or a unit, a cell is no
                 number or out of bounds; file and row are named.
         """
         table = CsvTable.read(path, "a recorded path", EXAMPLE)
@@ -200,7 +201,7 @@ class HandRecording:
         """Return the recording at even times, low-pass filtered at a cut-off (Hz), as stated above.
 
         Raises:
-            ValueError: the cut-off is not below a fifth of the rate, or there are too many rows.
+            ValueError: The cut-off is not below a fifth of the rate, or there are too many rows.
         """
         low = check("smoothing_cutoff", cutoff)
         if not low <= 0.2 * self.rate:
@@ -231,7 +232,7 @@ class HandRecording:
         """The hand's path: through its places or, of a raw recording, smoothed at `cutoff` (Hz).
 
         Raises:
-            ValueError: as for `through` and `smoothed`.
+            ValueError: The recording is invalid, as for `through` and `smoothed`.
         """
         about = self.words(acceleration, cutoff)
         if not self.raw(acceleration):
@@ -243,8 +244,8 @@ class HandRecording:
         """The path through its places, as the function `through` makes it.
 
         Args:
-            most: acceleration of the hand, m/s².
-            about: what the path says it was recorded from.
+            most: Acceleration of the hand, m/s².
+            about: Description of the recording in the path.
         """
         lasts = np.diff(self.t)
         middles = self.t[:-1] + 0.5 * lasts
@@ -306,13 +307,13 @@ def read_csv(
     """A recorded path from a CSV; a raw recording of a mouse is smoothed.
 
     Args:
-        path: the file, as for `HandRecording.read`.
+        path: The file, as for `HandRecording.read`.
         acceleration: m/s²; more is taken for a jump of the hand's speed, and refused.
-        resolution: of a mouse whose places are in counts, 1/m.
-        cutoff: with which a raw recording is smoothed, Hz.
+        resolution: Resolution of a mouse with positions in counts, 1/m.
+        cutoff: Cut-off frequency of the smoothing of a raw recording, Hz.
 
     Raises:
-        ValueError: as for `HandRecording.read` and `HandRecording.path`.
+        ValueError: The recording is invalid, as for `HandRecording.read` and `HandRecording.path`.
     """
     recording = HandRecording.read(path, check("mouse_resolution", resolution, label="resolution"))
     most = check("hand_acceleration", acceleration, label="acceleration")

@@ -104,7 +104,7 @@ class PinScan:
         """The pin's motion, over the time since `begin`.
 
         Raises:
-            SimulationError: the simulation had to be given up.
+            SimulationError: The simulation had to be given up.
         """
         kept = vars(self)  # cached_property of Python 3.11 lets one thread at a time compute
         if "_motion" not in kept:
@@ -232,8 +232,8 @@ class Scan(lazy.NotebookHtml):
         """Evaluate the shown lines against the printed lines.
 
         Args:
-            criteria: what counts as felt; those of the device
-                file unless given, and of a device without one the middle of the literature.
+            criteria: Criteria of a felt line; None: those of the device file or, of a device
+                without a file, the middle of the literature.
 
         Returns:
             A `pindrive.evaluation.Evaluation`: lines shown and missed, their lag and smear.
@@ -247,7 +247,7 @@ class Scan(lazy.NotebookHtml):
         """Plot the scanned page and the motions of the pins.
 
         Args:
-            pin: the one drawn in detail, from 0; one that reads a line unless given.
+            pin: The one drawn in detail, from 0; one that reads a line unless given.
 
         Returns:
             A figure; `figure.savefig(FILE)` writes it.
@@ -331,15 +331,15 @@ class Scan(lazy.NotebookHtml):
         """Write each pin at even times as CSV: x, its velocity and acceleration, the forces on it.
 
         Args:
-            path: the file of samples, pin after pin, on the path's clock. The events go beside it:
+            path: The file of samples, pin after pin, on the path's clock. The events go beside it:
                 those of "s.csv" to "s-events.csv". Both are whole or not there.
-            rate: samples a second, Hz, from 1e-6 to 1e12, the first at the path's begin.
+            rate: Samples a second, Hz, from 1e-6 to 1e12, the first at the path's begin.
 
         Returns:
             The path of the events.
 
         Raises:
-            ValueError: as for `Motion.to_csv`; the samples of all pins count together.
+            ValueError: The samples of all pins exceed their budget, as for `Motion.to_csv`.
         """
         from pindrive.files.export import scan_to_csv
 
@@ -370,29 +370,30 @@ def scan(
     """Simulate a device that moves over a page, with each pin exact.
 
     Args:
-        device: as `load_device` reads it; or a `Device`, whose hand reads as `Reading` has it.
-        page: what is on it: a `Page` (text, an image, or lines), a `Scene`, or the text itself.
-        hand: how the hand moves: a `HandPath`, whose places are where the hand's axis crosses the
-            array's middle; a `Reading`, which strokes along the lines of the page; or the CSV of a
-            recorded path. None: as the device file says, and strokes along the page's lines.
-        touch: force with which the finger presses on each pin, N, at least 0: a number, or a
+        device: Device as `load_device` reads it; or a `Device`, with the hand of `Reading`.
+        page: Content of the page: a `Page` (text, an image, or lines), a `Scene`, or text.
+        hand: Motion of the hand: a `HandPath`, whose positions are those at which the hand's axis
+            crosses the array's middle; a `Reading`, which strokes along the lines of the page; or
+            the CSV of a recorded path. None: strokes along the lines of the page, with the speed of
+            the device file.
+        touch: Force with which the finger presses on each pin, N, at least 0: a number, or a
             `Profile` on the path's clock, 0 where it is lifted; for a finger with a coefficient.
-            None: as the device file says, or that of the drive throughout.
-        start: where each pin stands at the path's begin, as `Scan.state` of a scan that ended
-            there; None: at the springs' rest, all magnets off.
-        max_angle: between motion and drive axis beyond which a warning is given, rad, from 0 to a
-            right angle; as the device file says unless given.
-        threads: how many pins are followed at once, at least 1; None: as many as there are cores.
-        progress: told after each pin.
+            None: that of the device file, otherwise that of the drive.
+        start: State of each pin at the begin of the path, as `Scan.state` of an earlier scan; None:
+            springs at rest, magnets off.
+        max_angle: Angle between motion and drive axis above which a warning is given, rad, from 0
+            to a right angle; None: that of the device file.
+        threads: Number of pins simulated at once, at least 1; None: all cores.
+        progress: Function called after each pin.
 
     Returns:
         The scan, with its warnings.
 
     Raises:
-        ValueError: the page or the recording cannot be read, a state is missing or cannot be, the
+        ValueError: The page or the recording cannot be read, a state is missing or cannot be, the
             finger's friction does not follow a touch force, `threads` is no count, or there is more
             to do than `pindrive.quantities.budgets` allow.
-        SimulationError: the simulation of a pin had to be given up.
+        SimulationError: The simulation of a pin had to be given up.
 
     Examples:
         >>> import pindrive as pd

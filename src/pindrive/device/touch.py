@@ -14,12 +14,12 @@ def finger_load(drive: Drive, touch: float | str | Profile | None, begin: float)
     """The factor on the finger's friction, over the time since `begin`.
 
     Args:
-        drive: of each pin, whose friction is that under its `touch_force`.
-        touch: touch force, N, over the time of the scan; None: that of the drive.
-        begin: of the scan, s.
+        drive: Drive of each pin, with the friction under its `touch_force`.
+        touch: Touch force, N, over the time of the scan; None: that of the drive.
+        begin: Begin of the scan, s.
 
     Raises:
-        ValueError: a value is no number or out of its range, or friction does not follow it.
+        ValueError: A value is no number or out of its range, or friction does not follow it.
     """
     if touch is None:
         return 1.0

@@ -32,7 +32,7 @@ class Signal:
     """A quantity of a pin over time, counted forward: monotone between the knots of its course.
 
     Args:
-        of: a method of a `Motion`: its `position` or its `stretch`.
+        of: A method of a `Motion`: its `position` or its `stretch`.
         sign: 1, or -1 where the plate goes backwards.
     """
 
@@ -167,7 +167,7 @@ def check_vibration(drive: Drive, duration: float, pins: int = 1) -> None:
     """Reject more turning points of all pins over a duration (s) than the budget.
 
     Raises:
-        ValueError: too many: the skin makes them vibrate too fast.
+        ValueError: Too many: the skin makes them vibrate too fast.
     """
     skin = 0.0 if drive.finger.rigid else drive.finger.stiffness
     frequency = sqrt((drive.stiffness + skin) / drive.mass) / (2.0 * pi)
@@ -199,12 +199,13 @@ def brackets(
     SciPy's brentq takes fewer steps, but loading scipy.optimize takes longer than a usual scan.
 
     Args:
-        f: of places of shape (n, k), such as times.
-        low: where the brackets begin, shape (n,); f changes its sign once in each.
-        high: where they end, shape (n,).
-        sign: of f where they begin, 1 or -1, shape (n,).
-        pieces: into how many each is cut at once.
-        precision: how far apart both may be, a part of the first; 0: neighbouring floats.
+        f: Function of positions of shape (n, k), such as times.
+        low: Lower ends of the brackets, shape (n,); f changes its sign once in each.
+        high: Upper ends of the brackets, shape (n,).
+        sign: Sign of f at the lower ends, 1 or -1, shape (n,).
+        pieces: Number of pieces into which each bracket is cut at once.
+        precision: Largest width of a bracket at the end, as a part of its first width; 0:
+            neighbouring floats.
     """
     grid, row = np.arange(pieces + 1) / pieces, np.arange(low.size)
     while (high - low > precision * low).any():

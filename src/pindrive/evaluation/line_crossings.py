@@ -41,7 +41,7 @@ def printed(device: Device, path: HandPath, scene: Scene) -> list[list[Printed]]
     the path's begin or end.
 
     Raises:
-        ValueError: too many lines.
+        ValueError: Too many lines.
     """
     way = Way(path)
     lengths = np.diff(way(path.times))
@@ -90,8 +90,8 @@ def _edges(
     """Return the changes between dark and light, s, and the darkness at both ends.
 
     Args:
-        lightness: luminance above the threshold at times, s.
-        looks: times that find each change, in order, some at a time.
+        lightness: Luminance above the threshold at times, s.
+        looks: Times that find each change, in order, some at a time.
     """
     low, high, sign = [np.zeros(0)], [np.zeros(0)], [np.zeros(0)]
     first, before, was = False, np.zeros(0), np.zeros(0, bool)

@@ -38,10 +38,10 @@ class PageSpeeds(lazy.NotebookHtml):
     """Fate of the lines of a page, by the speed of the hand.
 
     Attributes:
-        title: of the page.
-        tried: the slowest hand and the fastest, m/s.
-        counts: for each speed that was tried, m/s in ascending order, how many lines and false
-            lines there were, by the names of `Evaluation.counts`.
+        title: Title of the page.
+        tried: The slowest hand and the fastest, m/s.
+        counts: Numbers of lines and of false lines for each evaluated speed, m/s in ascending
+            order, by the names of `Evaluation.counts`.
     """
 
     title: str
@@ -122,17 +122,17 @@ def speeds_over_page(
     """Scan a page at many hand speeds, and evaluate its lines at each.
 
     Args:
-        device: what is moved over the page.
-        reading: how the hand reads; its speed is what varies.
-        page: a page that the hand reads in strokes.
-        touch: how the finger lies on it; always if none.
-        criteria: what counts as felt; the literature's unless given.
-        slowest: peak speed of the slowest hand, m/s, greater than 0.
-        fastest: that of the fastest, m/s, greater than `slowest`.
-        progress: told after each scan.
+        device: Device that is moved over the page.
+        reading: Reading hand; its speed is varied.
+        page: A page that the hand reads in strokes.
+        touch: Touch of the finger; None: constant touch.
+        criteria: Criteria of a felt line; None: those of the literature.
+        slowest: Peak speed of the slowest hand, m/s, greater than 0.
+        fastest: Largest speed, m/s, greater than `slowest`.
+        progress: Function called after each scan.
 
     Raises:
-        ValueError: the speeds are out of their ranges, or the page is followed by a recorded hand.
+        ValueError: The speeds are out of their ranges, or the page is followed by a recorded hand.
     """
     tried = check_tried(slowest, fastest)
     if page.path is not None:

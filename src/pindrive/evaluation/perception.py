@@ -164,7 +164,7 @@ class Evaluation(lazy.NotebookHtml):
         """Least, median and largest of a number of the lines shown, SI; NaN where none has it.
 
         Args:
-            name: of `Line.numbers`.
+            name: Name of a number in `Line.numbers`.
         """
         values = np.array([line.numbers[name] for line in self.shown])
         known = values[~np.isnan(values)]
@@ -198,8 +198,8 @@ def evaluate(scan: Scan, criteria: Criteria | None = None) -> Evaluation:
     """Hold what each pin did in a scan against what is printed along its way.
 
     Args:
-        scan: the scan.
-        criteria: what counts as felt; the middle of the literature unless given.
+        scan: The scan.
+        criteria: Criteria of a felt line; None: the middle of the literature.
     """
     limits = criteria or Criteria()
     stops, way = turnings(scan.path, scan.device.array.axis), Way(scan.path)
@@ -233,12 +233,12 @@ class EvaluatedPin:
     """One pin's lines and swings. Times are since the scan's begin, s.
 
     Args:
-        scan: the scan.
-        pin: one of its pins.
-        passed: the lines printed along its way.
-        stops: when the hand stops or turns back, s.
-        way: the length of the hand's way.
-        criteria: what counts as felt.
+        scan: The scan.
+        pin: One of the pins of the scan.
+        passed: The lines printed along its way.
+        stops: Times at which the hand stops or turns back, s.
+        way: The length of the hand's way.
+        criteria: Criteria of a felt line.
     """
 
     def __init__(

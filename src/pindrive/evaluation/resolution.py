@@ -125,9 +125,9 @@ class SpeedLimits(lazy.NotebookHtml, Sequence[SpeedLimit]):
     """Largest hand speeds over two lines of several pitches; a sequence of limits.
 
     Attributes:
-        limits: of each pitch, in the order in which they were given.
-        part: of its way that the pin had to be back in between.
-        criteria: what counted as felt.
+        limits: Limit of each pitch, in the given order.
+        part: Required return of the pin between two lines, as a part of its deflection.
+        criteria: Criteria of a felt line.
     """
 
     limits: tuple[SpeedLimit, ...]
@@ -193,18 +193,18 @@ def largest_speeds(
     """The largest hand speed at which two lines stay distinct, for each pitch.
 
     Args:
-        device: its drive, magnet and control block; one pin of it.
-        pitches: from line to line, m, greater than 0.
-        width: of the lines, m, less than each pitch; None: half the pitch.
-        part: of its way that the pin must be back in between, in (0, 1].
-        slowest: hand tried, m/s, greater than 0.
-        fastest: hand tried, m/s, greater than `slowest`.
-        criteria: what counts as felt; the literature's unless given.
-        progress: told after each trial.
+        device: Device with drive, magnet and control block; one pin is evaluated.
+        pitches: Distances between lines, m, greater than 0.
+        width: Width of the lines, m, less than each pitch; None: half of the pitch.
+        part: Required return of the pin between two lines, as a part of its deflection, in (0, 1].
+        slowest: Hand tried, m/s, greater than 0.
+        fastest: Hand tried, m/s, greater than `slowest`.
+        criteria: Criteria of a felt line; None: those of the literature.
+        progress: Function called after each trial.
 
     Raises:
-        ValueError: no pitch, a value is no number or out of its range, or there is more to do than
-            `pindrive.quantities.budgets` allow.
+        ValueError: No pitch is given, a value is out of range, or the work exceeds a budget of
+            `pindrive.quantities.budgets`.
     """
     budgets.PITCHES.check(len(pitches))
     steps = [check("speed.pitch", pitch, label="pitch") for pitch in pitches]
@@ -238,7 +238,7 @@ def check_tried(slowest: float, fastest: float) -> Band:
     """The slowest hand and the fastest that are to be tried, m/s.
 
     Raises:
-        ValueError: one is no speed, or the slowest is not less than the fastest.
+        ValueError: A value is no speed, or the slowest is not below the fastest.
     """
     least, most = (
         check(f"speed.{name}", value, label=name)
@@ -257,13 +257,13 @@ def check_work(
     """Reject trials beyond the budgets, before the first trial.
 
     Args:
-        device: as for `largest_speeds`.
-        pitches: m.
-        widths: of the lines of each pitch, m.
-        tried: the slowest hand and the fastest, m/s.
+        device: Device, as for `largest_speeds`.
+        pitches: Distances between lines, m.
+        widths: Width of the lines of each pitch, m.
+        tried: Slowest and fastest speed of the hand, m/s.
 
     Raises:
-        ValueError: they are.
+        ValueError: The trials exceed a budget.
 
     The slowest trial takes the most looks, the fastest the most pixels; that the looks of all are
     so many times those of the slowest follows from the grid.
@@ -362,11 +362,11 @@ def two_lines(
     """Go over two lines at an even speed, once for each phase of the control block's looks.
 
     Args:
-        device: one pin of it is taken.
+        device: Device of which one pin is evaluated.
         pitch: m.
         width: m.
         speed: m/s.
-        criteria: what counts as felt.
+        criteria: Criteria of a felt line.
     """
     drive = device.drive
     after = _clear(device) + 4.0 * pi / drive.natural_frequency
@@ -387,11 +387,11 @@ def settles(device: Device, pitch: float, width: float, trial: Trial, criteria: 
     """Return True if the pin settles after the first line alone before the second line.
 
     Args:
-        device: as in the trial.
+        device: Device of the trial.
         pitch: m, as in the trial.
         width: m, as in the trial.
-        trial: as `two_lines` found it.
-        criteria: as in the trial.
+        trial: Trial that `two_lines` returned.
+        criteria: Criteria of the trial.
     """
     after = _clear(device) + _followed(device.drive)
     alone = _pass(device, (0.0,), pitch, width, trial.speed, after, criteria)

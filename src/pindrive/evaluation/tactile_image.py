@@ -46,7 +46,7 @@ def paint(scan: Scan) -> Painting:
     """Paint what each pin of a scan did.
 
     Raises:
-        ValueError: too many places to paint.
+        ValueError: Too many places to paint.
     """
     left, right, top, bottom = scan.scene.extent
     cell = max(scan.scene.pixel, max(right - left, bottom - top) / CELLS)
@@ -116,8 +116,8 @@ def view(scan: Scan, around: bool = False) -> tuple[float, float, float, float]:
     """Left, right, top and bottom of what is worth a look: the print and the pins' tracks, m.
 
     Args:
-        scan: the scan.
-        around: across the page the print alone, with room for what follows it.
+        scan: The scan.
+        around: Across the page the print alone, with room for what follows it.
     """
     scene = scan.scene
     left, right, top, bottom = scene.extent

@@ -25,8 +25,8 @@ def writers(
     """Writers of a dataset by the suffix of the file.
 
     Args:
-        title: what the files hold.
-        columns: the first of the CSV.
+        title: Content of the files.
+        columns: The first of the CSV.
     """
     return {
         ".csv": (replace(headed(f"CSV file of {title}", columns), library="xarray"), write_csv),

@@ -120,7 +120,7 @@ class DeviceFile:
         """The whole device, with the usual values of what the file does not say.
 
         Raises:
-            ConfigError: no magnet can hold by this drive's plate.
+            ConfigError: No magnet can hold by the plate of this drive.
         """
         whole = self._whole
         control = ControlBlock(**table_of(whole.values, "control"))
@@ -255,16 +255,16 @@ def load_device(
     """The device that the file at `path` describes, with single values set otherwise.
 
     Args:
-        path: a TOML file; `pindrive init FILE` writes one.
+        path: A TOML file; `pindrive init FILE` writes one.
         overrides: "key=value" each, or a mapping of keys to values, in which a number is SI and
             text has a unit. A key is written as in device files (plate.kinetic=30 mN), as in Python
             (plate_kinetic=30 mN) or by the part after the dot where no other key has it
             (latency=5 ms), rows as TOML has them (plate_load=[["0 ms", 1], ...]) or a
             CSV of them (mouse_velocity=speed.csv); a path is relative to the current folder.
             Setting damping replaces damping_ratio, and vice versa. What `Quantity.follows` ties to
-            a value that is set keeps its ratio to it unless it is set too: static friction and the
+            a value that is set keeps its ratio to it unless it is set too: Static friction and the
             friction curve to kinetic friction, the skin's stretch to the largest that it can have.
-        whole: the whole device is wanted at once, also of a file without a table of it; otherwise
+        whole: The whole device is wanted at once, also of a file without a table of it; otherwise
             what such a file leaves out has its usual value where it is requested.
 
     Returns:
@@ -272,7 +272,7 @@ def load_device(
         how a hand reads with it and what counts as felt. `scan` and `Study` take it.
 
     Raises:
-        ConfigError: the file cannot be read, or holds anything unknown, missing or out of bounds;
+        ConfigError: The file cannot be read, or holds anything unknown, missing or out of bounds;
             a line for each problem, with file, key, value and bound. It is a ValueError.
 
     Examples:
@@ -304,7 +304,7 @@ def device_of(
         problems: Errors found before.
 
     Raises:
-        ConfigError: As for `load_device`.
+        ConfigError: The file or a value is invalid, as for `load_device`.
     """
     _refuse_study(file, given)
     settings = tuple(settings)
@@ -434,7 +434,7 @@ def read_tables(file: Path, template: str = "`pindrive init FILE` writes a devic
     """Read a TOML file as a dictionary; for an empty one `template` tells the remedy.
 
     Raises:
-        ConfigError: it cannot be read, is empty or no TOML.
+        ConfigError: The file cannot be read, is empty, or is no TOML.
     """
     try:
         text = file.read_text(encoding="utf-8-sig")

@@ -24,11 +24,11 @@ def device_text(
     """The text of a device file.
 
     Args:
-        device: what it says.
-        values: of keys that have other values, as TOML has them.
-        target: where the text will stand; paths in it are relative to that.
-        head: lines at its top.
-        comments: lines above keys.
+        device: Device that the text describes.
+        values: Values of keys set otherwise, as TOML has them.
+        target: File of the text; paths in the text are relative to its folder.
+        head: Lines at its top.
+        comments: Lines above keys.
     """
     tables = {name: dict(table) for name, table in device.tables.items() if table}
     for key, path in files_named(device.tables, device.path.parent).items():

@@ -56,11 +56,11 @@ def even_times(begin: float, end: float, rate: float | str, curves: int = 1) -> 
     Args:
         begin: s.
         end: s, later.
-        rate: samples a second, Hz, from 1e-6 to 1e12.
-        curves: how many motions are sampled at them.
+        rate: Samples a second, Hz, from 1e-6 to 1e12.
+        curves: Number of motions that are sampled at the times.
 
     Raises:
-        ValueError: there would be more samples than `pindrive.quantities.budgets` allow.
+        ValueError: The samples exceed a budget of `pindrive.quantities.budgets`.
     """
     per_second = check("rate", rate)
     count = (end - begin) * per_second + 1.0
@@ -185,7 +185,7 @@ def write_json(motion: Motion, device: DeviceFile, path: Path) -> None:
     An infinite one is the text "Infinity".
 
     Raises:
-        ValueError: the motion has more phases than `pindrive.quantities.budgets` allow.
+        ValueError: The motion has more phases than `pindrive.quantities.budgets` allow.
     """
     from pindrive import __version__
 

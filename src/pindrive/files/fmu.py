@@ -210,12 +210,12 @@ def write_fmu(device: DeviceFile, path: Path, version: int = 3) -> None:
     """Write a device's drive as a functional mock-up unit for co-simulation.
 
     Args:
-        device: a device file; of the whole device one pin with its magnet.
-        path: the archive.
-        version: of FMI, one of `VERSIONS`.
+        device: A device file; of the whole device one pin with its magnet.
+        path: The archive.
+        version: Version of FMI, one of `VERSIONS`.
 
     Raises:
-        ValueError: another version; this installation has no library for an FMU.
+        ValueError: Another version; this installation has no library for an FMU.
     """
     if version not in VERSIONS:
         raise ValueError(f"version must be one of {', '.join(map(str, VERSIONS))}, got {version}")

@@ -141,7 +141,7 @@ def template(whole: bool = False) -> str:
     """A commented device file with usual values, as `pindrive init` writes it.
 
     Args:
-        whole: with the tables of the whole device, as `pindrive init --device` writes it.
+        whole: True for the tables of the whole device, as `pindrive init --device` writes them.
     """
     lines = [
         "# A tactile device, for pindrive."

@@ -63,12 +63,12 @@ def check_outputs(
     """Refuse to write over what is needed.
 
     Args:
-        outputs: what is to be written.
-        inputs: what the command reads; compared as files, through links of any sort.
-        force: whether files may be replaced that are of another kind, or took long to make.
+        outputs: Files to write.
+        inputs: Files that the command reads; compared as files, through links of any sort.
+        force: True to replace files of another kind, or files that took long to compute.
 
     Raises:
-        OutputError: two outputs are one file, an output is an input, a file is there that may not
+        OutputError: Two outputs are one file, an output is an input, a file is there that may not
             be replaced, or the library that writes it is not installed.
     """
     read = [*inputs]
@@ -131,7 +131,7 @@ def atomic_write(target: str | os.PathLike[str]) -> Iterator[Path]:
     exception in the block nothing is left behind and an older file at `target` is as it was.
 
     Raises:
-        OutputError: the target is no regular file, or cannot be created or replaced.
+        OutputError: The target is no regular file, or cannot be created or replaced.
     """
     path = Path(os.path.realpath(target))  # a link stays, what it points to is replaced
     part = path.with_name(f".{path.name[:200]}.{token_hex(4)}.part")
@@ -179,7 +179,7 @@ def check_folder(folder: str | os.PathLike[str]) -> None:
     """Refuse at once what `write_files` would refuse of a folder; nothing is made.
 
     Raises:
-        OutputError: it, or what it would be made in, is no folder or cannot be written.
+        OutputError: The file or its folder is no folder or cannot be written.
     """
     path = Path(os.path.realpath(folder))
     while not path.exists():
@@ -197,13 +197,13 @@ def write_files(
     """Write files into a folder that need not be there: all, or none.
 
     Args:
-        folder: where; other files in it stay as they are.
-        files: what, by the path in the folder. One that is there is replaced if it begins with the
-            same line, and has the same title.
-        force: whether any other that is there is replaced too.
+        folder: Folder of the files; other files in it are kept.
+        files: Content of each file by its path in the folder. An existing file is replaced if it
+            begins with the same line and has the same title.
+        force: True to replace any other existing file.
 
     Raises:
-        OutputError: a file or a folder cannot be written, or would replace something else.
+        OutputError: A file or a folder cannot be written, or would replace something else.
     """
     top, made = Path(folder), []
     outputs = [Output(top / name, _like(name, content)) for name, content in files.items()]

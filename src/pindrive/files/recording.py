@@ -28,9 +28,9 @@ def with_files_read(
     """Return the tables with the rows, SI, of each named CSV, and the errors of the CSV files.
 
     Args:
-        tables: of a device file; their values as TOML has them.
-        folder: of that file, to which a path is relative.
-        place: where keys were written.
+        tables: Tables of a device file, as TOML has them.
+        folder: Folder of that file, to which paths are relative.
+        place: Place of keys.
     """
     found, problems = dict(tables), []
     for key, file in files_named(tables, folder).items():
@@ -71,7 +71,7 @@ def profile_words(file: Path) -> str:
     """Return the description of the rows of a CSV; empty for a file without an input by name.
 
     Raises:
-        ValueError: it cannot be read, or its rows are malformed; file and row are named.
+        ValueError: The file cannot be read, or its rows are malformed; file and row are named.
     """
     table = CsvTable.read(file, "a CSV", profile_header(NUMERIC_KEYS[SPEED]))
     for key, quantity in NUMERIC_KEYS.items():

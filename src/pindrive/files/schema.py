@@ -136,7 +136,7 @@ def read_value(value: object, key: str, place: str) -> float | Rows:
     """Return the TOML value of a key in SI: a number, or rows.
 
     Raises:
-        ValueError: it is malformed or out of the key's bounds.
+        ValueError: The value is malformed or out of the bounds of the key.
     """
     quantity = NUMERIC_KEYS[key]
     if quantity.rows and (isinstance(value, list | tuple) or not quantity.may_be_constant):
@@ -206,7 +206,7 @@ def drive_of(values: Mapping[str, Value]) -> Drive:
     """The drive that a file's tables describe.
 
     Raises:
-        ValueError: each value is in range, but not what follows from them together.
+        ValueError: Each value is in range, but a derived value is not.
     """
     given = table_of(values, "drive")
     given |= {name: contact_of(values, name) for name in ("plate", "finger")}

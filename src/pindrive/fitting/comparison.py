@@ -24,15 +24,15 @@ def compare_models(found: Fit, seed: int = 1) -> ModelComparison:
     """Fits of other laws of friction to the recordings of a fit, by AICc.
 
     Args:
-        found: the fit; what it had free besides friction is free again.
-        seed: of the candidates.
+        found: The fit; what it had free besides friction is free again.
+        seed: Seed of the candidates.
 
     Returns:
         Coulomb friction, static friction, a friction curve and compliant skin, where the drive can
         have them, with AICc and weights.
 
     Raises:
-        ValueError: none of them can be fitted.
+        ValueError: None of them can be fitted.
     """
     model = found.model
     bounds = {p.key: (p.lower, p.upper) for p in model.parameters}

@@ -23,9 +23,9 @@ def fitted_file(device: DeviceFile, found: Fit, target: Path) -> str:
     own, that of the first is written.
 
     Args:
-        device: the file that the fit started from.
-        found: the fit.
-        target: where the text will stand; paths in it are relative to that.
+        device: The file that the fit started from.
+        found: The fit.
+        target: File of the text; paths in the text are relative to its folder.
     """
     values = _values(device, found)
     values["drive.damping"] = written("drive.damping", found.drive.damping)

@@ -57,23 +57,23 @@ def fit(
     profiles that meet a better fit start it again. The same seed gives the same result.
 
     Args:
-        recordings: what was measured; each may have its own mouse velocity and plate load.
-        drive: what is known of the drive, and where the search starts.
-        release: the initial state and the inputs, one for all recordings or one for each.
-        free: what is fitted: of the drive `mass`, `stiffness`, `damping` or `damping_ratio`,
-            `plate.kinetic`, `plate.static`, `finger.kinetic`, `finger.static`,
-            `finger.stiffness`, rows such as `finger_curve[1].force`; of each release
-            `displacement`, `velocity`, `skin_stretch`, `mouse_velocity`, `plate_load`, rows such as
-            `plate_load[1].time`; of each recording `time_offset`, its time of the release, and
-            `position_offset` or that of another channel. Keys of device files are names too. With
-            several recordings, what each has of its own is named with its place, such as
-            `displacement@0`.
+        recordings: Measurements; each may have its own mouse velocity and plate load.
+        drive: Drive with the known values and the start of the search.
+        release: The initial state and the inputs, one for all recordings or one for each.
+        free: Fitted parameters: of the drive `mass`, `stiffness`, `damping` or `damping_ratio`,
+            `plate.kinetic`, `plate.static`, `finger.kinetic`, `finger.static`, `finger.stiffness`,
+            rows such as `finger_curve[1].force`; of each release `displacement`, `velocity`,
+            `skin_stretch`, `mouse_velocity`, `plate_load`, rows such as `plate_load[1].time`; of
+            each recording `time_offset`, its time of the release, and `position_offset` or that of
+            another channel. Keys of device files are names too. With several recordings, what each
+            has of its own is named with its place, such as `displacement@0`.
         bounds: (least, largest) by name, SI or text with a unit; unless given, a tenth to ten
             times what the drive has, from 0 for damping and friction.
-        seed: of the candidates, from 0 on.
-        confidence: of the intervals, between 0 and 1.
-        profiles: whether to compute them; without, intervals are those of the derivatives alone.
-        cluster: the address of a Dask scheduler, whose workers compute the profiles, which take
+        seed: Seed of the candidates, from 0 on.
+        confidence: Confidence of the intervals, between 0 and 1.
+        profiles: True to compute profile likelihoods; otherwise intervals follow from the
+            derivatives alone.
+        cluster: The address of a Dask scheduler, whose workers compute the profiles, which take
             most of the time.
 
     Returns:
@@ -81,7 +81,7 @@ def fit(
         the noise; the fitted drive and releases.
 
     Raises:
-        ValueError: a recording that is shorter than a quarter of a period, a name or bounds that
+        ValueError: A recording that is shorter than a quarter of a period, a name or bounds that
             `free` cannot have, a parameter that changes no sample.
     """
     given = [recordings] if isinstance(recordings, Recording) else [*recordings]

@@ -41,11 +41,11 @@ class FrictionCurve(lazy.NotebookHtml):
 
     Attributes:
         rows: (speed in m/s, force in N), from 0 m/s on.
-        standard_errors: of the forces, N, one for each row.
-        noise: standard deviation of the forces about the curve, N.
+        standard_errors: Standard errors of the forces, N, one for each row.
+        noise: Standard deviation of the forces about the curve, N.
         aicc: Akaike's corrected criterion for each number of rows that was tried.
-        speed: measured sliding speeds, m/s, shape (n,).
-        force: measured friction forces at them, N, shape (n,).
+        speed: Measured sliding speeds, m/s, shape (n,).
+        force: Measured friction forces at them, N, shape (n,).
     """
 
     rows: tuple[tuple[float, float], ...]
@@ -112,17 +112,18 @@ def fit_friction(speed: ArrayLike, force: ArrayLike, *, rows: int | None = None)
     corrected Akaike criterion.
 
     Args:
-        speed: sliding speeds, m/s, shape (n,), of either sign.
-        force: friction force against the sliding, N, shape (n,); where it is given with the sign of
+        speed: Sliding speeds, m/s, shape (n,), of either sign.
+        force: Friction force against the sliding, N, shape (n,); where it is given with the sign of
             the speed, or the opposite one, its size is taken.
-        rows: how many, at least 1; None: as many as the criterion says.
+        rows: Number of rows, at least 1; None: by the criterion.
 
     Returns:
         The rows with their standard errors, and the criterion for each number of rows.
 
     Raises:
-        ValueError: no numbers, lengths that differ, too few samples, no speed or no force other
-            than zero, or a force that mostly pushes the way of sliding at some speeds only.
+        ValueError: The arrays are empty, differ in length, hold too few samples, have no speed or
+            no force other than zero, or a force that mostly acts in the direction of sliding at
+            some speeds only.
 
     Warns:
         UserWarning: the residuals of neighbouring samples are alike, as of hysteresis: friction

@@ -34,8 +34,9 @@ class Rank:
     """The rank of the derivatives at the optimum, and what follows from it.
 
     Attributes:
-        covariance: of the estimates, infinite on the diagonal where there is none, shape (k, k).
-        groups: parameters of which the recordings tell combinations alone, by their places.
+        covariance: Covariance of the estimates, infinite on the diagonal of an undetermined
+            estimate, shape (k, k).
+        groups: Parameters of which the recordings tell combinations alone, by their places.
     """
 
     covariance: Array
@@ -49,10 +50,10 @@ def rank(problem: Problem, theta: Array, tried: Array, coarse: Problem) -> Rank:
     and at every candidate.
 
     Args:
-        problem: of all samples.
-        theta: the optimum.
-        tried: candidates, shape (n, k).
-        coarse: of fewer samples, for the candidates.
+        problem: Problem of all samples.
+        theta: The optimum.
+        tried: Candidates, shape (n, k).
+        coarse: Problem of fewer samples, for the candidates.
     """
     slopes = problem.slopes(theta)
     lengths = np.linalg.norm(slopes, axis=0)

@@ -41,11 +41,11 @@ class Model:
     """The recordings as functions of the parameters.
 
     Args:
-        found: the parameters.
-        drive: what they change.
-        releases: likewise, one for each recording.
-        recordings: what was measured.
-        strides: for each recording, every so many of its samples alone.
+        found: The parameters.
+        drive: Drive that the parameters change.
+        releases: Releases that the parameters change, one for each recording.
+        recordings: Measurements.
+        strides: Stride of the used samples of each recording.
     """
 
     def __init__(

@@ -102,7 +102,7 @@ def parameters(
     """Return the parameters named in `free`, sensor parameters once per recording.
 
     Raises:
-        ValueError: a name is unknown or given twice, or the drive or the release does not have it;
+        ValueError: A name is unknown or given twice, or the drive or the release does not have it;
             bounds of what is not free, or out of range.
     """
     if isinstance(free, str) or not free:
@@ -266,10 +266,10 @@ class Assembly:
     """The core's numbers of each recording as functions of the parameters.
 
     Args:
-        found: the parameters.
-        drive: what they change.
-        releases: likewise, one for each recording.
-        durations: until when each recording is simulated, s.
+        found: The parameters.
+        drive: Drive that the parameters change.
+        releases: Releases that the parameters change, one for each recording.
+        durations: Until when each recording is simulated, s.
     """
 
     def __init__(

@@ -24,9 +24,9 @@ class ProfileLikelihood:
     """Least cost over all other parameters, at values of one parameter.
 
     Attributes:
-        values: of the parameter, SI, increasing, shape (n,).
-        excess: the cost there less that of the optimum, shape (n,).
-        interval: where the excess is the threshold; infinite on a side that is open.
+        values: Values of the parameter, SI, increasing, shape (n,).
+        excess: The cost there less that of the optimum, shape (n,).
+        interval: Interval in which the excess is below the threshold; infinite on an open side.
     """
 
     values: Array
@@ -48,7 +48,7 @@ def profile(
     """The profile of parameter i, from the optimum both ways past `threshold` or to its bound.
 
     Raises:
-        BetterOptimum: the other parameters reach a lower cost than the optimum.
+        BetterOptimum: The other parameters reach a lower cost than the optimum.
     """
     sides = [_Side(problem, best, i, covariance, threshold, way) for way in (-1.0, 1.0)]
     found = [side.follow() for side in sides]

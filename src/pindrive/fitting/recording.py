@@ -46,15 +46,15 @@ class Recording:
         velocity: m/s, shape (n,).
         acceleration: m/s², shape (n,).
         force: N, shape (n,).
-        mouse_velocity: of this recording instead of the release's: m/s, a `Profile`, or one value
-            for each time, shape (n,).
-        plate_load: likewise, a factor on the plate's friction.
-        noise: the known standard deviation of the noise by channel, SI; estimated where left out.
-        name: for messages and figures, such as its file.
+        mouse_velocity: Mouse velocity of this recording in place of the release's: m/s, a
+            `Profile`, or one value for each time, shape (n,).
+        plate_load: Factor on the friction of the plate, in the same notations.
+        noise: The known standard deviation of the noise by channel, SI; estimated where left out.
+        name: Name in messages and figures, such as the file.
 
     Raises:
-        ValueError: no channel, lengths that differ, times that do not increase, a value that is not
-            finite, fewer than 8 samples, a channel that is zero throughout.
+        ValueError: There is no channel, lengths differ, times do not increase, a value is not
+            finite, there are fewer than 8 samples, or a channel is zero throughout.
     """
 
     time: NDArray[np.float64]
@@ -123,7 +123,7 @@ class Recording:
         """The samples from `begin` to `end` (s, both included); times stay as they are.
 
         Raises:
-            ValueError: fewer than 8 samples lie in it.
+            ValueError: Fewer than 8 samples lie in it.
         """
         first, last = (check("profile.time", t, label="window") for t in (begin, end))
         inside = (self.time >= first) & (self.time <= last)
@@ -157,15 +157,15 @@ def read_recording(
     what `Motion.to_csv` writes can be read.
 
     Args:
-        path: the file, UTF-8.
-        mouse_velocity: where no column gives it, m/s.
-        noise: the known standard deviation of the noise by channel, SI or text with a unit.
+        path: The file, UTF-8.
+        mouse_velocity: Mouse velocity of a recording without such a column, m/s.
+        noise: The known standard deviation of the noise by channel, SI or text with a unit.
 
     Returns:
         The recording, named as its file.
 
     Raises:
-        ValueError: the file cannot be read, lacks a column or a unit, holds what is no number, or
+        ValueError: The file cannot be read, lacks a column or a unit, holds what is no number, or
             as for `Recording`; one line that names file, row and value.
     """
     file = str(path)

@@ -24,15 +24,15 @@ class Residuals:
     """Residuals of one channel of one recording.
 
     Attributes:
-        recording: its place among the recordings.
+        recording: Index of the recording.
         channel: "position", "velocity", "acceleration" or "force".
-        count: of samples.
-        noise: the standard deviation, SI: the known one, or that of the residuals.
-        known: whether the noise was given.
-        reduced: mean square of the residuals over the square of the noise; 1 where it is estimated.
-        ljung_box: p-value of the Ljung-Box test for autocorrelation (Biometrika 65:297, 1978).
-        runs: p-value of the Wald-Wolfowitz test for the number of runs of one sign.
-        correlation: of neighbouring residuals.
+        count: Number of samples.
+        noise: The standard deviation, SI: the known one, or that of the residuals.
+        known: True for a given noise.
+        reduced: Mean square of the residuals over the square of the noise; 1 where it is estimated.
+        ljung_box: P-value of the Ljung-Box test for autocorrelation (Biometrika 65:297, 1978).
+        runs: P-value of the Wald-Wolfowitz test for the number of runs of one sign.
+        correlation: Correlation of neighbouring residuals.
     """
 
     recording: int
@@ -68,12 +68,12 @@ def tested(
     """The residuals of a block, SI, with their tests.
 
     Args:
-        off: recorded less computed, shape (n,).
-        recording: its place among the recordings.
-        channel: of it.
-        noise: standard deviation.
-        known: whether that was given.
-        parameters: how many were fitted to it.
+        off: Recorded less computed, shape (n,).
+        recording: Index of the recording.
+        channel: Channel of the recording.
+        noise: Standard deviation.
+        known: True for a given noise.
+        parameters: Number of parameters fitted to the channel.
     """
     n = len(off)
     centred = off - off.mean()

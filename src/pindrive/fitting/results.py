@@ -40,15 +40,16 @@ class Estimate:
     """One fitted parameter.
 
     Attributes:
-        parameter: its name, unit (SI) and the bounds within which it was searched.
+        parameter: Parameter with name, unit (SI) and bounds of the search.
         value: SI.
-        standard_error: from the derivatives at the optimum; infinite where they tell nothing.
-        interval: its ends by profile likelihood; infinite on a side on which the profile reaches
-            the bound of the search before it ends.
-        identifiability: whether the recordings tell it.
-        hidden_with: parameters of which the recordings tell combinations with this one alone,
+        standard_error: Standard error from the derivatives at the optimum; infinite for an
+            undetermined estimate.
+        interval: Ends of the interval by profile likelihood; infinite on a side on which the
+            profile reaches the bound of the search before its end.
+        identifiability: Identifiability of the parameter from the recordings.
+        hidden_with: Parameters of which the recordings tell combinations with this one alone,
             itself among them.
-        profile: the least cost at other values of it; None where it was not computed.
+        profile: The least cost at other values of it; None where it was not computed.
     """
 
     parameter: Parameter
@@ -91,15 +92,15 @@ class Fit(lazy.NotebookHtml):
     """Result of `fit`.
 
     Attributes:
-        model: the recordings as functions of the parameters.
-        theta: the values of all parameters, SI, shape (k,).
-        estimates: each with its interval and whether the recordings tell it.
-        covariance: of the estimates, from the derivatives at the optimum, shape (k, k).
-        correlation: likewise; NaN beside what the derivatives do not tell.
-        residuals: of each channel of each recording.
-        confidence: of the intervals.
-        threshold: the increase of the cost at the end of an interval.
-        converged: whether the last refinement ended at an optimum.
+        model: The recordings as functions of the parameters.
+        theta: The values of all parameters, SI, shape (k,).
+        estimates: Estimates with interval and identifiability.
+        covariance: Covariance of the estimates, from the derivatives at the optimum, shape (k, k).
+        correlation: Correlation of the estimates; NaN for an undetermined estimate.
+        residuals: Residuals of each channel of each recording.
+        confidence: Confidence of the intervals.
+        threshold: The increase of the cost at the end of an interval.
+        converged: True if the last refinement ended at an optimum.
     """
 
     model: Model = field(compare=False)
@@ -294,8 +295,8 @@ class ModelComparison(lazy.NotebookHtml):
     """Fits of several friction laws to equal recordings.
 
     Attributes:
-        fits: by the law: "Coulomb", "static friction", "friction curve", "compliant skin".
-        refused: why, of each law that this drive or release cannot have.
+        fits: Fits by the law: "Coulomb", "static friction", "friction curve", "compliant skin".
+        refused: Reason for each law that this drive or release cannot have.
     """
 
     fits: Mapping[str, Fit]

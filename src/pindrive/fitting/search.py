@@ -64,10 +64,11 @@ def polished(problem: Problem, best: Optimum, covariance: Array, seed: int) -> O
     jump. A trust region stops there; points drawn around it lie on both sides.
 
     Args:
-        problem: of all samples.
-        best: where a refinement ended.
-        covariance: of the parameters there; infinite on the diagonal where there is none.
-        seed: of the points.
+        problem: Problem of all samples.
+        best: Point at which a refinement ended.
+        covariance: Covariance of the parameters there; infinite on the diagonal of an undetermined
+            parameter.
+        seed: Seed of the points.
     """
     rng = np.random.default_rng(seed)
     spread = np.sqrt(np.diag(covariance))
@@ -208,9 +209,9 @@ def _candidates(model: Model, weights: Array, seed: int) -> Array:
     linear, are those that fit each best.
 
     Args:
-        model: of the recordings, every so many samples of them.
-        weights: one over the noise of each sample, shape (n,).
-        seed: of the sequence.
+        model: Model of every n-th sample of the recordings.
+        weights: Weight of each sample, one over its noise, shape (n,).
+        seed: Seed of the sequence.
     """
     batched = _plain(model)
     count = BATCHED if batched else SINGLE

@@ -131,25 +131,25 @@ def simulate_batch(
     stored. Python runs on meanwhile, and Ctrl-C ends a batch.
 
     Args:
-        drive: what every drive has, but for what is varied.
-        release: what every release has, but for what is varied.
-        energy: the terms of the energy ledger too; a point then takes some fifty times as long.
-        outputs: the variables to compute and return, among them `final_position` and
+        drive: Drive with all values that are not varied.
+        release: Release with all values that are not varied.
+        energy: The terms of the energy ledger too; a point then takes some fifty times as long.
+        outputs: The variables to compute and return, among them `final_position` and
             `final_velocity`, the state at the end; None: all others, and with `energy` those of the
             ledger. `status` is always there. The fewer, the faster: the state alone takes a third
             of the time of all numbers.
-        threads: how many to use, at least 1; None: all cores. The results are the same to the bit.
-        **varied: of the drive `mass`, `stiffness`, `damping` or `damping_ratio`, `plate_kinetic`,
-            `plate_static`, `finger_kinetic`, `finger_static`, `finger_stiffness` (infinite:
-            rigid); in place of forces, of a contact given by coefficients, `plate_coefficient`,
-            `plate_static_coefficient`, `preload`, `finger_coefficient`,
-            `finger_static_coefficient` and `touch_force`; of the release
-            `mouse_velocity`, `displacement`, `velocity`, `plate_load`; of the end stops `travel`,
-            `stop_stiffness` and `stop_damping`; and `duration` (infinite:
-            long enough to see each ending) and `settling_band`, as for `simulate`, which has their
-            ranges. Keys of device files are names too: `**{"plate.kinetic": 0.02}`. Static
-            friction that is None in a contact is the kinetic one, and a velocity that is None the
-            plate's, at every point.
+        threads: Number of threads, at least 1; None: all cores. The results are the same to the
+            bit.
+        **varied: Varied values: of the drive `mass`, `stiffness`, `damping` or `damping_ratio`,
+            `plate_kinetic`, `plate_static`, `finger_kinetic`, `finger_static`, `finger_stiffness`
+            (infinite: rigid); in place of forces, of a contact given by coefficients,
+            `plate_coefficient`, `plate_static_coefficient`, `preload`, `finger_coefficient`,
+            `finger_static_coefficient` and `touch_force`; of the release `mouse_velocity`,
+            `displacement`, `velocity`, `plate_load`; of the end stops `travel`, `stop_stiffness`
+            and `stop_damping`; and `duration` (infinite: long enough to see each ending) and
+            `settling_band`, as for `simulate`, which has their ranges. Keys of device files are
+            names too: `**{"plate.kinetic": 0.02}`. Static friction that is None in a contact is the
+            kinetic one, and a velocity that is None the plate's, at every point.
 
     Returns:
         Variables in the shape that the varied arguments have together, with unit and meaning in
@@ -161,10 +161,10 @@ def simulate_batch(
         is bad (of a coefficient, the force that it makes), and its numbers are NaN.
 
     Raises:
-        ValueError: an argument is unknown or holds something else than numbers, shapes do not fit
+        ValueError: An argument is unknown or holds something else than numbers, shapes do not fit
             together, `threads` is no count, or `outputs` names what there is not; friction is given
             both by a force and by a coefficient; what describes end stops lacks what it needs; a
-            drive or a release has what only `simulate` follows: a friction curve, an input that
+            drive or a release has what only `simulate` follows: A friction curve, an input that
             changes, a given stretch of the skin.
 
     Warns:
@@ -244,7 +244,7 @@ def _named(varied: Mapping[str, Broadcastable | None]) -> dict[str, Broadcastabl
     """The varied arguments by their own names.
 
     Raises:
-        ValueError: one is unknown or given twice.
+        ValueError: A name is unknown or given twice.
     """
     found: dict[str, Broadcastable | None] = {}
     for given, value in varied.items():
@@ -304,7 +304,7 @@ def _friction(drive: Drive, varied: Collection[str]) -> dict[str, float | None]:
     """The friction of a drive, by forces or by coefficients and what presses.
 
     Raises:
-        ValueError: what is varied is the other of both, or a touch force without a coefficient.
+        ValueError: Both force and coefficient are given, or a touch force without a coefficient.
     """
     found: dict[str, float | None] = {}
     for table, contact in (("plate", drive.plate), ("finger", drive.finger)):
@@ -330,7 +330,7 @@ def _stops(
     NaN where one is refused.
 
     Raises:
-        ValueError: what describes stops lacks what it needs.
+        ValueError: A value of the stops lacks the values that it needs.
     """
     check_stops(*(float(given[n].max(initial=0.0)) if n in given else None for n in _STOPS))
     if "travel" not in given:

@@ -33,21 +33,21 @@ class Contact:
     knows. The forces of such a contact are NaN until it is part of one.
 
     Args:
-        kinetic: friction force while sliding, N, from 0 to 1e12; 0 with no static friction is no
+        kinetic: Friction force while sliding, N, from 0 to 1e12; 0 with no static friction is no
             contact at all. None with a curve: its first force.
-        static: largest friction force without sliding, N, from `kinetic` to 1e12; `kinetic` if
+        static: Largest friction force without sliding, N, from `kinetic` to 1e12; `kinetic` if
             None.
-        curve: kinetic friction over sliding speed as rows (speed in m/s, force in N), speeds
+        curve: Kinetic friction over sliding speed as rows (speed in m/s, force in N), speeds
             increasing from 0, linear between rows and on beyond the last; its first force is
             `kinetic`. None: `kinetic` at every speed (Coulomb).
-        stiffness: tangential stiffness of the surface, N/m, from 1e-12 to 1e12; infinite: rigid.
-        coefficient: kinetic friction over the force that presses, from 0 to 1e12, in place of
+        stiffness: Tangential stiffness of the surface, N/m, from 1e-12 to 1e12; infinite: rigid.
+        coefficient: Kinetic friction over the force that presses, from 0 to 1e12, in place of
             `kinetic`. None with a curve of coefficients: its first.
-        static_coefficient: the same at rest, in place of `static`; `coefficient` if None.
-        coefficient_curve: rows (speed in m/s, coefficient), in place of `curve`.
+        static_coefficient: Coefficient at rest, in place of `static`; None: `coefficient`.
+        coefficient_curve: Rows (speed in m/s, coefficient), in place of `curve`.
 
     Raises:
-        ValueError: a value is no number or out of its range, static friction is below kinetic,
+        ValueError: A value is no number or out of its range, static friction is below kinetic,
             neither kinetic friction nor a curve is given, they disagree, or there are both forces
             and coefficients.
     """
@@ -94,7 +94,7 @@ class Contact:
         """Return the contact with the friction forces of its coefficients under a normal force (N).
 
         Raises:
-            ValueError: a force is out of its range.
+            ValueError: A force is out of its range.
         """
         mu, at_rest, rows = self.coefficient, self.static_coefficient, self.coefficient_curve
         assert mu is not None
@@ -150,25 +150,25 @@ class Drive:
     Every number may also be text with a unit, such as "12 g"; a bare number is SI.
 
     Args:
-        mass: of the moving body, in a device electromagnet and pin, kg, from 1e-12 to 1e12.
-        stiffness: of the spring, N/m, from 1e-12 to 1e12.
-        damping: viscous, N*s/m, from 0 to 1e12.
-        damping_ratio: in place of damping, b / (2 sqrt(m k)), 0 or from 1e-11 to 1e6.
-        plate: friction of the moving plate on the body; given by a coefficient it is
+        mass: Mass of the moving body, in a device electromagnet and pin, kg, from 1e-12 to 1e12.
+        stiffness: Stiffness of the spring, N/m, from 1e-12 to 1e12.
+        damping: Viscous, N*s/m, from 0 to 1e12.
+        damping_ratio: Damping ratio b / (2 sqrt(m k)) in place of damping, 0 or from 1e-11 to 1e6.
+        plate: Friction of the moving plate on the body; given by a coefficient it is
             that of weight and preload (and the pull, by which a load multiplies it).
-        finger: friction of the resting fingertip on the pin; by a coefficient, of `touch_force`.
-        preload: what presses the body on the plate beside weight and pull, N, from 0 to
-            1e12.
-        touch_force: with which the finger presses on the pin, N, from 0 to 1e12; for a finger
-            given by a coefficient alone.
-        travel: how far the pin can move from the spring's rest to an end stop, either way, m, from
-            1e-12 to 1e12; None: there are no stops.
-        stop_stiffness: of the end stops, N/m, from 1e-12 to 1e12; None: they are rigid and plastic,
-            so that a pin that strikes one loses its velocity.
-        stop_damping: of elastic end stops, N*s/m, from 0 to 1e12. They push and never pull.
+        finger: Friction of the resting fingertip on the pin; by a coefficient, of `touch_force`.
+        preload: Force that presses the body on the plate beside weight and pull, N, from 0 to 1e12.
+        touch_force: Force of the finger on the pin, N, from 0 to 1e12; for a finger given by a
+            coefficient alone.
+        travel: Travel of the pin from the rest position of the spring to an end stop, either way,
+            m, from 1e-12 to 1e12; None: no stops.
+        stop_stiffness: Stiffness of the end stops, N/m, from 1e-12 to 1e12; None: rigid and plastic
+            stops, at which a pin loses its velocity.
+        stop_damping: Damping of elastic end stops, N*s/m, from 0 to 1e12. Stops push and never
+            pull.
 
     Raises:
-        ValueError: a value is no number or out of its range, or the damping is given twice or not
+        ValueError: A value is no number or out of its range, or the damping is given twice or not
             at all.
     """
 
@@ -255,8 +255,8 @@ class Drive:
         """A drive with other values of the arguments of `Drive`; the damping stays unless given.
 
         Raises:
-            ValueError: as for `Drive`.
-            TypeError: there is no such argument.
+            ValueError: A value is invalid, as for `Drive`.
+            TypeError: An argument is unknown.
         """
         given = {field.name: getattr(self, field.name) for field in fields(self)}
         if "damping_ratio" in changes:
@@ -365,9 +365,9 @@ def check_one_kind(
     """Refuse friction given both by forces and by coefficients; whether it is by coefficients.
 
     Args:
-        given: which of them are.
-        table: of the device file, for the message.
-        where: where a key was written, for the message.
+        given: Names of the given arguments.
+        table: Table of the device file, for messages.
+        where: Place of a key, for messages.
     """
     forces, coefficients = (
         [name for name in names if name in given]

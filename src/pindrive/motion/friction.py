@@ -35,7 +35,7 @@ def normal_force(contact: str, value: Callable[[str], Any]) -> Any:
 
     Args:
         contact: "plate" or "finger".
-        value: the value of a quantity by its name, SI: a number or an array.
+        value: The value of a quantity by its name, SI: a number or an array.
     """
     parts = [factor * value(name) for name, factor in PRESSED_BY[contact].items()]
     return sum(parts[1:], parts[0])
@@ -45,7 +45,7 @@ def friction_force(name: str, value: Callable[[str], Any]) -> Any:
     """The friction force called "plate.kinetic" or alike that a coefficient amounts to, N.
 
     Args:
-        name: of a force, but for a curve.
-        value: the value of a quantity by its name, SI: a number or an array.
+        name: Name of a force, except for a curve.
+        value: The value of a quantity by its name, SI: a number or an array.
     """
     return value(COEFFICIENT_OF[name]) * normal_force(name.partition(".")[0], value)

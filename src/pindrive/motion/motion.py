@@ -57,12 +57,12 @@ class Motion(lazy.NotebookHtml):
     """Exact motion of a pin after its release, made by `simulate`.
 
     Attributes:
-        drive: the drive that was simulated.
-        release: the initial state and the inputs.
-        settling_band: half the band about the end that counts as settled, a part of
+        drive: The drive that was simulated.
+        release: The initial state and the inputs.
+        settling_band: Half the band about the end that counts as settled, a part of
             |x(0) - x_end|.
-        core_numbers: drive, release and the duration, as the core takes them.
-        duration: s; the one given, or long enough to see the ending.
+        core_numbers: Drive, release and the duration, as the core takes them.
+        duration: S; the one given, or long enough to see the ending.
     """
 
     def __init__(
@@ -112,10 +112,10 @@ class Motion(lazy.NotebookHtml):
 
         Args:
             t: s, any shape, from 0 on; beyond `duration` where the ending is known.
-            side: which limit to take at an event.
+            side: Side of an event on which the limit is taken.
 
         Raises:
-            ValueError: a time is negative, NaN, or later than the motion is known.
+            ValueError: A time is negative, NaN, or later than the motion is known.
         """
         return self._evaluate(self._core.position, t, side)
 
@@ -227,7 +227,7 @@ class Motion(lazy.NotebookHtml):
             The events in order, the plate's first.
 
         Raises:
-            ValueError: a time is negative, NaN, or later than the motion is known; `begin` is
+            ValueError: A time is negative, NaN, or later than the motion is known; `begin` is
                 after `end`; or there are more events than the budget.
         """
         begin, end = (
@@ -257,7 +257,7 @@ class Motion(lazy.NotebookHtml):
             The times (s) and the values (m, m/s or m/s²), shape (n,).
 
         Raises:
-            ValueError: another quantity; more extrema than the budget.
+            ValueError: Another quantity; more extrema than the budget.
         """
         index = _quantity(which)
         found = Extrema(*self._core.extrema(index, self.duration, budgets.MOMENTS.most + 1))
@@ -278,7 +278,7 @@ class Motion(lazy.NotebookHtml):
             The times (s) and the directions, 1 or -1 in turn, shape (n,).
 
         Raises:
-            ValueError: another quantity; a level that is not finite; more crossings than the
+            ValueError: Another quantity; a level that is not finite; more crossings than the
                 budget.
         """
         index = _quantity(which)
@@ -399,15 +399,15 @@ class Motion(lazy.NotebookHtml):
         """Write the motion at even times as CSV, and its events to a file of their own.
 
         Args:
-            path: the file of samples, whose header names columns and SI units. The events go beside
-                it: those of "m.csv" to "m-events.csv". Both are whole or not there.
-            rate: samples a second, Hz, from 1e-6 to 1e12, the first at 0 s.
+            path: The file of samples, whose header names columns and SI units. The events go beside
+                it: Those of "m.csv" to "m-events.csv". Both are whole or not there.
+            rate: Samples a second, Hz, from 1e-6 to 1e12, the first at 0 s.
 
         Returns:
             The path of the events.
 
         Raises:
-            ValueError: a rate out of its range; more than 10 000 000 samples; a file that is there
+            ValueError: A rate out of its range; more than 10 000 000 samples; a file that is there
                 and holds something else, or one that cannot be written.
         """
         from pindrive.files.export import to_csv
@@ -452,7 +452,7 @@ class Motion(lazy.NotebookHtml):
         every event; nothing is differenced.
 
         Args:
-            parameters: of `mass`, `stiffness`, `damping`; `plate_kinetic`, `plate_static`,
+            parameters: Names among `mass`, `stiffness`, `damping`; `plate_kinetic`, `plate_static`,
                 `finger_kinetic`, `finger_static`, `finger_stiffness`; of a contact given by a
                 coefficient `plate_coefficient`, `plate_static_coefficient`, `preload`,
                 `finger_coefficient`, `finger_static_coefficient`, `touch_force`; `mouse_velocity`,
@@ -466,7 +466,7 @@ class Motion(lazy.NotebookHtml):
             where one does not exist.
 
         Raises:
-            ValueError: a parameter is unknown, or this motion does not have it.
+            ValueError: A parameter is unknown, or this motion does not have it.
         """
         from pindrive.motion.sensitivity import Sensitivity
 

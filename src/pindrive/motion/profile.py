@@ -34,15 +34,15 @@ class Profile:
     Args:
         times: s, or text with a unit, from -1e12 to 1e12, none less than the one before, no three
             alike; at least one.
-        values: one for each time, SI, or text with a unit, such as "60 mm/s", from -1e12 to 1e12,
-            as is the rate between two rows.
+        values: Values, one for each time, SI, or text with a unit, such as "60 mm/s", from -1e12 to
+            1e12, as is the rate between two rows.
 
     Attributes:
-        unit: the SI unit of values that were text, empty where none was: `Release` refuses those of
+        unit: The SI unit of values that were text, empty where none was: `Release` refuses those of
             another quantity.
 
     Raises:
-        ValueError: lengths differ, times decrease, a number or a rate is out of range, or a text is
+        ValueError: Lengths differ, times decrease, a number or a rate is out of range, or a text is
             in no unit of a quantity that may change over time.
     """
 

@@ -37,20 +37,20 @@ class Release:
         displacement: x(0), deflection from the spring's rest, m, up to 1e12 either way.
         velocity: x'(0), m/s, up to 1e12 either way; None: the plate's, as for a pin that was
             carried.
-        plate_load: factor on the plate's friction, from 0 to 1e12; constant or a `Profile`.
-        skin_stretch: stretch of a compliant finger that grips at the start, m, up to 1e12 either
+        plate_load: Factor on the plate's friction, from 0 to 1e12; constant or a `Profile`.
+        skin_stretch: Stretch of a compliant finger that grips at the start, m, up to 1e12 either
             way; None: the stretch of a finger being slid along or, for a pin at rest, none.
-        force: external force on the pin, N, up to 1e12 either way, positive the way of x; constant
+        force: External force on the pin, N, up to 1e12 either way, positive the way of x; constant
             or a `Profile`, which may have steps.
-        across_velocity: w, the velocity of the plate across the axis of the pin, m/s, up to 1e12
+        across_velocity: W, the velocity of the plate across the axis of the pin, m/s, up to 1e12
             either way; constant or a `Profile` without steps. While it is not 0 the plate slips:
             its friction opposes the whole sliding velocity.
-        finger_load: factor on the finger's friction, from 0 to 1e12: how the touch force changes,
+        finger_load: Factor on the finger's friction, from 0 to 1e12: how the touch force changes,
             over the `touch_force` of a drive whose finger has a coefficient; constant or a
             `Profile`, which may have steps.
 
     Raises:
-        ValueError: a value is no number or out of its range, or the mouse velocity has a step.
+        ValueError: A value is no number or out of its range, or the mouse velocity has a step.
     """
 
     mouse_velocity: float | Profile
@@ -89,8 +89,8 @@ class Release:
         """A release with other values of the arguments of `Release`.
 
         Raises:
-            ValueError: as for `Release`.
-            TypeError: there is no such argument.
+            ValueError: A value is invalid, as for `Release`.
+            TypeError: An argument is unknown.
         """
         given = {field.name: getattr(self, field.name) for field in fields(self)}
         return Release(**given | changes)
@@ -129,8 +129,8 @@ def check_fits(drive: Drive, release: Release) -> None:
     """Refuse a drive and a release that the core cannot follow together.
 
     Raises:
-        ValueError: one of them is something else; a compliant plate; a stretch that the skin cannot
-            hold; a displacement beyond rigid end stops.
+        ValueError: A curve has another form, the plate is compliant, the skin cannot hold the
+            stretch, or the displacement is beyond rigid end stops.
     """
     if not isinstance(drive, Drive):
         raise ValueError(refusal("drive", "a Drive", repr(drive)))

@@ -104,8 +104,8 @@ def events_of(table: Table, state_at: Callable[[float], tuple[float, float]]) ->
     """Every change at a contact, in order, the plate's first.
 
     Args:
-        table: the core's segments.
-        state_at: position (m) and velocity (m/s) at a time, used where no segment follows.
+        table: The core's segments.
+        state_at: Position (m) and velocity (m/s) at a time, used where no segment follows.
     """
     rows = {name: column.tolist() for name, column in table.items()}
     events = []
@@ -126,8 +126,8 @@ def events_at(time: float, kinds: tuple[int, int, int], state: tuple[float, floa
 
     Args:
         time: s.
-        kinds: of the events at plate, finger and stop, as in the core's table.
-        state: position (m) and velocity (m/s) then.
+        kinds: Kinds of the events at plate, finger and stop, as in the table of the core.
+        state: Position (m) and velocity (m/s) then.
     """
     *friction, stop = kinds
     causes = _BOTH if friction[0] == friction[1] else _EACH

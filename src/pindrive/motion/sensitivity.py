@@ -51,9 +51,9 @@ class Sensitivity(lazy.NotebookHtml):
     """Derivatives of a motion, SI units of the quantity per SI unit of the parameter.
 
     Attributes:
-        parameters: their names, in the order of the first axis of every array.
-        gaps: for each parameter whose smallest change gives the motion another course, from when
-            on, and why; derivatives after that time do not exist and are NaN.
+        parameters: Names of the parameters, in the order of the first axis of every array.
+        gaps: Time and reason for each parameter whose smallest change gives the motion other
+            events; derivatives after that time do not exist and are NaN.
     """
 
     def __init__(self, motion: pindrive.Motion, parameters: Sequence[str]) -> None:

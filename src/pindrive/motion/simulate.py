@@ -37,19 +37,19 @@ def simulate(
     """Follow the pin of a drive from its release, exactly.
 
     Args:
-        drive: the drive; its finger may be compliant, its contacts may have friction curves. Or
+        drive: The drive; its finger may be compliant, its contacts may have friction curves. Or
             what `load_device` reads, which has all arguments.
-        release: the initial state, and the inputs that act on the pin; None: that of the device.
+        release: The initial state, and the inputs that act on the pin; None: that of the device.
         duration: s, from 1e-12 to 1e12, and to 1e12 over the natural frequency; None: that of the
             device, or long enough to see the ending.
-        settling_band: half the band about the end in which the motion counts as settled, a part of
+        settling_band: Half the band about the end in which the motion counts as settled, a part of
             |x(0) - x_end|, above 0 and at most 1; None: that of the device, or 0.05.
 
     Returns:
         The motion. Sustained motions are recognised and reported in its `ending`.
 
     Raises:
-        ValueError: a value is no number or out of its range; a compliant plate; a stretch that the
+        ValueError: A value is no number or out of its range; a compliant plate; a stretch that the
             skin cannot hold.
 
     Warns:

@@ -24,11 +24,11 @@ class Catalogue:
     """Parts of one kind, of which a design takes one, in the order of their first key's values.
 
     Attributes:
-        name: of the kind, such as "spring".
-        path: the file that it was read from.
-        parts: their numbers or names, shape (n,).
-        values: of each key of the device that a part sets, SI, shape (n,).
-        prices: of each, shape (n,); NaN where the file has none.
+        name: Name of the kind of parts, such as "spring".
+        path: The file that it was read from.
+        parts: Numbers or names of the parts, shape (n,).
+        values: Values of each key of the device that a part sets, SI, shape (n,).
+        prices: Price of each part, shape (n,); NaN for a file without prices.
     """
 
     name: str
@@ -60,13 +60,13 @@ def read_catalogue(name: str, path: Path, place: str, scans: bool) -> Catalogue:
     where that is unique, and `price`, a plain number, where the parts have one.
 
     Args:
-        name: of the kind of parts.
-        path: the file.
-        place: where it was named, for messages.
-        scans: whether designs are scanned; a key must have a part in that.
+        name: Name of the kind of parts.
+        path: The file.
+        place: Place of the name, for messages.
+        scans: True for designs that are scanned; each key must have a part in scans.
 
     Raises:
-        ValueError: it cannot be read, a column is missing or unknown, or a cell malformed.
+        ValueError: The file cannot be read, a column is missing or unknown, or a cell is malformed.
     """
     try:
         table = CsvTable.read(path, "a catalogue", _EXAMPLE)

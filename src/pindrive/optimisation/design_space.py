@@ -47,19 +47,19 @@ class DesignSpace:
     """Designs as points of the unit cube, and what they are worth under conditions.
 
     Attributes:
-        study: the device and its page.
-        variables: of a design; a point has a part from 0 to 1 for each.
-        conditions: under which it is followed, likewise.
-        cases: the conditions at which designs are compared, shape (c, conditions).
-        links: keys that follow others.
-        constraints: limits on numbers.
-        goals: at least one.
-        line_speeds: the largest hand speeds of some devices, with the trials that they took, as
+        study: The device and its page.
+        variables: Variables of a design; a point has a part from 0 to 1 for each.
+        conditions: Conditions of a design, in the same notation.
+        cases: The conditions at which designs are compared, shape (c, conditions).
+        links: Keys that follow others.
+        constraints: Limits on numbers.
+        goals: At least one goal.
+        line_speeds: The largest hand speeds of some devices, with the trials that they took, as
             `pindrive.optimisation.line_speed.speeds` finds them.
-        threads: how many work.
-        count: of what was simulated.
-        scanned: what was.
-        tell: called after each part of the work.
+        threads: Number of workers.
+        count: Counter of the simulations.
+        scanned: Scanned devices.
+        tell: Function called after each part of the work.
     """
 
     study: Study
@@ -136,8 +136,8 @@ class DesignSpace:
         """Return the numbers of points at cases, SI, all of shape (n, c); NaN if missing.
 
         Args:
-            points: shape (n, variables).
-            cases: shape (c, conditions); the own ones unless given.
+            points: Shape (n, variables).
+            cases: Shape (c, conditions); the own ones unless given.
         """
         at = self.cases if cases is None else cases
         each = max(1, POINTS // len(at))
@@ -203,8 +203,8 @@ class DesignSpace:
         """Find the speeds of points over the whole grid; whether they are what they were taken for.
 
         Args:
-            points: shape (n, variables).
-            cases: as for `numbers`.
+            points: Shape (n, variables).
+            cases: Cases, as for `numbers`.
         """
         at = self.cases if cases is None else cases
         if SPEED not in self.names:
@@ -309,8 +309,8 @@ class DesignSpace:
         """Return the excess over each constraint at each case, SI, (constraints, n, c), at best.
 
         Args:
-            numbers: each (n, c).
-            most: what they may be at most, where `numbers` are what they may be at least.
+            numbers: Numbers, each of shape (n, c).
+            most: Upper bounds of the numbers, of which `numbers` are the lower bounds.
         """
         shape = next(iter(numbers.values())).shape
         high = numbers if most is None else most
@@ -385,10 +385,10 @@ def worst_cases(space: DesignSpace, point: Array, count: int, seed: int) -> Arra
     Conditions are spread evenly, and again, ever closer, about the worst so far.
 
     Args:
-        space: whose constraints and goals; its own cases are looked at too.
-        point: the design, shape (variables,).
-        count: conditions of the first spread, a power of two.
-        seed: of the spreads.
+        space: Space with constraints and goals; its own cases are evaluated, too.
+        point: The design, shape (variables,).
+        count: Conditions of the first spread, a power of two.
+        seed: Seed of the spreads.
 
     Returns:
         Of each constraint, then of each goal, a case; shape (constraints + goals, conditions).

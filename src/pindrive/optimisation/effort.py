@@ -11,13 +11,13 @@ class Effort:
     """Size of a search.
 
     Attributes:
-        motions: or scans, of the screening.
-        population: members of the search.
-        generations: of it, at most; of scans rounds, of four devices each.
-        conditions: spread over their ranges to find the worst, a power of two.
-        resolution: of a map, along each axis; 0: no map.
-        draws: within the tolerances.
-        patience: generations, or rounds, without progress after which a search ends.
+        motions: Or scans, of the screening.
+        population: Members of the search.
+        generations: Largest number of generations; of scans, of rounds with four devices each.
+        conditions: Spread over their ranges to find the worst, a power of two.
+        resolution: Resolution of a map along each axis; 0: no map.
+        draws: Within the tolerances.
+        patience: Generations, or rounds, without progress after which a search ends.
     """
 
     motions: int
@@ -41,8 +41,8 @@ def usual_effort(*, scans: bool, slow: bool) -> Effort:
     """Return the usual size of the search for a design problem.
 
     Args:
-        scans: whether its designs are scanned.
-        slow: whether its motions are followed one by one.
+        scans: True for designs that are scanned.
+        slow: True for motions that are simulated one by one.
     """
     return SCANNED if scans else SINGLE if slow else BATCHED
 
@@ -52,8 +52,8 @@ class Count:
     """Number of simulations.
 
     Attributes:
-        motions: releases.
-        scans: of pages, and trials of lines.
+        motions: Releases.
+        scans: Number of scans of pages and of trials of lines.
     """
 
     motions: int = 0

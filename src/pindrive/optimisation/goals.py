@@ -36,8 +36,8 @@ class Goal:
     """A number that is to be small, or large.
 
     Attributes:
-        name: of the number.
-        maximise: whether it is to be large.
+        name: Name of the number.
+        maximise: True to maximise the number.
     """
 
     name: str
@@ -58,10 +58,10 @@ class Variable:
     """Variable or condition: one key over a range, or keys with rows of values.
 
     Attributes:
-        name: the first of its keys, or that of its catalogue.
-        axes: how each of its keys is written.
-        choices: how many rows there are; 0 for a range.
-        catalogue: of which the rows are the parts.
+        name: The first of its keys, or that of its catalogue.
+        axes: Notation of each key.
+        choices: Number of rows; 0 for a range.
+        catalogue: Catalogue whose parts are the rows.
     """
 
     name: str
@@ -89,10 +89,10 @@ class Asked(NamedTuple):
     """A device whose speed is to be found.
 
     Attributes:
-        at: the values of keys, SI.
-        near: where its speed may be, m/s; NaN: anywhere.
-        beat: the speed, m/s, below which its own matters little; NaN: there is none.
-        confirmed: whether all speeds of the grid below its own are tried too.
+        at: The values of keys, SI.
+        near: Estimate of the speed, m/s; NaN: unknown.
+        beat: The speed, m/s, below which its own matters little; NaN: there is none.
+        confirmed: True to also evaluate all speeds of the grid below the speed.
     """
 
     at: Mapping[str, float]
@@ -106,15 +106,15 @@ class DesignProblem:
     """Design problem.
 
     Attributes:
-        study: the device, what follows what, and the page; its axes are variables and conditions.
-        tables: as they were written.
-        variables: what may be chosen.
-        conditions: under which each constraint must be met, and each goal counts by its worst.
-        constraints: limits on numbers.
-        least_yield: the part of the devices built within the tolerances that must meet them all;
+        study: The device, what follows what, and the page; its axes are variables and conditions.
+        tables: Tables as written.
+        variables: Design variables.
+        conditions: Conditions at which each constraint must be met; each goal counts by its worst.
+        constraints: Limits on numbers.
+        least_yield: The part of the devices built within the tolerances that must meet them all;
             None: none is required.
-        goals: one to three, the first the most important.
-        catalogues: whose parts are chosen.
+        goals: One to three goals, the most important first.
+        catalogues: Catalogues of the parts.
     """
 
     study: Study

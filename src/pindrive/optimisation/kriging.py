@@ -36,9 +36,9 @@ class Kriging:
         """Fit it.
 
         Args:
-            points: shape (n, k), n at least 2.
-            values: finite, shape (n,).
-            before: a model of fewer points, from which the likelihood is climbed on.
+            points: Shape (n, k), n at least 2.
+            values: Finite, shape (n,).
+            before: A model of fewer points, from which the likelihood is climbed on.
         """
         y = np.asarray(values, np.float64)
         self._log = bool((y > 0.0).all() and y.max() > DECADES * y.min())

@@ -97,9 +97,9 @@ class Climb:
         """A speed at which the lines are distinct, just below one at which they are not.
 
         Args:
-            near: where it may be; NaN: anywhere.
-            beat: below it the border is found coarsely.
-            most: beyond which none is tried.
+            near: Estimate of the speed; NaN: unknown.
+            beat: Below it the border is found coarsely.
+            most: Beyond which none is tried.
         """
         if isnan(near):
             slow, fast = SLOWEST, most

@@ -60,12 +60,12 @@ def read_problem(
     """Read a design problem from a file.
 
     Args:
-        path: a TOML file.
+        path: A TOML file.
         overrides: "key=value" each, as for `load_device`.
-        device: what varies in place of the device that the file names.
+        device: Device to vary in place of the device that the file names.
 
     Raises:
-        ConfigError: it cannot be read, or holds anything unknown, malformed, out of bounds or
+        ConfigError: The file cannot be read, or holds anything unknown, malformed, out of bounds or
             contradictory; a line for each problem.
     """
     file = Path(path)
@@ -84,11 +84,11 @@ def problem_of(device: DeviceFile, tables: Mapping[str, Any]) -> DesignProblem:
     Paths are relative to the folder of the device file.
 
     Args:
-        device: what varies.
+        device: Device to vary.
         tables: `axes`, `goals` and the other tables of a problem file; `page` may be a `Page`.
 
     Raises:
-        ConfigError: as for `read_problem`.
+        ConfigError: The tables are invalid, as for `read_problem`.
     """
     if not isinstance(device, DeviceFile):
         raise ValueError(refusal("device", "what load_device reads", repr(device)))

@@ -43,9 +43,9 @@ class Reached:
     """A goal, and how far the design reaches it.
 
     Attributes:
-        goal: which number, and which way.
-        value: at its worst condition, SI; NaN where a design has none.
-        case: that condition, SI by key; empty where there are none.
+        goal: Number with its direction.
+        value: Value at the worst condition, SI; NaN for a missing value.
+        case: Worst condition, SI by key; empty without conditions.
     """
 
     goal: Goal
@@ -60,10 +60,10 @@ class ConstraintResult:
     """A constraint, and how the design meets it.
 
     Attributes:
-        constraint: which limit.
-        value: at its worst condition, SI.
-        case: that condition, SI by key.
-        relaxed: the limit, SI, at which the first goal improves by `Design.gain` while all other
+        constraint: Limit on a number.
+        value: Value at the worst condition, SI.
+        case: Worst condition, SI by key.
+        relaxed: The limit, SI, at which the first goal improves by `Design.gain` while all other
             constraints remain unchanged; NaN: no such limit was found, or none was searched for.
     """
 
@@ -90,12 +90,12 @@ class Alternative:
     """Another part of a catalogue in place of the chosen one, everything else unchanged.
 
     Attributes:
-        catalogue: its name.
-        part: its number.
-        values: what it sets, SI by key.
+        catalogue: Name of the catalogue.
+        part: Number of the part.
+        values: Values that the part sets, SI by key.
         price: NaN where there is none.
-        goals: of the design with it, SI.
-        violations: the violated constraints, each with its excess, SI.
+        goals: Goals of the design with this part, SI.
+        violations: The violated constraints, each with its excess, SI.
     """
 
     catalogue: str
@@ -113,9 +113,9 @@ class Front:
     """Designs of which none is better than another in all goals.
 
     Attributes:
-        columns: the value of each key, SI, shape (n,).
+        columns: The value of each key, SI, shape (n,).
         goals: SI, shape (n, goals).
-        chosen: which of them is the design.
+        chosen: Index of the design.
     """
 
     columns: Mapping[str, Array]
@@ -130,11 +130,11 @@ class Map:
     """The first goal over two variables, all others as the design has them.
 
     Attributes:
-        variables: along the abscissa, along the ordinate.
-        along: the values of the first key of each, SI.
-        goal: shape (y, x); NaN where there is none.
-        met: whether all constraints are met, shape (y, x).
-        design: the values of the design.
+        variables: Variables along the abscissa and the ordinate.
+        along: The values of the first key of each, SI.
+        goal: Shape (y, x); NaN where there is none.
+        met: True if all constraints are met, shape (y, x).
+        design: The values of the design.
     """
 
     variables: tuple[Variable, Variable]
@@ -161,23 +161,23 @@ class Design(lazy.NotebookHtml):
     """Result of `optimise`.
 
     Attributes:
-        problem: what was wanted.
-        device: the device file of the best design; of the closest where none meets the constraints.
-        values: every key that may vary, SI.
-        parts: the part chosen from each catalogue.
-        feasible: whether it meets all constraints, at all conditions.
-        goals: in the order of the design problem.
-        constraints: likewise.
-        front: with two or three goals.
-        maps: of the feasible region around the design.
-        alternatives: the nearest parts of each catalogue.
-        built: the part of the designs built within the tolerances that meets all constraints; None
+        problem: Design problem.
+        device: The device file of the best design; of the closest where none meets the constraints.
+        values: Every key that may vary, SI.
+        parts: The part chosen from each catalogue.
+        feasible: True if the design meets all constraints at all conditions.
+        goals: Goals in the order of the design problem.
+        constraints: Constraints in the order of the design problem.
+        front: Pareto front, with two or three goals.
+        maps: Maps of the feasible region around the design.
+        alternatives: The nearest parts of each catalogue.
+        built: The part of the designs built within the tolerances that meets all constraints; None
             where there are no tolerances.
-        gain: the part by which the first goal gets better where a constraint is relaxed.
-        at_ends: variables at an end of their range.
-        count: how much was simulated.
-        seed: of all draws.
-        warnings: what is doubtful.
+        gain: The part by which the first goal gets better where a constraint is relaxed.
+        at_ends: Variables at an end of their range.
+        count: Counter of the simulations.
+        seed: Seed of all draws.
+        warnings: Warnings about the result.
     """
 
     problem: DesignProblem
@@ -308,8 +308,8 @@ def designed_file(found: Design, target: Path) -> str:
     """The text of a device file.
 
     Args:
-        found: the design.
-        target: where the text will stand; paths in it are relative to that.
+        found: The design.
+        target: File of the text; paths in the text are relative to its folder.
     """
     head = [
         "Designed by pindrive.",
@@ -345,9 +345,9 @@ def maps(space: DesignSpace, point: Array, resolution: int) -> tuple[Map, ...]:
     """The first goal, and where all constraints are met, over pairs of variables.
 
     Args:
-        space: what designs are worth.
-        point: the design, which is one of the places.
-        resolution: places along an axis that is a range; 0: no map.
+        space: Space of the designs.
+        point: The design, which is one of the places.
+        resolution: Places along an axis that is a range; 0: no map.
     """
     if not resolution:
         return ()

@@ -49,12 +49,12 @@ def search_scans(
     """Improve what has been scanned of a space.
 
     Args:
-        space: with some devices scanned at all of its conditions.
-        size: members that come back.
-        rounds: of scans, at most.
-        patience: rounds without progress after which it ends.
-        rng: of all draws.
-        progress: called after each round.
+        space: Space with some devices scanned at all of its conditions.
+        size: Members that come back.
+        rounds: Largest number of rounds of scans.
+        patience: Rounds without progress after which it ends.
+        rng: Generator of all draws.
+        progress: Function called after each round.
 
     Returns:
         The best of all that is known, the best first.

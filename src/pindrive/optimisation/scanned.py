@@ -72,10 +72,10 @@ class Scanned:
         """A number at any places, from below to above its mean; NaN where nothing is known.
 
         Args:
-            name: of the number.
-            inputs: shape (m, k).
-            trust: standard deviations.
-            large_is_bad: which of its values stands for a number that a device does not have.
+            name: Name of the number.
+            inputs: Shape (m, k).
+            trust: Standard deviations.
+            large_is_bad: True if a large value stands for the missing number of a device.
         """
         if name not in self._models:
             self._models[name] = self._model(name, large_is_bad)

@@ -30,8 +30,8 @@ class Population:
     """Points with what they are worth.
 
     Attributes:
-        points: in the unit cube, shape (n, k).
-        goals: least is best, shape (n, g).
+        points: Points in the unit cube, shape (n, k).
+        goals: Least is best, shape (n, g).
         violation: 0 where all limits are met, shape (n,).
     """
 
@@ -73,12 +73,12 @@ def search(
     """Improve a population.
 
     Args:
-        function: what points are worth.
-        first: at least 4 points.
-        generations: at most.
-        patience: generations without progress after which it ends.
-        rng: of the children.
-        progress: called after each generation.
+        function: Function that evaluates points.
+        first: First points, at least 4.
+        generations: Largest number of generations.
+        patience: Generations without progress after which it ends.
+        rng: Generator of the children.
+        progress: Function called after each generation.
 
     Returns:
         As many points, the best first.

@@ -64,7 +64,7 @@ def problem_template(*, whole: bool = False) -> str:
     """A commented problem file that holds its device, as `pindrive init --problem` writes it.
 
     Args:
-        whole: a design problem for a whole device, which is scanned; for single releases otherwise.
+        whole: A design problem for a whole device, which is scanned; for single releases otherwise.
     """
     head = [
         "# A design problem for pindrive: variables, constraints and goals of a device.",

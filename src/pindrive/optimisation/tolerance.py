@@ -35,12 +35,12 @@ def excess_as_built(
     at all conditions of the space.
 
     Args:
-        problem: what is wanted, with tolerances.
-        space: with its conditions.
-        device: the design.
-        point: likewise.
-        draws: devices.
-        seed: of them.
+        problem: Design problem with tolerances.
+        space: Space with its conditions.
+        device: The design.
+        point: Point of the design.
+        draws: Devices.
+        seed: Seed of the draws.
 
     Returns:
         SI, shape (constraints, draws); infinite for a device that cannot exist.
@@ -75,9 +75,9 @@ def reserves(excess: Array, own: Array, part: float) -> Array:
     """Return the tightening of each limit that lets a fraction of the devices meet it.
 
     Args:
-        excess: of devices, shape (constraints, draws).
-        own: of the design itself, shape (constraints,).
-        part: from 0 to 1.
+        excess: Excess of devices, shape (constraints, draws).
+        own: Excess of the design itself, shape (constraints,).
+        part: Part of the draws, from 0 to 1.
     """
     scattered = np.quantile(excess, part, axis=1, method="higher")
     return np.maximum(np.where(np.isfinite(scattered), scattered - own, 0.0), 0.0)

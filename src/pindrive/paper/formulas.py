@@ -79,15 +79,15 @@ class Releases:
 
     Args:
         mass: m, kg, above 0.
-        stiffness: k, N/m, above 0.
-        damping: b, N·s/m, at least 0.
-        friction: friction force of the plate, N, at least 0: F_2 in the paper's x_d = F_2 / k.
+        stiffness: K, N/m, above 0.
+        damping: B, N·s/m, at least 0.
+        friction: Friction force of the plate, N, at least 0: F_2 in the paper's x_d = F_2 / k.
         mouse_velocity: v_p, m/s, at least 0; for a negative one mirror the release. It is also the
             pin's velocity at the release.
         displacement: x_0, m.
 
     Raises:
-        ValueError: a value is no number or out of its range, or the shapes do not broadcast.
+        ValueError: A value is no number or out of its range, or the shapes do not broadcast.
     """
 
     mass: NDArray[np.float64]
@@ -140,8 +140,9 @@ class Releases:
         """The exact numbers of every release, the finger frictionless.
 
         Args:
-            outputs: which, as for `simulate_batch`.
-            others: what stands for, or beside, the arrays of the releases, as for `simulate_batch`.
+            outputs: Names of the outputs, as for `simulate_batch`.
+            others: Values in place of, or beside, the arrays of the releases, as for
+                `simulate_batch`.
         """
         given = {_ARGUMENT.get(f.name, f.name): getattr(self, f.name) for f in fields(self)}
         return batched(UNIT_DRIVE, UNIT_RELEASE, given | others, outputs=outputs)
@@ -424,11 +425,11 @@ def periods_to_rest(r: Releases, finger_friction: ArrayLike) -> Array:
     the last carried stretch.
 
     Args:
-        r: the release, with the plate's friction, which does not matter here.
-        finger_friction: kinetic = static friction of the finger, N, at least 0.
+        r: The release, with the plate's friction, which does not matter here.
+        finger_friction: Kinetic = static friction of the finger, N, at least 0.
 
     Raises:
-        ValueError: a finger friction is below 0 or no number.
+        ValueError: A finger friction is below 0 or no number.
     """
     xf = np.asarray(finger_friction, dtype=np.float64) / r.stiffness
     if not np.all(xf >= 0.0):

@@ -75,7 +75,7 @@ def page(text: str, pictures: Mapping[str, bytes]) -> str:
 
     Args:
         text: Markdown as GitHub reads it; a paragraph of a picture alone is a figure.
-        pictures: the SVG of each figure, by the name of its file without ending.
+        pictures: The SVG of each figure, by the name of its file without ending.
     """
     plain = text.replace(r"\mathrm", r"\text")
     written = re.sub(r"\$([^$]+)\$", lambda tex: convert(tex[1], display="inline"), plain)

@@ -89,10 +89,10 @@ def motion_of(
     """Return the exact motion of a release.
 
     Args:
-        r: the releases.
-        index: which, in their arrays.
-        finger: friction force of the finger, N, kinetic = static; the analysis has none.
-        duration: as for `pindrive.simulate`.
+        r: The releases.
+        index: Index of the releases in their arrays.
+        finger: Friction force of the finger, N, kinetic = static; the analysis has none.
+        duration: Duration, as for `pindrive.simulate`.
     """
     drive = Drive(
         mass=float(r.mass[index]),

@@ -155,7 +155,7 @@ class Report:
         """Everything that `pindrive paper -o` writes, by its path in the folder.
 
         Args:
-            step: told what comes next, once for each exhibit.
+            step: Function called with the next step, once for each exhibit.
         """
         from pindrive import __version__
 
@@ -183,7 +183,7 @@ def make(step: Callable[[str], None] = lambda _: None) -> Report:
     """Compute the report.
 
     Args:
-        step: told what comes next, `STEPS` times.
+        step: Function called with the next step, `STEPS` times.
     """
 
     def doing(what: str, how: Callable[[], T]) -> T:

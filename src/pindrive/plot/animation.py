@@ -52,7 +52,7 @@ def animation_format(path: Path) -> str:
     """The format that the name of an animation asks for, if this machine can write it.
 
     Raises:
-        ValueError: it is neither GIF nor MP4, or there is no ffmpeg for MP4.
+        ValueError: The suffix is neither .gif nor .mp4, or ffmpeg is missing for MP4.
     """
     suffix = path.suffix.lower()
     if suffix not in FORMATS:
@@ -107,14 +107,14 @@ def animate(
     """Write a scan as a moving picture.
 
     Args:
-        evaluation: of the scan.
-        target: where to.
+        evaluation: Evaluation of the scan.
+        target: File to write.
         kind: "gif" or "mp4".
-        slow: how many times slower than the hand; greater than 0.
-        progress: told after each frame.
+        slow: Factor by which the animation is slower than the hand; greater than 0.
+        progress: Function called after each frame.
 
     Raises:
-        ValueError: too many frames, or ffmpeg fails.
+        ValueError: Too many frames, or ffmpeg fails.
     """
     times = frame_times(evaluation.scan.path, slow)
     with matplotlib.style.context(STYLE, after_reset=True):

@@ -53,12 +53,12 @@ def draw_contours(
     """Draw contours, each labelled once where there is room, and the jumps that end them.
 
     Args:
-        axes: with the map.
-        x: the columns' places.
-        y: the rows' places.
-        values: shape (len(y), len(x)); NaN where there is no number.
-        levels: of the contours.
-        norm: the map's scale of colours.
+        axes: Axes with the map.
+        x: The columns' places.
+        y: The rows' places.
+        values: Shape (len(y), len(x)); NaN where there is no number.
+        levels: Levels of the contours.
+        norm: The map's scale of colours.
     """
     seen = np.clip(np.ma.filled(norm(np.ma.masked_invalid(values)), np.nan), 0.0, 1.0)
     jumps = find_jumps(seen, x), find_jumps(seen.T, y).T

@@ -46,7 +46,7 @@ def plot_design(found: Design) -> Figure:
     pairs of variables, grey where a constraint is not met.
 
     Args:
-        found: what `optimise` found.
+        found: Result of `optimise`.
     """
     fronts = range(1, len(found.goals)) if found.front else range(0)
     count = len(fronts) + len(found.maps)

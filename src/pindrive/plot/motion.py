@@ -57,7 +57,7 @@ def plot_motion(motion: Motion) -> Figure:
     With a compliant finger also the stretch of its skin, with end stops their force on the pin.
 
     Args:
-        motion: any motion; of a very long one the first phases, and the time axis says until when.
+        motion: Any motion; of a very long one the first phases, and the time axis says until when.
 
     Returns:
         A figure that belongs to nobody else: `save` it, or show it in a notebook.

@@ -61,11 +61,11 @@ def moment(evaluation: Evaluation, pin: int | None = None) -> Moment:
     """A part worth a closer look: a few lines that passed under one pin.
 
     Args:
-        evaluation: of the scan.
-        pin: its number; None: of the pins that were shown most lines the nearest to the middle.
+        evaluation: Evaluation of the scan.
+        pin: Number of the pin; None: of the pins with most lines the nearest to the middle.
 
     Raises:
-        ValueError: there is no such pin.
+        ValueError: No pin has this number.
     """
     scan = evaluation.scan
     count = len(scan.pins)

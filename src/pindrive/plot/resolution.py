@@ -33,10 +33,10 @@ def plot_speeds(
     """Draw the largest hand speeds over the pitch, for a page 120 mm wide.
 
     Args:
-        limits: what `largest_speeds` found.
-        part: of its way that the pin had to be back.
-        criteria: what counted as felt.
-        device: its name, for the title.
+        limits: Result of `largest_speeds`.
+        part: Required return of the pin between two lines, as a part of its deflection.
+        criteria: Criteria of a felt line.
+        device: Name of the device, for the title.
     """
     with matplotlib.style.context(STYLE, after_reset=True):
         figure = new_figure(120, 105)
@@ -82,8 +82,8 @@ def plot_page_speeds(found: PageSpeeds, device: str = "") -> Figure:
     """Draw what becomes of the lines of a page over the hand speed, for a page 120 mm wide.
 
     Args:
-        found: what `speeds_over_page` found.
-        device: its name, for the title.
+        found: Result of `speeds_over_page`.
+        device: Name of the device, for the title.
     """
     with matplotlib.style.context(STYLE, after_reset=True):
         figure = new_figure(120, 90)

@@ -31,8 +31,8 @@ def plot_robustness(found: Robustness, name: str) -> Figure:
     """Draw the distribution of each watched number, with its limits and worst cases.
 
     Args:
-        found: what `robustness` found.
-        name: of the study, for the title.
+        found: Result of `robustness`.
+        name: Name of the study, for the title.
     """
     with matplotlib.style.context(STYLE, after_reset=True):
         count = len(found.values)

@@ -71,14 +71,14 @@ def plot_scan(evaluation: Evaluation, pin: int | None = None) -> Figure:
     """Draw a scan: the page and the way over it, the tactile image, and one pin's history.
 
     Args:
-        evaluation: of the scan.
-        pin: whose history, its number; None: one that was shown many lines, near the middle.
+        evaluation: Evaluation of the scan.
+        pin: Number of the pin with the drawn history; None: a pin with many lines, near the middle.
 
     Returns:
         A figure that belongs to nobody else.
 
     Raises:
-        ValueError: there is no such pin.
+        ValueError: No pin has this number.
     """
     scan = evaluation.scan
     left, right, top, bottom = view(scan)
@@ -129,7 +129,7 @@ def plot_reliefs(evaluations: Sequence[Evaluation]) -> Figure:
     """Draw what several scans of one scene showed, side by side in one scale, beside the print.
 
     Args:
-        evaluations: of the scans, at least one; what is drawn of the page is as the first has it.
+        evaluations: Evaluations of the scans, at least one; the page is drawn by the first.
 
     Returns:
         A figure that belongs to nobody else.

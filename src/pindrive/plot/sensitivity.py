@@ -48,8 +48,8 @@ def plot_sobol_indices(found: SobolIndices, name: str) -> Figure:
     """Draw elasticities as a table of colours, and Sobol' indices as bars beside them.
 
     Args:
-        found: what `sobol` found.
-        name: of the study, for the title.
+        found: Result of `sobol`.
+        name: Name of the study, for the title.
     """
     numbers = [
         n
@@ -152,7 +152,7 @@ def plot_elasticities(found: Elasticities) -> Figure:
     """Draw the elasticity of each number that has one, to each key.
 
     Args:
-        found: what `local_sensitivity` found.
+        found: Result of `local_sensitivity`.
 
     Returns:
         A figure that belongs to nobody else.

@@ -46,11 +46,11 @@ def plot_study(
     """Draw numbers of a study: a row for each, slices side by side.
 
     Args:
-        view: the open study.
-        numbers: variables of the file.
-        x: the key along the abscissa.
-        y: the key along the ordinate; empty for curves.
-        held: values, SI, at which other keys are held.
+        view: The open study.
+        numbers: Variables of the file.
+        x: The key along the abscissa.
+        y: The key along the ordinate; empty for curves.
+        held: Values, SI, at which other keys are held.
 
     Returns:
         A figure 180 mm wide, or 90 mm with a single panel.

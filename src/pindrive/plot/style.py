@@ -185,8 +185,8 @@ def save(
     """Write a figure, with its text as text where the format has text.
 
     Args:
-        figure: any that this package drew.
-        target: a path or a file open for writing bytes.
+        figure: Any that this package drew.
+        target: A path or a file open for writing bytes.
         format: "png" (250 dpi), "svg" or "pdf"; the ending of the path unless given.
     """
     kind = format or str(target).rpartition(".")[2].lower()

@@ -28,12 +28,12 @@ class Budget:
         """Refuse a count beyond the limit.
 
         Args:
-            count: how many there would be; one that is no number is too many.
-            of: what they come from, for the message: "16 pins over 10 s".
-            where: the place that asks for them, said first.
+            count: Requested number; a value that is no number is too many.
+            of: Origin of the number, for messages: "16 pins over 10 s".
+            where: The place that asks for them, said first.
 
         Raises:
-            ValueError: there would be too many.
+            ValueError: The count exceeds the budget.
         """
         if not count <= self.most:
             given = f"{count:.0f}" if count < 1e15 else f"{count:.3g}"
@@ -151,6 +151,6 @@ def worker_count(threads: int | None) -> int:
     """Return the given number of workers, or the number of available cores.
 
     Raises:
-        ValueError: that is no count.
+        ValueError: The value is no count.
     """
     return usable_cores() if threads is None else check_whole(threads, "threads", most=MOST_THREADS)

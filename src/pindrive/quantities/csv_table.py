@@ -37,12 +37,12 @@ class CsvTable:
         """The file at `path`, UTF-8.
 
         Args:
-            path: the file.
-            what: what it is to hold, for messages: "a recorded path".
-            example: a header.
+            path: The file.
+            what: Expected content, for messages: "a recorded path".
+            example: A header.
 
         Raises:
-            ValueError: it cannot be read, is empty, or has too many rows.
+            ValueError: The file cannot be read, is empty, or has too many rows.
         """
         file = Path(path)
         try:
@@ -112,13 +112,13 @@ class CsvTable:
         """The numbers of a column, SI.
 
         Args:
-            name: of the column, in small letters; it must be there.
-            quantity: whose unit and bounds hold.
-            scale: how many SI units one of its numbers is; as its heading says unless given.
+            name: Name of an existing column, in small letters.
+            quantity: Quantity with unit and bounds.
+            scale: SI units of one of the column's numbers; None: by its heading.
 
         Raises:
-            ValueError: it is there twice or has no unit or another one; a cell is no number or out
-                of bounds. The message names file and row.
+            ValueError: The column is there twice, or has no unit or another one; or a cell is no
+                number or out of bounds. The message names file and row.
         """
         if len(self._columns[name]) > 1:
             raise ValueError(refusal(f"column {name}", "given once", "it twice", self.file))

@@ -38,11 +38,11 @@ class Names:
     what follows a dot of a spelling where that means no other name.
 
     Args:
-        kind: what the names are of, for messages: "key".
-        spellings: each name with its spellings besides itself; of two names with one spelling the
-            first has it.
-        listed: where all names are listed, for messages.
-        shown: how messages call a name.
+        kind: Kind of the names, for messages: "key".
+        spellings: Each name with its further spellings; of two names with one spelling the first
+            has it.
+        listed: Place of the list of all names, for messages.
+        shown: Notation of a name in messages.
     """
 
     def __init__(
@@ -74,11 +74,11 @@ class Names:
         """The name that is meant.
 
         Args:
-            given: what was written.
-            place: where it was written, for messages.
+            given: Given text.
+            place: Place of the text, for messages.
 
         Raises:
-            ValueError: no name is meant, or several may be.
+            ValueError: The text is no name, or may be several.
         """
         text = given if isinstance(given, str) else repr(given)
         found = self.matches(text)

@@ -34,7 +34,7 @@ class Part:
     """Rows of the table, by name.
 
     Args:
-        rows: the quantities, each of another name.
+        rows: The quantities, each of another name.
     """
 
     def __init__(self, rows: Iterable[Quantity]) -> None:
@@ -57,15 +57,14 @@ class Part:
         """`value` as a float, if it is a number that the quantity called `name` may take.
 
         Args:
-            name: a name of the table.
+            name: A name of the table.
             value: SI value, or text with a unit: "12 g".
-            where: the place it was written, said first in the message: file and key.
-            label: what the message calls the quantity; its name unless given.
-            given: how the value was written, for the message; unless given, `value` with its
-                SI unit.
+            where: The place it was written, said first in the message: file and key.
+            label: Name of the quantity in messages; None: its own name.
+            given: Notation of the value in messages; None: `value` with its SI unit.
 
         Raises:
-            ValueError: no number, text without the unit, not finite, or out of bounds.
+            ValueError: The value is no number, text without a unit, not finite, or out of bounds.
         """
         quantity = self.rows[name]
         label = name if label is None else label

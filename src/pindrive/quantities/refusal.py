@@ -61,7 +61,7 @@ def check_whole(
     Truth values are none, nor are floats; NumPy's integers are.
 
     Raises:
-        ValueError: it is something else.
+        ValueError: The value is no whole number in the range.
     """
     upper = f"from {least} to {most}" if most is not None else f"of at least {least}"
     try:

@@ -49,10 +49,10 @@ def warn_of(name: str, value: float | Rows, *, label: str = "", stacklevel: int 
     """Warn if a value of the quantity called `name`, SI, or one in its rows, is implausible.
 
     Args:
-        name: a name of the table of quantities.
-        value: a number, or rows of which the second column is of that quantity.
-        label: what the warning calls it; its name unless given.
-        stacklevel: as for `warnings.warn`, from the caller on.
+        name: A name of the table of quantities.
+        value: A number, or rows of which the second column is of that quantity.
+        label: Name of the quantity in the warning; empty: its own name.
+        stacklevel: Level of the caller, as for `warnings.warn`.
     """
     values = (value,) if isinstance(value, (float, int)) else [y for _, y in value]
     for y in values:

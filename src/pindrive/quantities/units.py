@@ -61,10 +61,11 @@ def to_si(text: str, unit: str, example: str) -> float:
     Args:
         text: "12 g", "1.5e-3 m", "20 %"; a bare number only where `unit` is "1".
         unit: SI unit, "1" for dimensionless.
-        example: how such a quantity may be written, for the message.
+        example: Example of such a quantity, for the message.
 
     Raises:
-        UnitError: no number, no unit, an unknown unit or one of another dimension.
+        UnitError: The text is no number, or has no unit, an unknown unit or a unit of another
+            dimension.
     """
     plain = text.translate(_PLAIN)
     if _DECIMAL_COMMA.match(plain):
@@ -89,9 +90,9 @@ def expected(unit: str, written: str, otherwise: str = "") -> str:
     """Return the description of the required unit; it mentions if the unit `written` is unknown.
 
     Args:
-        unit: the SI unit, "1" for dimensionless.
-        written: the unit that does not fit.
-        otherwise: what a plain number may be written as.
+        unit: The SI unit, "1" for dimensionless.
+        written: The unit that does not fit.
+        otherwise: Alternatives to a plain number.
     """
     kind = f"a plain number {otherwise}".rstrip() if unit == "1" else f"in {unit} or a unit alike"
     try:

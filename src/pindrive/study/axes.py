@@ -52,7 +52,7 @@ def sweepable(given: str, place: str, scans: bool) -> str:
     """The key that is meant, if it holds a number and has a part in scans, or else in releases.
 
     Raises:
-        ValueError: it is unknown, may mean two, is no number or has no part.
+        ValueError: The key is unknown, ambiguous, no number, or has no part in the study.
     """
     key = NAMES.find(given, place)
     if key not in NUMERIC_KEYS or not NUMERIC_KEYS[key].may_be_constant:
@@ -82,7 +82,7 @@ class AxisReader:
         """The axis.
 
         Raises:
-            ValueError: it is malformed, empty, or out of the key's bounds.
+            ValueError: The axis is malformed, empty, or out of the bounds of the key.
         """
         if self._tolerance and isinstance(spec, str):
             return self._around(spec)
@@ -245,7 +245,7 @@ def as_read(axes: Mapping[str, Any] | None, label: str) -> dict[str, Any] | None
     """Axes from Python with the types that TOML has: arrays are lists, their numbers plain.
 
     Raises:
-        ValueError: they are no mapping.
+        ValueError: The axes are no mapping.
     """
     if axes is None:
         return None

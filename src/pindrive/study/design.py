@@ -53,11 +53,11 @@ class StudyPage:
         """A page with what its files hold now.
 
         Args:
-            page: the page.
-            place: where it was written, for messages.
+            page: The page.
+            place: Place of the page, for messages.
 
         Raises:
-            ValueError: a file cannot be read.
+            ValueError: A file cannot be read.
         """
         files = page.files.items()
         return cls(page, tuple((k, _checksum(path, f"{place}: page.{k}")) for k, path in files))
@@ -73,7 +73,7 @@ class StudyPage:
         Called before any part of a study is computed, perhaps on another machine.
 
         Raises:
-            ValueError: so it is.
+            ValueError: A file is missing or has changed.
         """
         known = dict(self.checksums)
         for name, path in self.page.files.items():
@@ -103,7 +103,7 @@ def read_page(table: Any, file: Path) -> Page:
     """The page that [page] describes; its files stand beside the study file.
 
     Raises:
-        ValueError: a key is unknown or malformed, or there is not exactly one of text, image and
+        ValueError: A key is unknown or malformed, or there is not exactly one of text, image and
             grating.
     """
     if not isinstance(table, dict):
@@ -206,7 +206,7 @@ def ranges_of(study: Study, tolerances: bool) -> Ranges:
     """The ranges of the axes, or the tolerances; these too where there are no axes.
 
     Raises:
-        ValueError: nothing varies, or a count does, or there are no tolerances.
+        ValueError: Nothing varies, or a count does, or there are no tolerances.
     """
     if tolerances and not study.tolerances:
         raise ValueError(f"{study.path}: has no tolerances; write them in [tolerances]")

@@ -239,9 +239,9 @@ def implied_links(
     does not exist; such a key stays as it is.
 
     Args:
-        device: whose ratios they are.
-        varied: keys that have values of their own.
-        scans: whether the study is one of scans, in which the keys of [motion] have no part.
+        device: Device with the ratios.
+        varied: Keys that have values of their own.
+        scans: True for a study of scans, in which the keys of [motion] have no part.
     """
     moving = {*varied}
     found = {}

@@ -41,7 +41,8 @@ def scan_numbers(study: Study, at: Mapping[str, float]) -> dict[str, float]:
     """The numbers of the scan at one point, which the keys' values (SI) say, by their names.
 
     Raises:
-        ValueError: there is none: the values do not go together, or a spot leaves the page.
+        ValueError: No such device exists: the values contradict each other, or a spot leaves the
+            page.
     """
     if study.page is None:
         raise ValueError(f"{study.path}: has no page to scan; write what is on it in [page]")
@@ -60,7 +61,7 @@ def _evaluate_scans(
     """The outputs at `count` points; arguments as for `evaluate`.
 
     Raises:
-        ValueError: a file of the page has changed since the study was read.
+        ValueError: A file of the page has changed since the study was read.
     """
     assert study.page
     study.page.check()
@@ -120,12 +121,12 @@ def evaluate(
     skin) is simulated point by point: the same numbers, fifty times slower.
 
     Args:
-        study: whose device.
-        columns: by the keys of device files, each of shape (count,), SI.
-        count: how many points.
-        outputs: names of variables; `reason` among them is text: what is refused of a point that
+        study: Study with the device.
+        columns: Values by the keys of device files, each of shape (count,), SI.
+        count: Number of points.
+        outputs: Names of variables; `reason` among them is text: what is refused of a point that
             cannot exist, the same for points that are refused alike, and empty where it exists.
-        threads: for `simulate_batch`, or processes for scans; None: all cores.
+        threads: Number of threads for `simulate_batch`, or of processes for scans; None: all cores.
     """
     if study.page:
         return _evaluate_scans(study, columns, count, outputs, threads)
@@ -158,12 +159,12 @@ def evaluate_all(
     """The outputs and the status at many points, part by part; and which points cannot exist.
 
     Args:
-        study: the study.
-        ranges: what varies.
-        points: values of the keys of `ranges.scatter`, SI, shape (keys, n).
-        outputs: names of variables.
-        threads: as for `evaluate`.
-        progress: called with the points done and the points in all.
+        study: The study.
+        ranges: Varied keys.
+        points: Values of the keys of `ranges.scatter`, SI, shape (keys, n).
+        outputs: Names of variables.
+        threads: Number of threads, as for `evaluate`.
+        progress: Function called with the points done and the points in all.
     """
     total, parts = points.shape[1], []
     for begin in range(0, total, study.at_a_time):
@@ -179,7 +180,7 @@ def follow(study: Study, at: Mapping[str, float]) -> Motion:
     """The motion at one point, which the keys' values say.
 
     Raises:
-        ValueError: there is none, as for `simulate`.
+        ValueError: The motion cannot be simulated, as for `simulate`.
     """
     columns = {key: np.array([value]) for key, value in at.items()}
     return _motion(_point(_inputs(study.device, columns), 0))
@@ -290,9 +291,10 @@ def refusals(study: Study, columns: Columns, reasons: NDArray[Any]) -> tuple[Ref
     """The points that cannot exist, by reason, most first.
 
     Args:
-        study: the study.
-        columns: the values of the varied keys at the points, SI.
-        reasons: of each point what is refused, as `evaluate` gives it; empty where it exists.
+        study: The study.
+        columns: The values of the varied keys at the points, SI.
+        reasons: Reason for each rejected point, as `evaluate` gives it; empty for an existing
+            point.
     """
     alike: dict[str, list[int]] = {}
     for i in np.flatnonzero(reasons != ""):

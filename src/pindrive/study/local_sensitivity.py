@@ -82,14 +82,14 @@ def local_sensitivity(study: Study, *, tolerances: bool = False) -> Elasticities
     Exact derivatives at the device's own values, by dual numbers through every event.
 
     Args:
-        study: of releases; its axes say the keys.
-        tolerances: the keys of its tolerances instead.
+        study: Study of releases; its axes name the keys.
+        tolerances: The keys of its tolerances instead.
 
     Returns:
         The elasticities, NaN where one does not exist, with the reason of a key that has none.
 
     Raises:
-        ValueError: the study is one of scans, which have no exact derivatives, or nothing varies.
+        ValueError: The study is one of scans, which have no exact derivatives, or nothing varies.
 
     Examples:
         >>> import pindrive as pd
@@ -113,9 +113,9 @@ def elasticities(study: Study, keys: Sequence[str], links: Mapping[str, Linked])
     keys that are linked. The derivatives are the core's own, on dual numbers.
 
     Args:
-        study: whose device.
-        keys: of device files, each with a value in the device.
-        links: keys that follow others.
+        study: Study with the device.
+        keys: Keys of device files, each with a value in the device.
+        links: Keys that follow others.
     """
     motion = motion_of(study.device)
     changes, gaps = {}, {}

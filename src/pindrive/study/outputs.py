@@ -113,7 +113,7 @@ def known_output(given: object, place: str, among: tuple[str, ...] = OUTPUTS) ->
     The last part alone of a median and a worst value is the median.
 
     Raises:
-        ValueError: there is none, or more than one.
+        ValueError: No variable has this name, or several have it.
     """
     if not isinstance(given, str):
         raise ValueError(refusal("an output", "the name of a number", quoted(given), place))

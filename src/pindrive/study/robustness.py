@@ -160,19 +160,19 @@ def robustness(
     `Quantity.follows`). A draw that cannot exist all the same is no design: it is counted apart.
 
     Args:
-        study: a study with tolerances.
-        count: independent random draws, at least 1; the confidence interval rests on them. 100 000
+        study: A study with tolerances.
+        count: Independent random draws, at least 1; the confidence interval rests on them. 100 000
             unless given, of scans 1000.
-        seed: of the draws and of the search for the worst case.
-        threads: all cores unless given.
-        progress: called with the points done and the points in all.
+        seed: Seed of the draws and of the search for the worst case.
+        threads: Number of threads; None: all cores.
+        progress: Function called with the points done and the points in all.
 
     Returns:
         The spread of the watched numbers, the yield against each limit and against all, and the
         worst case that a search found; `to_dataset` and `plot` give them as data and as a figure.
 
     Raises:
-        ValueError: there are no tolerances, no draw can exist, or there are too many to keep.
+        ValueError: There are no tolerances, no draw can exist, or the draws exceed the memory.
 
     Examples:
         >>> import pindrive as pd

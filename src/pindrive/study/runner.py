@@ -80,7 +80,7 @@ class Sweep(lazy.NotebookHtml):
         """The settling time, or the part of lines shown, over the first two keys that vary.
 
         Raises:
-            ValueError: the sweep is not complete, or holds a single point.
+            ValueError: The sweep is not complete, or holds a single point.
         """
         from pindrive.plot.slices import plot_sweep
 
@@ -106,17 +106,17 @@ def sweep(
     Until it is whole the file is called TARGET.partial, with TARGET.journal beside it.
 
     Args:
-        study: the study.
-        target: a NetCDF file.
-        resume: continue an interrupted run, if there is one.
-        force: discard an interrupted run; an earlier study at `target` is replaced
+        study: The study.
+        target: A NetCDF file.
+        resume: Continue an interrupted run, if there is one.
+        force: Discard an interrupted run; an earlier study at `target` is replaced
             when the new one is whole.
-        stop_after: stop when at least so many points are done; `resume` continues.
-        work: how chunks are computed; on all cores unless given.
-        tell: called after each chunk with the points done and the points in all.
+        stop_after: Stop when at least so many points are done; `resume` continues.
+        work: Computation of the chunks; None: on all cores.
+        tell: Function called after each chunk with the points done and the points in all.
 
     Raises:
-        OutputError: an interrupted run or an earlier study is there and neither `resume` nor
+        OutputError: An interrupted run or an earlier study is there and neither `resume` nor
             `force` is given, it is of another study, another file is there, or the disk is full
             or cannot be written. Finished chunks are kept.
     """

@@ -64,10 +64,10 @@ def sobol_indices(
     """The indices of every number that a function gives.
 
     Args:
-        function: called with columns of points (keys, n).
-        ranges: how each key is distributed, independently of the others.
-        rows: of the design, a power of 2, at least 128; (keys + 2) points each.
-        seed: of the Sobol' sequence and the bootstrap.
+        function: Function of columns of points (keys, n).
+        ranges: Distribution of each key, independent of the others.
+        rows: Rows of the design, a power of 2, at least 128; (keys + 2) points each.
+        seed: Seed of the Sobol' sequence and the bootstrap.
 
     Raises:
         ValueError: `rows` is no power of 2, or below 128.
@@ -245,22 +245,22 @@ def sobol(
     bootstrap over the rows.
 
     Args:
-        study: whose axes are the ranges; each key is drawn independently of the others.
-        tolerances: over the study's tolerances instead of its axes.
-        numbers: the numbers to analyse, as "settling_time"; all that exist unless given, of
+        study: Study whose axes are the ranges; each key is drawn independently of the others.
+        tolerances: True for the tolerances of the study in place of its axes.
+        numbers: The numbers to analyse, as "settling_time"; all that exist unless given, of
             the energy ledger those that the study names in its outputs.
-        rows: of the design, a power of 2, at least 128, of (keys + 2) points each; 8192 unless
-            given, of scans 256.
-        seed: of the sequence and the bootstrap.
-        threads: how many work; as many as there are cores unless given.
-        progress: called with the points done and the points in all.
-        near: find the elasticities at the device's own values too, unless it is one of scans.
+        rows: Rows of the design, a power of 2, at least 128, of (keys + 2) points each; None: 8192,
+            of scans 256.
+        seed: Seed of the sequence and the bootstrap.
+        threads: Number of workers; None: all cores.
+        progress: Function called with the points done and the points in all.
+        near: Find the elasticities at the device's own values too, unless it is one of scans.
 
     Returns:
         The indices; `to_dataset` and `plot` give them as data and as a figure.
 
     Raises:
-        ValueError: nothing varies, a number is unknown, or `rows` is no power of 2 or too large.
+        ValueError: Nothing varies, a number is unknown, or `rows` is no power of 2 or too large.
 
     Examples:
         >>> import pindrive as pd

@@ -155,7 +155,7 @@ class Slice:
         """Open the file of a sweep.
 
         Raises:
-            ValueError: it cannot be read, or is no study.
+            ValueError: The file cannot be read, or is no study.
         """
         self.path = str(path)
         try:
@@ -210,7 +210,7 @@ class Slice:
         """The varied key that is meant.
 
         Raises:
-            ValueError: it is unknown, or was not varied.
+            ValueError: The key is unknown, or was not varied.
         """
         names = Names("key", {name: (QUANTITY[name].key,) for name in self.keys})
         found = names.matches(given)
@@ -268,7 +268,7 @@ class Slice:
         """Return the keys of the axes: the given ones, or the first two free ones.
 
         Raises:
-            ValueError: there are none, or the two change together.
+            ValueError: There are no axes, or the two change together.
         """
         if not self.keys:
             raise ValueError(f"{self.path}: holds a single point, there is nothing to draw over")

@@ -27,14 +27,14 @@ def load_study(path: str | PathLike[str], overrides: Iterable[str] = ()) -> Stud
     """Read a study from a file.
 
     Args:
-        path: a TOML file that names a device, or holds one, and says what to vary.
+        path: A TOML file that names a device, or holds one, and says what to vary.
         overrides: "key=value" each, as for `load_device`; after those in its table [set].
 
     Returns:
         The study; `run` simulates its points.
 
     Raises:
-        ConfigError: the file or its device cannot be read, or holds anything unknown, malformed,
+        ConfigError: The file or its device cannot be read, or holds anything unknown, malformed,
             out of bounds or contradictory; a line for each problem.
 
     Examples:

@@ -88,7 +88,7 @@ class Store:
         """Write the pieces of a chunk.
 
         Raises:
-            OSError: the disk is full or fails.
+            OSError: The disk is full or fails.
         """
         for name, start, values in pieces:
             offset, kind = self._places[name]
@@ -207,7 +207,8 @@ class Journal:
         """Open it, or begin it; what it holds is thrown away where `force`.
 
         Raises:
-            OutputError: it is another study's, another process holds it, or it cannot be written.
+            OutputError: The file is that of another study, another process holds it, or it cannot
+                be written.
         """
         self._path = path
         with naming(path):

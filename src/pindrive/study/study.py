@@ -38,24 +38,25 @@ class Study:
     The points are the product of the dimensions; the last dimension changes fastest.
 
     Args:
-        device: What `load_device` reads, or a `Drive`.
-        axes: what varies, by key: "plate.kinetic", "plate_kinetic" as in Python, or the part after
+        device: Device as `load_device` reads it, or a `Drive`.
+        axes: Varied values by key: "plate.kinetic", "plate_kinetic" as in Python, or the part after
             the dot where no other key has it ("latency"). A value is a sequence of values, or a
             mapping with one way to choose them: `lin` or `log` with two ends and `count`; `uniform`
             or `loguniform` with two ends; `normal` with mean and deviation; `lognormal` with median
             and factor; `times` and `of`, a multiple of another key. A number is SI, text has a
             unit.
-        outputs: the numbers to keep, as "settling_time"; the usual ones unless given.
+        outputs: The numbers to keep, as "settling_time"; the usual ones unless given.
         release: Start and inputs of the motion of a `Drive`; a device file has its own.
-        page: what is scanned at every point, a `Page` or text; None: every point is a release.
-        sample: how sampled axes are drawn: `count`, `method` ("random" or "sobol"), `seed`.
-        tolerances: as `axes`, each a distribution, or text: "20 %" about the device's own value.
-        specification: limits on outputs, as {"settling_time": "<= 60 ms"}.
-        zip: groups of keys whose values go together.
-        name: for titles.
+        page: Page to scan at every point, a `Page` or text; None: every point is a release.
+        sample: Sample of the drawn axes: `count`, `method` ("random" or "sobol"), `seed`.
+        tolerances: Tolerances in the notation of `axes`, each a distribution, or text: "20 %" about
+            the value of the device.
+        specification: Limits on outputs, as {"settling_time": "<= 60 ms"}.
+        zip: Groups of keys whose values go together.
+        name: Name for titles.
 
     Raises:
-        ValueError: a key or an output is unknown, or a value malformed, out of its bounds or in
+        ValueError: A key or an output is unknown, or a value malformed, out of its bounds or in
             contradiction to others; each in a line.
 
     Examples:
@@ -300,13 +301,13 @@ class Study:
         `if __name__ == "__main__":`, as all that begin processes.
 
         Args:
-            path: a NetCDF file that keeps the points; an interrupted run continues from it. None: a
+            path: A NetCDF file that keeps the points; an interrupted run continues from it. None: a
                 temporary file.
-            resume: go on with an interrupted run of the same study.
-            force: replace an interrupted run, or an earlier study.
-            threads: how many work, at least 1; as many as there are cores unless given.
-            cluster: the address of a Dask scheduler, whose workers do the work instead.
-            progress: called with the points done and the points in all.
+            resume: Go on with an interrupted run of the same study.
+            force: Replace an interrupted run, or an earlier study.
+            threads: Number of workers, at least 1; None: all cores.
+            cluster: The address of a Dask scheduler, whose workers do the work instead.
+            progress: Function called with the points done and the points in all.
 
         Returns:
             A dimension for each axis (one, `sample`, for all that are drawn), the values of each
@@ -315,7 +316,7 @@ class Study:
             attributes. With `path` the numbers are read from the file when they are given.
 
         Raises:
-            ValueError: nothing varies; or the file is there, or cannot be written.
+            ValueError: Nothing varies; or the file exists, or cannot be written.
         """
         from pindrive.study.runner import on_cluster, on_threads, sweep
 

@@ -78,7 +78,7 @@ def device_in(
     What `page` holds in `tables` becomes a `Page`; what is wrong with it is appended to `problems`.
 
     Raises:
-        ConfigError: there is no device, or it cannot be read.
+        ConfigError: There is no device, or it cannot be read.
     """
     if "page" in tables:
         tables["page"] = _page(tables["page"], file, problems)

@@ -71,7 +71,7 @@ def study_template(*, whole: bool = False) -> str:
     """A commented study file that holds its device, as `pindrive init --study` writes it.
 
     Args:
-        whole: a study of scans with the whole device, as `pindrive init --study --device` writes
+        whole: A study of scans with the whole device, as `pindrive init --study --device` writes
             it; of single releases otherwise.
     """
     what = "scans over a page" if whole else "single releases"

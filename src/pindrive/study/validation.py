@@ -181,8 +181,8 @@ def coefficient_range(study: Study, *, tolerances: bool) -> tuple[float, float] 
     """The least and the largest kinetic coefficient of the plate; None where it does not change.
 
     Args:
-        study: the study.
-        tolerances: over its tolerances, not over its axes.
+        study: The study.
+        tolerances: True for the tolerances in place of the axes.
     """
     links = study.tolerance_links if tolerances else study.links
     by_coefficient = study.device.drive.plate.coefficient is not None

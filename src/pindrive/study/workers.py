@@ -155,7 +155,7 @@ def crew(address: str | None) -> Iterator[Here | Cluster]:
     """Return the workers of independent parts: a scheduler, else this thread.
 
     Raises:
-        ValueError: as for `cluster_executor`.
+        ValueError: The address is invalid, as for `cluster_executor`.
     """
     if address is None:
         yield Here()
@@ -180,11 +180,12 @@ def cluster_executor(address: str, kept: str) -> Iterator[tuple[Executor, int]]:
     """An executor on the workers of a scheduler, and how many threads they have, at least 1.
 
     Args:
-        address: such as tcp://10.0.0.1:8786, or the file of the scheduler, which ends in .json.
-        kept: what is left where workers die one after the other, for the message.
+        address: Address such as tcp://10.0.0.1:8786, or the file of the scheduler, which ends in
+            .json.
+        kept: Content that is kept if workers die one after the other, for the message.
 
     Raises:
-        ValueError: nothing answers at the address, or a worker has another version.
+        ValueError: No scheduler answers at the address, or a worker has another version.
     """
     from distributed import Client, KilledWorker
 
@@ -209,7 +210,7 @@ def _written(file: Path) -> str:
     """The address in the file of a scheduler, which may have just begun.
 
     Raises:
-        ValueError: it is not there, or holds no address, after `_PATIENCE`.
+        ValueError: The file does not exist, or holds no address, after `_PATIENCE`.
     """
     end = monotonic() + _PATIENCE
     while True:
