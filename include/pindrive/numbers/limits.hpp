@@ -44,7 +44,8 @@ template <class T>
 inline constexpr T least_across = 64 * rounding<T>;
 
 /// Relative time before a breakpoint at which an oblique plate comes to rest, within which an event
-/// belongs to the breakpoint: the sliding direction under a held pin is undetermined there.
+/// belongs to the breakpoint: the sliding direction under a held pin is undetermined there. Without
+/// it: fuzz --replay fails.
 template <class T>
 inline constexpr T before_rest = 128 * rounding<T>;
 
