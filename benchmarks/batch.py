@@ -65,7 +65,7 @@ def stepper_errors(drives: Floats, h: float, steps: int) -> Floats:
 
 
 def exact_errors(drives: Floats, count: int = 31) -> Floats:
-    """The same of pindrive against thirty digits, at so many times."""
+    """Error of pindrive against thirty digits, at a number of times."""
     times = np.linspace(0.0, DURATION, count)
     ours = np.array([alone(drive).position(times) for drive in drives.T])
     off = np.abs(ours - exact_positions(drives, times)).astype(np.float64)
@@ -76,7 +76,7 @@ def exact_errors(drives: Floats, count: int = 31) -> Floats:
 
 
 def seconds(call: Callable[[], object]) -> float:
-    """Of the processor, which other programs do not add to; one thread alone works."""
+    """Processor time, to which other programs do not add; one thread alone works."""
     begin = process_time()
     call()
     return process_time() - begin

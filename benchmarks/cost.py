@@ -1,4 +1,4 @@
-"""What a motion costs: against its duration, its number of events, and the stiffness of the skin.
+"""Cost of a motion: against its duration, its number of events, and the stiffness of the skin.
 
 Only the number of events should count. Each motion is timed by `simulate`, a call from Python; by
 `simulate` and all its numbers; and by `simulate_batch` on many copies of it, which is what the core
@@ -50,7 +50,7 @@ class Case:
         return motion.transient, motion.ending
 
     def batch(self, copies: int) -> object:
-        """All numbers of so many copies, on one thread; the load of a batch is constant."""
+        """All numbers of a number of copies, on one thread; the load of a batch is constant."""
         mass = np.full(copies, self.drive.mass)
         return simulate_batch(
             self.drive, self.release, mass=mass, duration=self.duration, threads=1
@@ -70,7 +70,7 @@ def mouse(duration: float | None = None, skin: float = np.inf) -> Case:
 
 
 def undamped(reversals: int) -> Case:
-    """Friction as small as needs so many reversals to end the swing."""
+    """Friction that needs a number of reversals to end the swing."""
     finger = Contact(100.0 * 1.5e-3 / (2 * reversals + 0.5))
     drive = Drive(mass=0.010, stiffness=100.0, damping=0.0, plate=Contact(0.0), finger=finger)
     return Case(drive, Release(0.0, 1.5e-3))
@@ -93,7 +93,7 @@ def ringing(skin: float) -> Case:
 
 @dataclass(frozen=True)
 class Cost:
-    """Median processor time of one motion in each of the `WAYS` that it goes, s, and its events."""
+    """Median processor time of a motion in each of the `WAYS`, s, and its events."""
 
     events: int
     times: tuple[float, ...]
@@ -107,7 +107,7 @@ def spent(call: Callable[[], object]) -> float:
 
 @dataclass
 class Racer:
-    """One release in one way, run so many times that a timing takes long enough."""
+    """Release in one way, repeated until a timing takes long enough."""
 
     call: Callable[[int], object]
     count: int

@@ -65,7 +65,7 @@ def timed(device: Any, tables: dict[str, Any]) -> Design:
 
 
 def space_of(problem: DesignProblem, cases: Array) -> DesignSpace:
-    """What designs are worth at these conditions."""
+    """Goals and violations of designs at these conditions."""
     return DesignSpace(
         study=problem.study,
         variables=problem.variables,
@@ -200,7 +200,7 @@ def climb_of(problem: DesignProblem, at: dict[str, float], pitch: float) -> line
 
 
 def main() -> None:
-    """All, or those that are named."""
+    """All benchmarks, or the named ones."""
     kinds = {"paper": paper, "parts": parts, "reader": reader}
     for name in sys.argv[1:] or kinds:
         print(name)

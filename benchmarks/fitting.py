@@ -1,4 +1,4 @@
-"""How often the intervals of `fit` hold the truth, on random recordings: `run.py bench fitting`.
+"""Coverage of the intervals of `fit` on random recordings: `run.py bench fitting`.
 
     python3 run.py bench fitting [COUNT [SEED]]
 
@@ -114,13 +114,13 @@ def draw(rng: np.random.Generator) -> Case:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a fit said of a case."""
+    """Result of the fit of a case."""
 
     held: tuple[tuple[str, str, bool], ...]
-    """Of each parameter: its name, the kind of its interval, and whether that holds the truth."""
+    """Name of each parameter, kind of its interval, and True if the interval holds the truth."""
     converged: bool
     lost: bool
-    """Whether the truth fits better than what was found."""
+    """True if the truth fits better than the result."""
     seconds: float
 
 
@@ -141,7 +141,7 @@ def outcome(seed: int, count: int, i: int) -> Outcome:
 
 
 def main(count: int, seed: int) -> None:
-    """Fit all of them, and print how often the intervals hold the truth."""
+    """Fit all cases, and print the coverage of the intervals."""
     with ProcessPoolExecutor() as pool:
         done = list(pool.map(partial(outcome, seed, count), range(count)))
     tally = Counter((kind, held) for each in done for _, kind, held in each.held)
@@ -163,7 +163,7 @@ def main(count: int, seed: int) -> None:
 
 
 def _lost(found: Fit, case: Case) -> bool:
-    """Whether the truth fits better than what was found."""
+    """True if the truth fits better than the result."""
     truth = np.array([case.truth[e.name] for e in found.estimates])
 
     def cost(theta: Array) -> float:

@@ -79,7 +79,7 @@ def entered(
 
 
 def versions(absent: list[str]) -> str:
-    """Those of the peers that took part."""
+    """Peers that took part."""
     names = [name for peer, (_, name, _) in PEERS.items() if peer not in absent]
     return ", ".join(f"{name} {version(name)}" for name in names if name not in ALWAYS)
 

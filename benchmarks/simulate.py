@@ -1,4 +1,4 @@
-"""Time of one `simulate` beside SciPy's event location on the same drive.
+"""Time of `simulate` beside SciPy's event location on one drive.
 
 SciPy gets the modes spelled out, so that it never integrates across a jump: each slide is a smooth
 problem ended by an event, and stuck phases cost it nothing (racing/modes.py). This is the careful
@@ -31,7 +31,7 @@ EXAMPLE = Path(__file__).resolve().parent.parent / "examples" / "tactile-mouse.t
 
 
 def with_scipy(drive: Drive, release: Release, method: str, rtol: float) -> tuple[float, float]:
-    """When and where the pin comes to rest on the finger, mode by mode."""
+    """Time and place of the rest on the finger, mode by mode."""
     assert isinstance(release.mouse_velocity, float)
     pin = Pin(
         drive.mass,

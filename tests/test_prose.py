@@ -83,11 +83,13 @@ def test_summaries_of_python_are_read_from_docstrings_and_attributes() -> None:
 
 
 PYTHON = sorted(
-    path for folder in ("src", "tasks", "tests") for path in (ROOT / folder).rglob("*.py")
+    path
+    for folder in ("src", "tasks", "tests", "benchmarks", "wheels")
+    for path in (ROOT / folder).rglob("*.py")
 )
 CPP = [
     path
-    for folder in ("include", "capi", "fmu", "src")
+    for folder in ("include", "capi", "fmu", "src", "tests")
     for path in sorted((ROOT / folder).rglob("*.[ch]pp"))
 ]
 TYPESCRIPT = sorted((ROOT / "studio" / "src").rglob("*.ts"))

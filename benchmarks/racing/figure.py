@@ -95,7 +95,7 @@ def curve(axes: Axes, key: tuple[str, str], results: Sequence[Result]) -> None:
 
 
 def signs() -> list[Line2D]:
-    """What the signs mean."""
+    """Legend of the signs."""
     dot: dict[str, Any] = {"ls": "none", "marker": "o", "color": GREY}
     return [
         Line2D([], [], **dot, label="median over the drives"),

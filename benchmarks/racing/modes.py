@@ -47,7 +47,7 @@ class Pin:
 
 
 class Contacts:
-    """Which way the pin slides on plate and finger, 1 or -1; 0 where it sticks."""
+    """Sliding direction on plate and finger, 1 or -1; 0 in stick."""
 
     def __init__(self, pin: Pin) -> None:
         self.pin = pin
@@ -75,7 +75,7 @@ class Contacts:
         self.sides[at] = 0.0 if abs(need) <= self.pin.static[at] else -copysign(1.0, need)
 
     def hold(self, at: int, x: float) -> float:
-        """How long contact `at` holds the pin from x on, s."""
+        """Duration for which contact `at` holds the pin from x on, s."""
         speed = self.pin.levels[at]
         if speed == 0.0:
             return inf
@@ -107,7 +107,7 @@ class Slide:
 
 @dataclass(frozen=True)
 class Slid:
-    """How a slide went; `reached` is the contact whose velocity ended it."""
+    """Result of a slide; `reached` is the contact whose velocity ended it."""
 
     end: float
     x: float

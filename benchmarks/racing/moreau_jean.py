@@ -29,13 +29,13 @@ def friction_step(free: float, weight: float, plate: float, finger: float, level
 
 @numba.njit(inline="always")
 def coefficients(m: float, k: float, b: float, h: float) -> tuple[float, float, float]:
-    """Of the step  weight w + impulses = of_v v + of_x x,  by the midpoint rule."""
+    """Matrices of the step  weight w + impulses = of_v v + of_x x,  by the midpoint rule."""
     return m + h * b / 2 + h * h * k / 4, m - h * b / 2 - h * h * k / 4, -h * k
 
 
 @numba.njit
 def last_states(drives: Floats, h: float, steps: int, out: Floats) -> None:
-    """Position and velocity of every drive after so many steps."""
+    """Position and velocity of every drive after a number of steps."""
     for i in range(drives.shape[1]):
         m, k, b, plate, finger, level, x = drives[:, i]
         weight, of_v, of_x = coefficients(m, k, b, h)
@@ -50,7 +50,7 @@ def last_states(drives: Floats, h: float, steps: int, out: Floats) -> None:
 
 @numba.njit
 def trajectory(drive: Floats, h: float, every: int, out: Floats) -> None:
-    """The position of one drive at the start and after every so many steps."""
+    """Position of one drive at the start and at even steps."""
     m, k, b, plate, finger, level, x = drive
     weight, of_v, of_x = coefficients(m, k, b, h)
     v = level

@@ -1,4 +1,4 @@
-"""What every peer is asked, and how it is timed.
+"""Tasks of every peer, and their timing.
 
 From the seven numbers of a drive to the position at 76 times: that is one transient, and its time
 is the processor time of all of it. What can be made once for all drives (a compiled model, a
@@ -22,7 +22,7 @@ CAP = 2.0  # s of processor time for one drive
 
 
 class FailureError(Exception):
-    """Why a peer has no answer, in a word or two."""
+    """Reason of a peer without an answer, in a word or two."""
 
 
 class Watch:
@@ -60,7 +60,7 @@ class Racer:
 
 @dataclass
 class Result:
-    """What came of a racer."""
+    """Result of a racer."""
 
     racer: Racer
     laps: list[float] = field(default_factory=list)

@@ -29,7 +29,7 @@ ORDER = (
 
 DRIVE = Drive(mass=0.01, stiffness=100.0, damping=0.0, plate=Contact(0.0), finger=Contact(0.0))
 RELEASE = Release(0.1)
-"""What all of them vary."""
+"""Values that all releases vary."""
 
 
 def drawn(count: int, seed: int) -> dict[str, Floats]:

@@ -47,7 +47,7 @@ def lagrangian(
 
 
 def follow(drive: list[float], step: float, every: int, count: int, way: Any, solver: int) -> Any:
-    """Positions of one drive, at its release and after every so many steps."""
+    """Positions of one drive, at its release and at even steps."""
     system, relation, law, integrator, position = way(*drive, step)
     nsds = sk.NonSmoothDynamicalSystem(0.0, step * every * count)
     nsds.insertDynamicalSystem(system)

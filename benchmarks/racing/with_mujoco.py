@@ -1,4 +1,4 @@
-"""MuJoCo: one `frictionloss` of a joint and one of a tendon, at several time steps.
+"""MuJoCo: `frictionloss` of a joint and of a tendon, at several time steps.
 
 Two slides in a row of bodies without gravity or collisions. The plate is too heavy to be slowed and
 moves at the mouse's velocity. Either the pin slides in the housing (its joint has the finger's

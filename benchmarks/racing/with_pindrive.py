@@ -1,4 +1,4 @@
-"""Pindrive: one drive at a time as the others, and many at once with all their numbers."""
+"""Pindrive: one drive at a time, and many at once with all their numbers."""
 
 from __future__ import annotations
 

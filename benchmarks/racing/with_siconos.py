@@ -49,7 +49,7 @@ def racers(program: str, everything: bool) -> Iterator[Racer]:
 
 
 def run(program: str, way: str, solver: str, step: float, drives: Floats) -> Lap:
-    """One lap in the other Python."""
+    """Lap in the Python that has Siconos."""
     every, count = round(TIMES[1] / step), len(TIMES)
     with TemporaryDirectory() as folder:
         given, answer = Path(folder, "in.npz"), Path(folder, "out.npz")

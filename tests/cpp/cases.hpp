@@ -2,9 +2,9 @@
 
 #include <cstdlib>
 
-/// How many of so many random cases a program takes: all where PINDRIVE_EXPLORE is set, as by
-/// `python3 run.py explore`; otherwise a fifth, or a twentieth where sanitizers make each of them
-/// cost twenty times as much.
+/// Number of random cases of a program: all where PINDRIVE_EXPLORE is set, as by
+/// `python3 run.py explore`; otherwise a fifth, or a twentieth under sanitizers, which take
+/// twenty times as long.
 inline int cases(int count) {
 #ifdef PINDRIVE_SANITIZED
   return count / 20;

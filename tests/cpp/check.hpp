@@ -1,4 +1,4 @@
-/// How a test says what it found: a line for each expectation, and the exit status.
+/// Reports of a test: a line for each expectation, and the exit status.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ inline void expect(bool good, const char* what) {
   failures += good ? 0 : 1;
 }
 
-/// Whether two numbers differ by no more than a part of the larger, or of 1.
+/// True if two numbers differ by no more than a part of the larger, or of 1.
 inline bool near(double one, double other, double part) {
   return std::abs(one - other) <= part * std::max({std::abs(one), std::abs(other), 1.0});
 }

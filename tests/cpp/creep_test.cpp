@@ -37,7 +37,7 @@ template <class T>
 struct End {
   pd::detail::SeriesState<T> state;
   int steps{0};
-  T bounds{0};  ///< of the velocity, summed
+  T bounds{0};  ///< sum of the velocity bounds
 };
 
 /// Follows a mode for a time: by creep where it creeps, or by the Taylor series alone.
@@ -57,7 +57,7 @@ End<T> follow(pd::detail::SeriesEquation<T> e, pd::detail::SeriesState<T> state,
   return end;
 }
 
-/// Of 200 random cases the same as the Taylor series to rounding, in fewer steps.
+/// 200 random cases agree with the Taylor series to rounding, in fewer steps.
 void beside_taylor() {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> uniform(-1, 1);
@@ -122,7 +122,7 @@ void joins_the_aligned_case() {
 }
 
 /// An across velocity that comes to zero and goes on: the laws hold all along, and a hand that wobbles
-/// to the other side moves the pin as one that wobbles back.
+/// beyond zero moves the pin as a hand that wobbles back.
 void through_zero() {
   auto e = pulled(0.004);
   e.across.rate = -0.2;
@@ -169,7 +169,7 @@ void through_zero() {
   expect(e.across.value < -0.0039, "to the other side", e.across.value);
 }
 
-/// What a step leaves out is within its bound, and the bound is rounding.
+/// The truncation error of a step is within its bound, and the bound is rounding.
 void bounds() {
   using L = long double;
   int held = 0;

@@ -21,8 +21,8 @@ struct Case {
   pd::Drive<double> drive;
   double mouse_velocity, displacement, velocity;
   double critical;  ///< damping, N s/m
-  double off;       ///< how far from it, relative
-  double omega;     ///< of the oscillation that is critically damped, rad/s
+  double off;       ///< relative distance from critical damping
+  double omega;     ///< natural frequency of the critically damped oscillation, rad/s
   double length, force;
 };
 
@@ -71,9 +71,9 @@ class Draw {
 };
 
 struct Difference {
-  const char* name{nullptr};  ///< of the first number that differs too much, if any
+  const char* name{nullptr};  ///< name of the first number that differs too much, if any
   double below{0}, above{0};
-  double largest{0};  ///< of all others, as a part of what is allowed
+  double largest{0};  ///< largest other difference over the allowed difference
 };
 
 bool cycles(const Summary& s) { return s.outcome.cycles(); }
@@ -147,7 +147,7 @@ Difference across(const Case& c) {
   return compare(c, summary[0], summary[1]);
 }
 
-/// Whether the two also differ for releases close by. If not, the drive lies by chance where a motion
+/// True if the two also differ for releases close by. If not, the drive lies by chance where a motion
 /// changes its kind, which the two sides of critical damping are on different sides of.
 bool persists(Case c) {
   for (int i = 0; i < 3; ++i) {

@@ -87,7 +87,7 @@ constexpr const char* names[] = {"sine",
                                  "sine in a turn",
                                  "cosine in a turn",
                                  "exponential in range"};
-/// The range of those that have one.
+/// Ranges of the functions that have a bounded range.
 bool outside(int which, double a, double b) {
   if (which == 6) return !(std::max(std::abs(a), std::abs(b)) < 0x1p1022);
   if (which == 9) return !(std::abs(a) <= 700);
@@ -131,7 +131,7 @@ double drawn(int which, std::mt19937_64& random) {
   }
 }
 
-/// How many units in the last place a double is off.
+/// Error of a double in units in the last place.
 double off(double found, Long right) {
   const double near = static_cast<double>(right);
   if (std::isnan(near)) return std::isnan(found) ? 0 : INFINITY;

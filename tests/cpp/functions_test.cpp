@@ -15,7 +15,7 @@ namespace pd = pindrive;
 namespace functions = pd::detail;
 using check::expect;
 
-/// How far a number is from an answer, in units in the last place.
+/// Distance of a number from a reference, in units in the last place.
 double units_off(double number, long double answer) {
   const double nearest = static_cast<double>(answer);
   if (number == nearest) return 0;

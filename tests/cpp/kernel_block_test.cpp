@@ -49,7 +49,7 @@ struct Answer {
   }
 };
 
-/// What becomes of releases in one block; nothing is written beyond them or where no output is asked for.
+/// Results of releases in one block; nothing is written beyond them or where no output is asked for.
 std::vector<Answer> followed(const std::vector<Release>& all, pk::Asked asked, int first = 0) {
   const auto block = std::make_unique<Block>();
   const int count = static_cast<int>(all.size());
@@ -91,8 +91,8 @@ void times_do_not_drift() {
          "thousands of rounds later times are those of the general core");
 }
 
-/// Without damping and kinetic friction a pin passes the plate's velocity for ever; and with little of them
-/// oftener than the kernel follows.
+/// Without damping and kinetic friction a pin passes the plate's velocity for ever; with
+/// little of both it passes more often than the kernel follows.
 void what_never_rests_is_given_up() {
   const Release lossless{0.01, 200, 0, 0, 0.1, 0, 0.02, inf, 0.2, 2e-3, 0.2, inf, 0.05};
   bool left = followed({lossless}, pk::Asked::settling)[0].given_up;

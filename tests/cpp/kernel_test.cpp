@@ -69,9 +69,9 @@ struct Releases {
   std::size_t size() const { return of[0].size(); }
 };
 
-/// Kinds of releases: those of the benchmark; those of every kind that the kernel follows, and some
-/// that it does not; and of these the delicate ones, next to critical damping or with a velocity, at
-/// the start or later, next to that of a surface.
+/// Kinds of releases: the benchmark; every kind that the kernel follows, and some
+/// that it leaves; and delicate releases, next to critical damping or with a velocity, at
+/// the start or later, next to a surface velocity.
 enum class Drawn : unsigned char { benchmark, wide, delicate };
 constexpr const char* drawn_names[] = {"of the benchmark", "of all kinds", "next to a limit"};
 
@@ -144,7 +144,7 @@ struct Answers {
   }
 };
 
-/// What is asked of releases, in blocks of packs of two; the other outputs stay 0.
+/// Requested outputs of releases, in blocks of packs of two; other outputs stay 0.
 Answers by_blocks(const Releases& releases, pk::Asked asked) {
   Answers all(releases.size());
   const auto block = std::make_unique<Block>();
@@ -162,8 +162,8 @@ Answers by_blocks(const Releases& releases, pk::Asked asked) {
 
 bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
-/// Whether the answers are the same from a column on; nothing is said of what was given up, which may
-/// be fewer where less is asked.
+/// True if the outputs agree from a column on; releases left to the core are not compared, and may
+/// be fewer where fewer outputs are requested.
 bool agree(const Answers& one, const Answers& other, int from, const char* how) {
   for (std::size_t i = 0; i < one.given_up.size(); ++i) {
     if (one.given_up[i] != 0 && (from > 0 || other.given_up[i] != 0)) continue;

@@ -23,7 +23,7 @@ constexpr pd::NamedNumber<double, Sizes> sizes[] = {
     {"height", [](const Sizes& s) { return s.height; }},
 };
 
-/// Whether no two numbers of a list have one name, and none lacks one.
+/// True if all numbers of a list have names, and no two one name.
 template <class T, class Result, int count>
 bool distinct(const pd::NamedNumber<T, Result> (&numbers)[count]) {
   std::set<std::string> names;

@@ -45,7 +45,7 @@ struct Test {
     }
   }
 
-  /// `of_pack` and `of_number` do the same with a pair.
+  /// `of_pack` and `of_number` are one operation on a pair.
   template <class OfPack, class OfNumber>
   void numbers(OfPack of_pack, OfNumber of_number, const char* what) const {
     double found[N];

@@ -144,7 +144,7 @@ struct Stored {
   }
 };
 
-/// Relative 1e-11 of 650 answers of forty digits: the same event, its time, and the state there.
+/// 650 references of forty digits: event, time and state agree to a relative 1e-11.
 void oracle() {
   const std::vector<Case> cases = stored();
   expect(cases.size() == 650, "cases", double(cases.size()));
@@ -203,7 +203,7 @@ void closed_form() {
   }
 }
 
-/// What a step leaves out is within its bound, which is rounding: beside steps of an eighth in long
+/// The truncation error of a step is within its bound, which is rounding: beside steps of an eighth in long
 /// double, whose own bound is 2000 times smaller.
 void bounds() {
   std::mt19937_64 random(7);

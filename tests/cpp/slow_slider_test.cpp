@@ -43,7 +43,7 @@ struct End {
   int steps{0};
 };
 
-/// Follows a mode for a time: by slow steps where those hold, or by the Taylor series alone.
+/// Follows a mode for a time: by valid slow steps, or by the Taylor series alone.
 template <class T>
 End<T> follow(pd::detail::SeriesEquation<T> e, pd::detail::SeriesState<T> state, double duration,
               bool slow) {

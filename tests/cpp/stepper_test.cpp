@@ -243,7 +243,7 @@ void events() {
   expect(stepper.tau() > 0, "nor one that differs by rounding");
 }
 
-/// A pin that strikes stops, rigid or elastic: the events of one run, and where the housing jerks it is thrown
+/// A pin that strikes stops, rigid or elastic: the events of an uninterrupted run, and where the housing jerks it is thrown
 /// from a rigid stop, or stays at the other.
 void at_the_stops() {
   for (const double stiffness : {infinity, 2000.0}) {
@@ -374,7 +374,7 @@ void derivatives() {
   }
 }
 
-/// What is asked of an instant, in the order of an Instant's functions, but for the skin of a rigid finger.
+/// Requested values of an instant, in the order of an Instant's functions, but for the skin of a rigid finger.
 std::array<Dual, 7> numbers_of(const pd::Instant<Dual>& now, bool rigid) {
   return {now.position(),
           now.velocity(),

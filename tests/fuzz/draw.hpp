@@ -1,5 +1,5 @@
-/// Random drives and inputs over many decades. Each is drawn from its family, seed and number alone, so
-/// that any of them can be drawn again.
+/// Random drives and inputs over many decades. Family, seed and number determine a drive, so
+/// that each drive can be drawn again.
 #pragma once
 
 #include <algorithm>
@@ -30,8 +30,8 @@ class Random {
   std::uint64_t counter_;
 };
 
-/// Of hands that move along the axis, across it too, or along it, of pins with stops or of fingers that are
-/// compliant and have a curve; any: one in ten across, and one in ten with stops, whichever the hand.
+/// Family of drives: an aligned or oblique hand, end stops, or a compliant finger with a friction curve;
+/// any: one drive in ten with an oblique hand, and one in ten with stops.
 enum class Family { any, aligned, oblique, stops, skin };
 
 class Draw {
@@ -97,8 +97,8 @@ class Draw {
     return std::round(value / unit) * unit;
   }
 
-  /// One drive in twenty lasts long; one in a thousand is let ring as long as its spring takes with
-  /// skin however stiff, thousands of times. The others show what skin does in its first waves.
+  /// Durations: one drive in twenty lasts long; one in a thousand lasts for thousands of periods of its
+  /// spring, however stiff the skin. The other drives last for the first periods of the skin.
   void times(const Case& c, double omega) {
     long_ = chance(0.05);
     period_ = 6.3 / omega;

@@ -20,7 +20,7 @@ namespace {
 
 using namespace fuzz;
 
-/// How a motion ends, in the units of the drive that it is compared with.
+/// Ending of a motion, in the units of the drive that it is compared with.
 struct Ending {
   pd::Status status{};
   pd::End end{};

@@ -90,7 +90,7 @@ void progress(const Options& options, const Totals& totals, long long done, doub
                totals.drives, options.range.count, rate, left / rate / 60, totals.failed.size());
 }
 
-/// Takes up the log of an earlier run, if there is one; false if it is not of these cases.
+/// Continues from the log of an earlier run, if there is one; false for a log of other cases.
 bool take_up(const Options& options, Totals& totals) {
   std::ifstream in(options.log);
   if (options.log.empty() || !in) return true;

@@ -22,7 +22,7 @@ struct Verdict {
   std::size_t instants{};  ///< segments of zero length
   std::size_t changes{};   ///< events at which a contact does something else
 
-  /// Whether the motion itself, and not how it is computed, has more events than are followed: it is judged until
+  /// True if the motion itself has more events than the limit, and not its computation: it is judged until
   /// there.
   bool beyond_limit() const {
     return status == pd::Status::too_many_events && instants == 0 && 16 * changes > segments;
@@ -33,7 +33,7 @@ struct Verdict {
   }
 };
 
-/// What is said of a run before it is judged.
+/// Verdict of a run before its motion is checked.
 inline Verdict seen(const pd::Outcome<double>& outcome,
                     const std::vector<pd::Segment<double>>& segments) {
   const auto count = [&](auto&& is) {
@@ -50,7 +50,7 @@ inline Verdict simulated(const Case& c, std::vector<pd::Segment<double>>& segmen
 }
 
 /// Thoroughly: the ledger of energies is measured too, with every integral and extremum, and the motion is
-/// held against those that follow from it, mirrored and cut in two.
+/// compared with its mirror image and with a motion that is cut in two.
 inline Verdict judge(const Case& c, bool thoroughly, std::vector<pd::Segment<double>>& segments) {
   const Given given(c);
   const auto outcome = run(given, segments);

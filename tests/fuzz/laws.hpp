@@ -74,8 +74,8 @@ inline Place size(const pd::Motion<double>& motion, double duration) {
   }
   return most;
 }
-/// The largest of the terms that position and velocity are sums of, which round: a force that changes within so
-/// short a time that the pin hardly moves makes them far larger than those.
+/// Largest terms of the sums for position and velocity, whose rounding the sums have: a force that changes
+/// while the pin hardly moves makes the terms far larger than the sums.
 inline Place terms(const pd::Motion<double>& motion, double duration) {
   Place most{};
   for (const auto& segment : motion) {
@@ -119,7 +119,7 @@ inline bool mirrored(const pd::Segment<double>& one, const pd::Segment<double>& 
          one.event.stop == other.event.stop && one.eliminated == other.eliminated;
 }
 
-/// How far the motion of the mirror image is from the mirror image of the motion; infinite where an event
+/// Distance of the motion of the mirror image from the mirror image of the motion; infinite where an event
 /// differs. To turn a sign is exact, so that it has to be zero.
 inline double mirror_residual(const pd::Motion<double>& motion, const Case& c) {
   const Followed image(mirror(c));
@@ -171,7 +171,7 @@ inline Rows from(const Rows& rows, double t, const std::vector<double>& all) {
   return later;
 }
 
-/// Whether the load of skin grows from zero while its friction falls with speed.
+/// True if the load of skin grows from zero while its friction falls with speed.
 inline bool begins_anyhow(const Case& c) {
   const Rows &load = c.finger_load, &curve = c.curve[1];
   bool grows = false, falls = false;
@@ -182,7 +182,7 @@ inline bool begins_anyhow(const Case& c) {
   return !std::isinf(c.skin) && grows && falls;
 }
 
-/// Where a motion is cut, and the drive from there on. The same case is always cut at the same time.
+/// Time at which a motion is cut, and the drive from there on. A case is always cut at one time.
 struct Cut {
   Cut(const pd::Motion<double>& motion, const Case& whole) : rest(whole) {
     // Far from the rows, inside of a segment that lasts.
@@ -217,8 +217,8 @@ struct Cut {
       stretch = -motion.friction(*segment, tau).finger / whole.skin;
   }
 
-  /// What follows; moved by a part of the sizes of the motion where it can be, and damped and pulled by as much
-  /// more than it is, as what strikes a stop or comes to rest forgets where it came from.
+  /// Motion after the cut, from a state moved by a part of the sizes of the motion, with damping and force
+  /// changed as much: a pin that strikes a stop or comes to rest forgets its start.
   Followed follow(const Place& most, double part) const {
     Case moved = rest;
     moved.damping += part * std::sqrt(rest.mass * rest.stiffness);
@@ -237,8 +237,8 @@ struct Cut {
   Case rest;
 };
 
-/// Whether a motion from a segment on, and another, part where the pin slips by no more than a speed, and comes
-/// to rest in one of them.
+/// True if two motions, from a segment on, part where the pin slips by no more than a speed and comes to rest
+/// in either of the motions.
 inline bool part_at_rest(const pd::Motion<double>& one, const pd::Segment<double>* a,
                          const pd::Motion<double>& other, double still) {
   for (const auto& b : other) {
@@ -253,11 +253,10 @@ inline bool part_at_rest(const pd::Motion<double>& one, const pd::Segment<double
   return false;
 }
 
-/// How far what goes on from a state within a motion is from that motion, as a part of its largest position
-/// and velocity, at times ever closer to the cut. Where a start that is moved by a part of 1e-12, either
-/// way, comes elsewhere, the rounding of the state may do so too: of the difference, four times the
-/// distance between those is taken, once more for each stop that it meets, and the rounding of what they
-/// are sums of.
+/// Distance of a motion that continues from a state within a motion from that motion, as a part of the
+/// largest position and velocity, at times ever closer to the cut. Rounding of the state may have the effect
+/// of a start moved by a part of 1e-12, either way: the difference is reduced by four times the distance of
+/// these motions, again for each stop on the way, and by the rounding of the summed terms.
 inline double cut_residual(const pd::Motion<double>& motion, const Case& c) {
   const Cut cut(motion, c);
   if (!cut.possible || !(cut.rest.duration > 0)) return 0;

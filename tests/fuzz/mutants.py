@@ -247,10 +247,10 @@ MUTANTS = (
         "if (held && along.rate != 0 && time < 0 &&",
     ),
     Mutant(
-        "the slider of a load that grows from zero begins where it was",
+        "the slider of a load that grows from zero does not follow the growth",
         "series/series_equation.hpp",
-        "} else if (skin_factor.rate != 0) {",
-        "} else if (n > 0 && skin_factor.rate != 0) {",
+        "(skin_decay + turns);",
+        "skin_decay;",
     ),
     Mutant(
         "skin without static friction sticks a pin at rest as its load grows from none",

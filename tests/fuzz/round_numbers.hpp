@@ -205,7 +205,7 @@ inline Case self_excited_drive(std::uint64_t seed, std::uint64_t number) {
   return c;
 }
 
-/// The same drive in other units: its forces, lengths and times times these factors.
+/// Drive in other units: its forces, lengths and times times these factors.
 inline Case in_units(Case c, double force, double length, double time) {
   const double speed = length / time;
   const auto scale = [](Rows& rows, double at, double value) {

@@ -1,4 +1,4 @@
-/// What a run has found so far, and the log that keeps it.
+/// Results of a run so far, and their log.
 #pragma once
 
 #include <algorithm>
@@ -46,7 +46,7 @@ struct Largest {
   }
 };
 
-/// Sums and maxima: however the cases are shared out, they come to the same.
+/// Sums and maxima, independent of the distribution of cases over threads.
 struct Totals {
   long long drives{0}, segments{0};
   long long instants{0};      ///< segments of zero length
@@ -93,7 +93,7 @@ inline bool read(const std::string& name, Family& family) {
   return found != families.end();
 }
 
-/// Which cases of which seed.
+/// Range of the cases of a seed.
 struct Range {
   long long count{0}, seed{0}, from{0};
   Family family{Family::any};

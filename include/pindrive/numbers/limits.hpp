@@ -97,7 +97,7 @@ inline constexpr double repeat_tolerance = 1e-8;
 inline constexpr int irregular_window = 240, irregular_windows = 64;
 
 /// Speed below which a pin is at rest, as a fraction of |x| ω0: below the remaining digits of the
-/// position in a decay (MODEL, section 10).
+/// position in a decay (MODEL, section 10). Without it: endings fails.
 inline constexpr double rest_tolerance = 3e-11;
 
 /// Error of the band of the settling time, as a fraction of the largest position: a sum of some
