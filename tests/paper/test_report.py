@@ -183,12 +183,12 @@ def test_the_page_explains_before_it_judges(page: str) -> None:
     headings = re.findall(r"<h2 [^>]*>(.*)</h2>", page)
     assert headings == [
         "The device, its frame and the symbols",
-        "The question that the paper poses",
-        "The paper's figures",
-        "Its sentences, judged",
-        "Its equations, corrected",
-        "The analysis, drawn",
-        "What was assumed",
+        "Problem of the paper",
+        "Figures of the paper",
+        "Statements, evaluated",
+        "Equations, corrected",
+        "Figures of the analysis",
+        "Assumptions",
     ]
 
 
@@ -261,18 +261,18 @@ def test_the_corrected_equations_are_exact_and_the_printed_ones_not(made: Report
 
 
 VERDICTS = {
-    "The great variety of tactile systems": "not judged",
-    "The method, where information": "not judged",
-    "Electromagnet 1 with wrapped winding": "not judged",
-    "When the cursor is in the information area": "not judged",
-    "The pin slides along the fingertip": "not judged",
-    "The interaction between finger skin": "not judged",
-    "The experiments have shown that the tactile": "not judged",
-    "In that case law of motion of the pin": "not judged",
-    "During the investigation a significant": "not judged",
-    "The relationship of transitional process": "not judged",
+    "The great variety of tactile systems": "not evaluated",
+    "The method, where information": "not evaluated",
+    "Electromagnet 1 with wrapped winding": "not evaluated",
+    "When the cursor is in the information area": "not evaluated",
+    "The pin slides along the fingertip": "not evaluated",
+    "The interaction between finger skin": "not evaluated",
+    "The experiments have shown that the tactile": "not evaluated",
+    "In that case law of motion of the pin": "not evaluated",
+    "During the investigation a significant": "not evaluated",
+    "The relationship of transitional process": "not evaluated",
     "The absolutely largest pin velocity": "holds when the pin reaches",
-    "The pin will stop and dry friction force": "holds when the plate does not catch",
+    "The pin will stop and dry friction force": "holds when the pin does not stick",
     "The first friction force direction change": "does not hold",
     "Becomes clear that the analytical solution": "not proved",
     "because nor pin acceleration": "does not hold",
@@ -281,18 +281,18 @@ VERDICTS = {
     "Model of tactile device pin interaction": "done here",
     "The law of damped pin motion": "done here",
     "It was defined what initial phase angle": "holds when x_0 > x_d",
-    "and φ_0 = 0, when v_p = 0": "holds when there is no damping",
+    "and φ_0 = 0, when v_p = 0": "holds when the damping is zero",
     "Higher mouse velocity causes greater": "holds",
     "Friction forces are influencing": "does not hold",
     "The greater displacement x_d": "holds",
     "and reducing the amplitude": "holds when x_0 − x_d > −ζ v_p / ω_0",
     "The initial pin displacement x_0": "holds when v_p <",
-    "and their damping": "holds when damping means how long",
+    "and their damping": "holds when damping means the duration",
     "The results of investigation": "holds when the equations are corrected",
     "For the case when the pin": "holds",
     "which would be stabilized": "does not hold",
     "If the friction between": "holds when x_d is F_f / k",
-    "The dynamics of tactile device": "not judged",
+    "The dynamics of tactile device": "not evaluated",
     "It was defined that the law": "not proved",
     "The model for the pin drive": "done here",
 }
@@ -308,7 +308,7 @@ def test_every_sentence_has_the_verdict_that_was_derived(made: Report) -> None:
         else:
             assert claim.verdict == verdict, claim.sentence
         assert claim.shown_by in shown
-        assert (claim.true is None) == (verdict == "not judged")
+        assert (claim.true is None) == (verdict == "not evaluated")
         assert claim.true is None or (claim.true.size > 1 and re.search(r"\d", claim.finding))
 
 
@@ -329,7 +329,7 @@ def test_a_verdict_follows_from_the_trials() -> None:
     assert claim([True, False], [True, False]) == "holds when it rains"
     assert claim([True, False], [True, True]) == "does not hold"
     assert claim([False, False], [False, False]) == "does not hold"
-    assert claim(None) == "not judged"
+    assert claim(None) == "not evaluated"
     assert claim([True, True], done=True) == "done here"
     assert claim([True, False], done=True) == "not done here"
     assert claim([True, True], excludes=True) == "not proved"
@@ -565,7 +565,7 @@ def test_a_page_is_made_from_markdown() -> None:
         ("does not hold", "not"),
         ("not proved", "part"),
         ("done here", "done"),
-        ("not judged", "open"),
+        ("not evaluated", "open"),
     ):
         assert as_html(f"**{verdict}**") == f'<strong class="{kind}">{verdict}</strong>'
     table = as_page("# t\n\n| a | b<br>c |\n|---|---|\n| 1 | 2 |\n", {})
@@ -594,7 +594,7 @@ def test_the_command_writes_the_report(tmp_path: Path, files: dict[str, bytes]) 
     out, docs = tmp_path / "new" / "report", tmp_path / "docs"
     result = CliRunner().invoke(app, ["paper", "-o", str(out), "--docs", str(docs)])
     assert result.exit_code == 0, result.output
-    assert "3 hold, 9 hold under a condition" in result.stdout
+    assert "3 hold, 9 hold under an additional condition" in result.stdout
     written = {str(p.relative_to(out)) for p in out.rglob("*") if p.is_file()}
     assert written == {str(Path(name)) for name in files}
     assert (out / report.PAGE).read_bytes() == files[report.PAGE]

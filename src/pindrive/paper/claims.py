@@ -31,10 +31,9 @@ def steady_state() -> Iterator[Claim]:
         "the steady state vibrations would be possible with amplitude x_m ≤ v_p / ω_0,",
         part <= 1 + TINY,
         "steady-and-rest",
-        f"Of {count} undamped motions, released at v_p, half of it or none, "
-        f"{share(part <= 1 + TINY)} "
-        f"keep the bound; released at v_p, {share(np.abs(part[kept] - 1) < TINY)} reach it, by "
-        "grazing the plate's velocity.",
+        f"The bound holds in {share(part <= 1 + TINY)} undamped motions, released at v_p, at half "
+        f"of v_p or at rest; released at v_p, {share(np.abs(part[kept] - 1) < TINY)} attain the "
+        "bound, as they graze the plate's velocity.",
     )
     taken = formulas.time_to_steady(r) / period
     simulated = r.batch()
@@ -49,9 +48,10 @@ def steady_state() -> Iterator[Claim]:
         "which would be stabilized after 0.5(x_0/x_d + 1) periods.",
         np.abs(taken - of_paper) < 0.25,
         "steady-and-rest",
-        f"It takes {off.min():.2g} to {off.max():.2g} times as many (closed form and simulation "
-        f"agree in {share(agree)}). The whole part of the number is that of the reversals of "
-        f"friction in {share(counts)} with x_0 > x_d: two make about a period.",
+        f"The number of periods is {off.min():.2g} to {off.max():.2g} times the printed one "
+        f"(closed form and simulation agree in {share(agree)}). The whole part of the printed "
+        f"number counts the reversals of friction in {share(counts)} with x_0 > x_d; two reversals "
+        "take about a period.",
     )
     finger = draw.uniform(0.0005, 0.01, count)
     found = r.batch(finger_kinetic=finger)
@@ -78,11 +78,11 @@ def steady_state() -> Iterator[Claim]:
         "due to it after v_p / (4 · x_d · ω_0) periods.",
         np.concatenate([near, whole]),
         "steady-and-rest",
-        "From the last break-away from the plate to rest it is right to a quarter period in "
-        f"{share(near)} motions, where the exact number is ceil(v_p / 2 x_f ω_0) / 2 − 1/4 "
-        f"({share(agree)} simulations agree); from the release in {share(whole)}.",
-        "x_d is F_f / k, the time runs from the end of the last carried stretch, and a quarter "
-        "period does not matter",
+        "Counted from the last start of slip on the plate, the number is right to a quarter period "
+        f"in {share(near)} motions; the exact number is ceil(v_p / 2 x_f ω_0) / 2 − 1/4 "
+        f"({share(agree)} simulations agree). Counted from the release, in {share(whole)}.",
+        "x_d is F_f / k, the time runs from the end of the last stick on the plate, and a quarter "
+        "period is neglected",
         np.arange(near.size + whole.size) < near.size,
     )
 
@@ -108,9 +108,9 @@ def conclusions(facts: Facts) -> Iterator[Claim]:
         "fingertip due to the spring elastic forces.",
         None,
         "figure-2-velocity",
-        "Says what the paper is about. The pin leaves the plate as the magnet releases it where "
-        f"k x_0 + b v_p + F_f > F_p: in {share(leaves[~held])} such releases from anywhere in "
-        f"0–3 mm, and in {share(leaves[held])} of the others, where the plate alone carries it on.",
+        "Subject of the paper. The pin slips as the magnet releases it if k x_0 + b v_p + F_f > "
+        f"F_p: in {share(leaves[~held])} such releases from 0–3 mm, and in {share(leaves[held])} "
+        "other releases, in which the plate still carries the pin.",
     )
     yield from no_closed_form(facts)
     solved = r.batch(finger_kinetic=finger)["status"].to_numpy() == 0
@@ -121,8 +121,8 @@ def conclusions(facts: Facts) -> Iterator[Claim]:
         "parameters on the motion of the pin of tactile device.",
         solved,
         "maps-of-time",
-        f"With an exact one: {share(solved)} random drives simulated to their end, and the curves "
-        "and maps of this report.",
+        f"Done with an exact model: {share(solved)} random drives are simulated to their end, and "
+        "this report has curves and maps.",
         done=True,
     )
 
@@ -158,7 +158,7 @@ def _of_the_simulation(facts: Facts, equations: list[Row]) -> Iterator[Claim]:
         "process.",
         np.array([c.kinematics < TINY and c.motion_law < TINY for c in residuals]),
         "figure-3-model",
-        f"The diagram is drawn and what it means is simulated. In {len(residuals)} motions with "
+        f"The diagram is drawn and its equation simulated. In {len(residuals)} motions with "
         "a finger, velocity and acceleration are the derivatives of the displacement to "
         f"${at_most(worst)}$, checked without the solver.",
         done=True,
@@ -173,9 +173,8 @@ def _of_the_simulation(facts: Facts, equations: list[Row]) -> Iterator[Claim]:
         "in Figure 4.",
         depth <= deeper * (1 + TINY),
         "figure-4-displacement",
-        "Recomputed in both readings of the damping factor; no other parameter is given. That "
-        "damping takes from the swing, as the figure is to show, is true of "
-        f"{share(depth <= deeper * (1 + TINY))} releases with half as much again.",
+        "Recomputed for both readings of the damping factor; no other parameter is given. 50 % "
+        f"more damping reduces the swing in {share(depth <= deeper * (1 + TINY))} releases.",
         done=True,
     )
 
@@ -187,8 +186,8 @@ def _of_the_simulation(facts: Facts, equations: list[Row]) -> Iterator[Claim]:
         "increasing,",
         grows,
         "phase-and-amplitude",
-        f"With 1 % more v_p the phase grows in {share(grows)} releases, in {share(grows[d > 0])} "
-        f"with x_0 > x_d, in {share(grows[d < 0])} with x_0 < x_d.",
+        f"With 1 % more v_p the phase grows in {share(grows)} releases: in {share(grows[d > 0])} "
+        f"with x_0 > x_d, and in {share(grows[d < 0])} with x_0 < x_d.",
         "x_0 > x_d",
         d > 0.0,
     )
@@ -201,9 +200,9 @@ def _of_the_simulation(facts: Facts, equations: list[Row]) -> Iterator[Claim]:
         "and φ_0 = 0, when v_p = 0.",
         phase <= TINY,
         "phase-and-amplitude",
-        f"φ_0 is φ′_0 then, in {share(np.abs(phase - lag) < TINY)} releases, and so t_a = 0; it is "
-        f"up to {np.degrees(phase.max()):.0f}° for the damping of these.",
-        "there is no damping",
+        f"φ_0 = φ′_0 in {share(np.abs(phase - lag) < TINY)} releases with v_p = 0, so t_a = 0; "
+        f"with their damping φ′_0 is up to {np.degrees(phase.max()):.0f}°.",
+        "the damping is zero",
         beyond.damping == 0.0,
     )
 
@@ -220,7 +219,7 @@ def _of_the_simulation(facts: Facts, equations: list[Row]) -> Iterator[Claim]:
         higher,
         "influence-on-displacement",
         f"With 10 % more v_p the first maximum is greater in {share(higher)} exact motions with "
-        f"finger friction, and the swing after it in {share(swings)}.",
+        f"finger friction, and the following swing in {share(swings)}.",
     )
 
     rubbed = r.replace(friction=1.01 * r.friction)
@@ -250,8 +249,8 @@ def _of_the_simulation(facts: Facts, equations: list[Row]) -> Iterator[Claim]:
         "Friction forces are influencing all the parameters of vibrations.",
         moved,
         "phase-and-amplitude",
-        f"1 % more friction changes {share(moved)} of them; not {', '.join(untouched)}, which are "
-        "the oscillator's.",
+        f"1 % more friction changes {share(moved)} parameters, but not {', '.join(untouched)}, "
+        "which belong to the oscillator.",
     )
     turned = formulas.initial_phase(rubbed) >= formulas.initial_phase(smooth)
     yield Claim(
@@ -271,11 +270,10 @@ def _of_the_simulation(facts: Facts, equations: list[Row]) -> Iterator[Claim]:
         "and reducing the amplitude of vibrations.",
         shrinks,
         "phase-and-amplitude",
-        f"X_m,0 falls in {share(shrinks)} releases, in {share(shrinks[past])} of those with "
-        "x_0 − x_d > −ζ v_p / ω_0, in "
-        f"{share(shrinks[~past])} of the others, which lie between that and where the plate still "
-        "carries the pin.",
-        "x_0 − x_d > −ζ v_p / ω_0, so always from beyond x_d",
+        f"With 1 % more friction X_m,0 falls in {share(shrinks)} releases: in "
+        f"{share(shrinks[past])} with x_0 − x_d > −ζ v_p / ω_0, and in {share(shrinks[~past])} "
+        "other releases.",
+        "x_0 − x_d > −ζ v_p / ω_0, hence for every x_0 > x_d",
         past,
     )
 
@@ -289,9 +287,9 @@ def _of_the_simulation(facts: Facts, equations: list[Row]) -> Iterator[Claim]:
         "The initial pin displacement x_0 influences very much the amplitude of vibrations",
         most,
         "phase-and-amplitude",
-        "Taking “very much” for more than half as strongly as in proportion: true of "
-        f"{share(most)} releases, of {share(most[slow_mouse])} with v_p < 0.5 ω_0 (x_0 − x_d). "
-        "With a fast mouse it is v_p that sets the amplitude.",
+        "With “very much” read as an elasticity above 0.5: true in "
+        f"{share(most)} releases, and in {share(most[slow_mouse])} with v_p < 0.5 ω_0 (x_0 − x_d). "
+        "Under a fast mouse v_p determines the amplitude.",
         "v_p < 0.5 ω_0 (x_0 − x_d)",
         slow_mouse,
     )
@@ -310,11 +308,10 @@ def _of_the_simulation(facts: Facts, equations: list[Row]) -> Iterator[Claim]:
         "and their damping.",
         np.concatenate([rate_changes, longer]),
         "influence-on-time",
-        "Twice the x_0 changes how much a swing shrinks from one extreme to the next about x_d in "
-        rf"{share(rate_changes)} releases: that is $e^{{\alpha\pi/\omega}}$. How long the "
-        rf"vibration lasts changes "
-        f"in {share(longer)}.",
-        "damping means how long the vibration lasts",
+        "Twice the x_0 changes the ratio of successive extremes about x_d, "
+        rf"$e^{{\alpha\pi/\omega}}$, in {share(rate_changes)} releases, and the duration of the "
+        f"vibration in {share(longer)}.",
+        "damping means the duration of the vibration",
         np.arange(2 * count) >= count,
     )
 
@@ -328,8 +325,8 @@ def _of_the_simulation(facts: Facts, equations: list[Row]) -> Iterator[Claim]:
         np.array([not row.right for row in equations] + [right < TINY]),
         "equations",
         f"As printed, {len(wrong)} of {len(equations)} rows of the table of equations are wrong, "
-        f"by up to {np.nanmax([row.off_printed for row in wrong]):.2g} where the error is a "
-        f"number; corrected, all are right to ${at_most(right)}$.",
+        f"with an error of up to {np.nanmax([row.off_printed for row in wrong]):.2g}; corrected, "
+        f"all are right to ${at_most(right)}$.",
         "the equations are corrected, and until the pin first reaches the plate's velocity",
         np.array([False] * len(equations) + [True]),
     )

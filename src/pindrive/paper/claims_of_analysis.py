@@ -40,9 +40,9 @@ def of_the_analysis(facts: Facts) -> Iterator[Claim]:
         "acceleration being equal to zero.",
         back >= start,
         "printed-forms",
-        f"v_m,b is in size at least v_p, the velocity at the release, in {share(back >= start)} "
-        f"releases; of those that reach it again, in {share((back >= start)[reaches])}. "
-        "Heavily damped, or from x_0 near x_d, the pin is never again as fast as at its release.",
+        "The size of v_m,b is at least v_p, the velocity at the release, in "
+        f"{share(back >= start)} releases, and in {share((back >= start)[reaches])} releases that reach v_p "
+        "again. With large damping, or x_0 near x_d, the velocity at the release is the largest.",
         "the pin reaches the plate's velocity afterwards",
         reaches,
     )
@@ -56,8 +56,8 @@ def of_the_analysis(facts: Facts) -> Iterator[Claim]:
         "which is larger, than π + 2φ_0.",
         above,
         "first-reversal",
-        f"True of {share(above)} releases that reach v_p again: not of slow mice. "
-        f"ωt_1 ≥ π + 2(φ_0 − φ′_0) is true of {share(right)}.",
+        f"True in {share(above)} releases that reach v_p again; false for slow mice. "
+        f"ωt_1 ≥ π + 2(φ_0 − φ′_0) is true in {share(right)}.",
     )
     yield from _first_reversal(r.take(reaches), t_1[reaches])
     whole = whole_motion(facts)
@@ -68,9 +68,9 @@ def of_the_analysis(facts: Facts) -> Iterator[Claim]:
         ~whole,
         "first-reversal",
         f"(6) is the whole motion in {share(whole[~reaches])} releases that never reach v_p again. "
-        f"Of the others, the general case, the elementary forms that are known give "
-        f"{share(whole[reaches])}; that there is no other is not proved. By computer, with closed "
-        f"forms from event to event, {share(solved[reaches])} of these are solved.",
+        f"In the general case, where they do, the known elementary forms give "
+        f"{share(whole[reaches])}; that no other form exists is not proved. The computer solves "
+        f"{share(solved[reaches])} of them, with closed forms from event to event.",
         meets=reaches,
         excludes=True,
     )
@@ -92,10 +92,10 @@ def _change_of_direction(r: Releases, t_1: Array) -> Claim:
         "velocity in respect of the mouse will reach value v_p",
         ~keeps,
         "first-reversal",
-        f"t_1 is when the pin first reaches the plate's velocity. {share(passes)} releases pass "
-        f"it, and friction turns; {share(caught)} are caught by the plate and carried, and in "
-        f"{share(keeps[caught])} of these friction keeps its direction as it holds the pin.",
-        "the plate does not catch the pin",
+        f"t_1 is the time at which the pin first reaches the plate's velocity. {share(passes)} "
+        f"releases exceed that velocity, and friction reverses; {share(caught)} stick to the "
+        f"plate, and in {share(keeps[caught])} of these friction keeps its direction.",
+        "the pin does not stick to the plate",
         passes,
     )
 
@@ -114,12 +114,12 @@ def _first_reversal(damped: Releases, t_1: Array) -> Iterator[Claim]:
         "Becomes clear that the analytical solution is impossible",
         ~np.concatenate([without, with_form, at_limit]),
         "first-reversal",
-        "(22) holds t_1 in an exponential and in a sine: no elementary closed form is known, and "
-        "that there is none is not proved, neither in the paper nor here. The two that are known, "
-        f"ωt_1 = π + 2φ_0 and (26), solve it in {share(with_form)} releases "
-        f"without damping and {share(at_limit)} limit cases, and in {share(without)} others. It is "
-        f"computable all the same: t_1 is a root that can be isolated and found to rounding, and "
-        f"{t_1.size} of them satisfy (21) to ${at_most(float(residual.max()))}$ of ω_0 X_m,0.",
+        "(22) has t_1 in an exponential and in a sine. No elementary closed form is known; that "
+        "none exists is proved neither in the paper nor here. The two known forms, "
+        f"ωt_1 = π + 2φ_0 and (26), solve {share(with_form)} releases "
+        f"without damping, {share(at_limit)} limit cases, and {share(without)} other releases. "
+        f"t_1 is computable as an isolated root, to rounding: "
+        f"{t_1.size} roots satisfy (21) to ${at_most(float(residual.max()))}$ of ω_0 X_m,0.",
         meets=np.arange(without.size + with_form.size + at_limit.size) < without.size,
         excludes=True,
     )
@@ -131,8 +131,8 @@ def _first_reversal(damped: Releases, t_1: Array) -> Iterator[Claim]:
         "known.",
         unknown,
         "first-reversal",
-        "(22) holds neither of them. From (22) alone t_1 is that of the simulator in "
-        f"{share(~unknown)} releases; displacement and acceleration follow by (6) and (11).",
+        "(22) contains neither of them. Its solution t_1 is that of the simulator in "
+        f"{share(~unknown)} releases; displacement and acceleration then follow from (6) and (11).",
     )
     stops = {}
     for name in ("damping", "mouse_velocity"):
@@ -147,12 +147,12 @@ def _first_reversal(damped: Releases, t_1: Array) -> Iterator[Claim]:
         "thus dry friction force do not change its direction.",
         np.concatenate([at_limit & both, ~without, ~with_form]),
         "first-reversal",
-        f"Available it is there, by (26), corrected, in {share(at_limit)} limit cases; there 0.1 % "
-        f"more damping keeps the pin below v_p and 0.1 % less does not in "
-        f"{share(stops['damping'])}, the same of mouse velocity in "
-        f"{share(stops['mouse_velocity'])}. “Only” is not proved: with damping no other form is "
-        f"known, and (26) and ωt_1 = π + 2φ_0 solve {share(without)} others; without damping "
-        f"{share(with_form)} outside the limit case.",
+        f"The corrected (26) gives t_1 in {share(at_limit)} limit cases. There 0.1 % more damping "
+        f"keeps the pin below v_p, and 0.1 % less does not, in {share(stops['damping'])}; 0.1 % of "
+        f"the mouse velocity does likewise in {share(stops['mouse_velocity'])}. “Only” is not "
+        f"proved: with damping no other form is known, and (26) and ωt_1 = π + 2φ_0 solve "
+        f"{share(without)} other releases; without damping they solve {share(with_form)} outside "
+        "of the limit case.",
         meets=np.arange(both.size + without.size + with_form.size) < both.size + without.size,
         excludes=True,
     )
@@ -182,11 +182,10 @@ def no_closed_form(facts: Facts) -> Iterator[Claim]:
         ~whole,
         "first-reversal",
         f"(6) is the whole motion in {share(whole[~reaches])} releases that never reach v_p again. "
-        f"Where one does, in {int(reaches.sum())}, (6) and its like hold from event to event. No "
-        "elementary closed form of the times of the events is known, and that there is none is not "
-        f"proved; those that are known give {share(whole[reaches])}. Each is a root, found to "
-        "rounding with certainty, which is how `simulate` follows the pin without steps or "
-        "tolerances.",
+        f"In the other {int(reaches.sum())}, such expressions hold from event to event. No "
+        "elementary closed form of the times of the events is known; that none exists is not "
+        f"proved; the known forms give {share(whole[reaches])}. Each time is an isolated root, "
+        "computed to rounding: `simulate` needs neither steps nor tolerances.",
         meets=reaches,
         excludes=True,
     )
@@ -202,14 +201,14 @@ _SENTENCES: Final = (
         "system complexity, great cost, low reliability and functional possibilities are not "
         "overcome yet and the search of more promising solution remains the problem of today.",
         "",
-        "Says why the device was made; the report asks how it moves.",
+        "Motivation of the device; this report covers its motion.",
     ),
     (
         "Introduction",
         "The method, where information transmitting pin stimulates operator fingertip skin moving "
         "tangentially to it and the patented tactile device were proposed",
         "figure-1-device",
-        "Describes the device.",
+        "Description of the device.",
     ),
     (
         "Introduction",
@@ -217,30 +216,30 @@ _SENTENCES: Final = (
         "placed on the metallic surface 4. A pin 5 on the electromagnet is protruding from the "
         "housing.",
         "figure-1-device",
-        "Describes the device. The damper, which its equation (1) has, is not named here.",
+        "Description of the device, without the damper of equation (1).",
     ),
     (
         "Introduction",
         "When the cursor is in the information area (black lines, letters) the control block sends "
         "signals and electromagnet of the drive is magnetized to the metallic surface.",
         "figure-1-device",
-        "Describes how it works. `pindrive.Device` has scene, control block and coil; here the "
-        "pull is a factor on the plate's friction.",
+        "Description of the operation. `pindrive.Device` has scene, control block and coil; in "
+        "this report the pull is a factor on the friction of the plate.",
     ),
     (
         "Introduction",
         "The pin slides along the fingertip and produces the strains in the skin at the contact "
         "area and thus transmits the information.",
         "figure-2-velocity",
-        "Describes how it works. A finger with a tangential stiffness, which the paper's equation "
-        "leaves out, has a skin that stretches.",
+        "Description of the operation. Skin stretches in a finger with a tangential stiffness, "
+        "which the paper's equation omits.",
     ),
     (
         "Experiment",
         "The interaction between finger skin and pin is there the key process because during it "
         "the information is transmitted to user.",
         "",
-        "Says what matters to its authors.",
+        "Statement of importance.",
     ),
     (
         "Experiment",
@@ -248,17 +247,17 @@ _SENTENCES: Final = (
         "surface on which it is laid is clean and dry and the directions of the drive and movement "
         "of the device are kept parallel enough.",
         "",
-        "A condition of operation, from measurements that are not printed. This report keeps it: "
-        "one friction coefficient at the plate, and a hand that moves along the drive. "
-        "`pindrive.Device` follows an oblique hand: at 10° the pin of examples/tactile-reader.toml "
-        "goes 84 % as far as under an aligned hand, at 30° 69 %, at 60° 26 %, and from 84° on it "
-        "shows no line (docs/studies.md).",
+        "Condition of operation, from measurements that are not printed. This report keeps the "
+        "condition: one friction coefficient of the plate, and a hand that moves along the drive. "
+        "`pindrive.Device` also simulates an oblique hand: the deflection of the pin of "
+        "examples/tactile-reader.toml is 84 % of that under an aligned hand at 10°, 69 % at 30° "
+        "and 26 % at 60°; from 84° on no line is shown (docs/studies.md).",
     ),
     (
         "Experiment",
         "In that case law of motion of the pin was measured (Figure 2).",
         "figure-2-velocity",
-        "Says what was measured; the data are not printed.",
+        "Description of a measurement; the data are not printed.",
     ),
     (
         "Experiment",
@@ -266,7 +265,7 @@ _SENTENCES: Final = (
         "– the time of the transitional period and the maximum displacement of the transitional "
         "process.",
         "influence-on-time",
-        "Says what is asked; both are computed for every parameter.",
+        "Statement of the problem; both numbers are computed for every parameter.",
     ),
     (
         "Experiment",
@@ -275,7 +274,7 @@ _SENTENCES: Final = (
         "mouse, initial deflection of pin,) was settled as a problem for the following "
         "investigation.",
         "influence-on-displacement",
-        "Says what is asked. System load is taken for the touch force, rigidity for the stiffness.",
+        "Statement of the problem. System load is read as touch force, rigidity as stiffness.",
     ),
 )
 

@@ -215,7 +215,7 @@ def velocity() -> Exhibit:
     again = float(v[after & (t > t[lowest])].max()) * mm
     return Exhibit(
         "figure-2-velocity",
-        "In the shape of Figure 2: velocity of the pin while it crosses a line",
+        "Figure 2: velocity of the pin while it crosses a line",
         "Computed. The paper's Figure 2 is a measurement whose data are not printed, so nothing of "
         f"it is here. Assumed: {baseline.stated()}; the magnet holds with {baseline.HOLD:g} times "
         f"the plate's own friction until {1e3 * breakaway:.1f} ms and releases the pin within "

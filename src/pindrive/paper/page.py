@@ -65,7 +65,7 @@ td strong { font-weight: 600; }
 """
 _KINDS: Final = {
     **{"holds when": "part", "holds": "holds", "does not hold": "not", "not proved": "part"},
-    **{"done here": "done", "not done here": "not", "not judged": "open"},
+    **{"done here": "done", "not done here": "not", "not evaluated": "open"},
 }
 """The class of a verdict by how it begins."""
 

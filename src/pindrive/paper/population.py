@@ -1,10 +1,10 @@
-"""The stated random releases on which the report tries the paper's formulas and sentences.
+"""Random releases on which the report evaluates the formulas and statements of the paper.
 
-Each set is drawn from one seed and therefore reproducible. A sentence holds if it is true of all;
-it holds under a condition if it is true of all that meet the condition and not of all others; else
-it does not hold. That something cannot be, no trial shows: it is not proved. What the authors say
-that they did is no sentence about the drive: it is done here if it succeeds on all. What has no
-trial is not judged.
+Each set is drawn from one seed and therefore reproducible. A statement *holds* if it is true in all
+trials. It *holds when* a condition is met if it is true in all trials with the condition, and false
+in others. Otherwise it *does not hold*. A statement of impossibility that no trial contradicts is
+*not proved*. Work of the authors is *done here* if it succeeds in all trials. A statement without
+trials is *not evaluated*.
 """
 
 from __future__ import annotations
@@ -215,9 +215,9 @@ class Claim:
 
     @property
     def verdict(self) -> str:
-        """Holds, holds when …, does not hold, not proved; done here or not; or not judged."""
+        """Verdict: holds, holds when …, does not hold, not proved, done here, or not evaluated."""
         if self.true is None:
-            return "not judged"
+            return "not evaluated"
         if self.done:
             return "done here" if self.true.all() else "not done here"
         everywhere = self.true.all()

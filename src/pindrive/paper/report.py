@@ -74,33 +74,31 @@ class Report:
         judged = count["holds"] + count["does not hold"] + unproved
         wrong = [row.number for row in self.rows if row.right]
         return (
-            f"Of {judged} statements about the drive, {whole} hold, {count['holds'] - whole} hold "
-            f"under a condition that they do not name, {count['does not hold']} do not hold, and "
-            f"{unproved}, that there is no analytical solution, are not proved; "
-            f"{count['done here']} say what its authors did and are done here, "
-            f"{count['not judged']} are of scope and not judged. Of its equations, "
-            f"({'), ('.join(wrong)}) need correction; corrected, all agree with the exact "
-            "simulator to rounding, until the pin first reaches the plate's velocity. For the time "
-            "of that no elementary closed form is known; it is a root of (21) that can be isolated "
-            "and is found to rounding. All this was worked from the paper's text, number 298 of "
-            "its journal, as it came: without its figures and without the names of its authors."
+            f"The paper makes {judged} statements about the drive: {whole} hold, "
+            f"{count['holds'] - whole} hold under an additional condition, "
+            f"{count['does not hold']} do not hold, and {unproved}, that no analytical solution "
+            f"exists, are not proved. {count['done here']} statements describe work of the authors "
+            f"that is repeated here, and {count['not evaluated']} are outside the scope. The "
+            f"equations ({'), ('.join(wrong)}) need correction. Corrected, all equations agree "
+            "with the exact simulator to rounding until the pin first reaches the plate's "
+            "velocity. No elementary closed form is known for that time; it is an isolated root of "
+            "(21), computed to rounding. This report was made from the text of the paper, number "
+            "298 of its journal, without its figures and the names of its authors."
         )
 
     @property
     def method(self) -> str:
-        """On what the equations and the sentences were tried."""
+        """Trials of the equations and statements."""
         return (
-            f"Tried on {population.COUNT} random releases, seed {population.SEED}: "
-            f"{population.RANGES}. Undamped ones: {population.UNDAMPED_RANGES}. The finger's "
-            "friction, where there is one, is 0–10 mN. Exact means `pindrive.simulate`: closed "
-            "forms between events, events by root isolation."
+            f"Evaluated on {population.COUNT} random releases, seed {population.SEED}: "
+            f"{population.RANGES}. Undamped releases: {population.UNDAMPED_RANGES}. Finger "
+            "friction, if any, is 0–10 mN. The reference is `pindrive.simulate`, with closed "
+            "forms between events and events by root isolation."
         )
 
     def equation_cells(self) -> list[tuple[str, ...]]:
         """The table of equations: headings, and a row each; formulas as TeX between dollars."""
-        table: list[tuple[str, ...]] = [
-            ("", "as printed\nright form", "compared", "off by at worst")
-        ]
+        table: list[tuple[str, ...]] = [("", "as printed\nright form", "compared", "largest error")]
         for row in self.rows:
             forms = f"${row.printed}$\n" + (f"${row.right}$" if row.right else "as printed")
             off = f"${at_most(row.off_right)}$"
@@ -215,21 +213,21 @@ def make(step: Callable[[str], None] = lambda _: None) -> Report:
                 (figure_1,),
             ),
             Section(
-                "The question that the paper poses",
-                "How do the time of the transitional period and the maximum displacement depend on "
-                f"{listed(names)}? The paper sets this as its problem and answers in words. Touch "
-                "force is its system load, stiffness its rigidity; mass and the fall time of the "
-                "magnet's pull are not in its list.",
+                "Problem of the paper",
+                "Dependence of the time of the transitional period and of the maximum displacement "
+                f"on {listed(names)}. The paper states this problem and answers in words. Its "
+                "“system load” is the touch force, its “rigidity” the stiffness; mass and fall "
+                "time of the pull are added here.",
                 (sensitivity.settling(curves), sensitivity.displacement(curves), *of_maps),
             ),
             Section(
-                "The paper's figures",
+                "Figures of the paper",
                 "Figure 1, the device, stands above.",
                 (figure_2, figure_3, figure_4),
             ),
             Section(
-                "The analysis, drawn",
-                "What equations (7) to (26) and the last paragraph of the results say.",
+                "Figures of the analysis",
+                "Content of equations (7) to (26) and of the last paragraph of the results.",
                 (phase, reversal, steady, slips),
             ),
         ),
@@ -238,11 +236,11 @@ def make(step: Callable[[str], None] = lambda _: None) -> Report:
 
 NAME: Final = "paper.md"
 IMAGES: Final = "images/paper"
-_EQUATIONS: Final = "Its equations, corrected"
+_EQUATIONS: Final = "Equations, corrected"
 
 
 _DOCS: Final = (
-    "`pindrive paper -o DIR` writes all this as one page, with every figure as SVG and PNG and "
+    "`pindrive paper -o DIR` writes this report as one page, with every figure as SVG and PNG and "
     "its data as NetCDF. `pindrive.paper` has the equations as functions."
 )
 
@@ -259,10 +257,10 @@ def text(report: Report, about: str = _DOCS) -> str:
     for section in before:
         lines += _section(section)
     lines += [
-        "## Its sentences, judged",
+        "## Statements, evaluated",
         _markdown_table(
             [
-                ("sentence", "verdict", "what was found"),
+                ("statement", "verdict", "evidence"),
                 *(
                     (
                         f"“{claim.sentence}” *{claim.place}*",
@@ -278,7 +276,7 @@ def text(report: Report, about: str = _DOCS) -> str:
         _markdown_table(report.equation_cells()),
         markdown(report.slips()),
         *_section(analysis),
-        "## What was assumed",
+        "## Assumptions",
         "The paper gives three damping factors and no other value. Unless a figure says otherwise:",
         _markdown_table([("", "value", "meaning", "source"), *baseline.SOURCES]),
     ]

@@ -140,7 +140,7 @@ def _far_apart(data: xr.Dataset, name: str) -> tuple[float, float]:
 
 def _table(data: xr.Dataset, name: str, scale: float, unit: str) -> tuple[tuple[str, ...], ...]:
     """Per parameter: its range, and where the curve starts, ends, and how it goes."""
-    rows = [("parameter", "from", "to", "at the first", "at the last", "it")]
+    rows = [("parameter", "from", "to", "value at from", "value at to", "trend")]
     for p in PARAMETERS:
         y = data[name].sel(parameter=p.argument).values
         first, last = (f"{significant(scale * x, 3)} {unit}" for x in (y[0], y[-1]))
