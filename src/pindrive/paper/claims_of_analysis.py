@@ -41,8 +41,9 @@ def of_the_analysis(facts: Facts) -> Iterator[Claim]:
         back >= start,
         "printed-forms",
         "The size of v_m,b is at least v_p, the velocity at the release, in "
-        f"{share(back >= start)} releases, and in {share((back >= start)[reaches])} releases that reach v_p "
-        "again. With large damping, or x_0 near x_d, the velocity at the release is the largest.",
+        f"{share(back >= start)} releases, and in {share((back >= start)[reaches])} releases that "
+        "reach v_p again. With large damping, or x_0 near x_d, the velocity at the release is "
+        "the largest.",
         "the pin reaches the plate's velocity afterwards",
         reaches,
     )
