@@ -296,7 +296,7 @@ def test_a_hand_that_leaves_the_page_reads_blank_paper() -> None:
         assert_allclose(pin.luminance, like.luminance, atol=1e-12)
         assert pin.events == like.events
     assert one.evaluate().counts == other.evaluate().counts
-    looks = one.pins[0].looks
+    looks = one.pins[0].sample_times
     off = ~small.contains(*one.spot(0, looks).T)
     assert one.warnings[0] == (
         "the spot of pin 0 is beyond the page, 0 to 20 mm across and 0 to 10 mm down, for "
@@ -310,7 +310,7 @@ def test_a_slow_sample_rate_is_warned_of_with_its_number() -> None:
     done = scan(device, grating(0.004), across(grating(0.004), 0.06))
     assert len(done.warnings) == 1
     assert done.warnings[0].startswith(
-        "control.sample_rate = 100 Hz looks every 0.6 mm at 60 mm/s, past pixels of 0.1 mm"
+        "control.sample_rate = 100 Hz samples every 0.6 mm at 60 mm/s, past pixels of 0.1 mm"
     )
     assert done.warnings[0].endswith("600 Hz sees each")
 
@@ -387,7 +387,7 @@ def test_control_blocks() -> None:
         ControlBlock(threshold=0.9, hysteresis=0.3)
     assert str(refused.value).startswith("hysteresis must be at most 0.2 about a threshold of 0.9")
     control = ControlBlock(sample_rate=100.0, latency=0.015, hysteresis=0.2)
-    looks = control.looks(0.0, 0.1)
+    looks = control.sample_times(0.0, 0.1)
     assert_allclose(looks, np.arange(10) / 100)
     seen = np.array([1.0, 0.45, 0.39, 0.45, 0.55, 0.61, 0.5, 0.3, 0.3, 1.0])
     commands, after = control.decide(seen, looks, 0.1)

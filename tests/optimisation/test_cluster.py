@@ -9,7 +9,7 @@ import pytest
 import pindrive as pd
 from design_problems import EXAMPLES, MOUSE, PAPER, SMALL
 from pindrive.optimisation import Design, read_problem
-from pindrive.optimisation.goals import Asked
+from pindrive.optimisation.goals import SpeedRequest
 from pindrive.optimisation.line_speed import speeds
 from pindrive.study.workers import crew
 from recordings import recorded
@@ -53,7 +53,7 @@ def test_whole_devices_go_to_workers_and_come_back_in_order(address: str) -> Non
     plan = read_problem(
         EXAMPLES / "tactile-reader-problem.toml", ["control.sample_rate=250 Hz"]
     ).study
-    asked = [Asked({"drive.stiffness": k}, 0.2, 1.0) for k in (150.0, 600.0)]
+    asked = [SpeedRequest({"drive.stiffness": k}, 0.2, 1.0) for k in (150.0, 600.0)]
     with crew(address) as workers:
         found = [*workers.spread(speeds, plan, [asked[:1], asked[1:]])]
     assert found == [speeds(plan, asked[:1]), speeds(plan, asked[1:])]

@@ -12,7 +12,7 @@ import pindrive as pd
 from design_problems import EXAMPLES
 from pindrive.evaluation.resolution import TRIED, SpeedLimit, Trial, largest_speeds
 from pindrive.optimisation import Effort, line_speed, read_problem
-from pindrive.optimisation.goals import Asked
+from pindrive.optimisation.goals import SpeedRequest
 from pindrive.optimisation.line_speed import speeds
 from pindrive.study.study import Study
 
@@ -32,7 +32,7 @@ def limit(plan: Study) -> SpeedLimit:
 
 
 def test_a_confirmed_speed_is_that_of_the_whole_grid(plan: Study, limit: SpeedLimit) -> None:
-    ((speed, trials),) = speeds(plan, [Asked({}, confirmed=True)])
+    ((speed, trials),) = speeds(plan, [SpeedRequest({}, confirmed=True)])
     assert speed == limit.speed
     assert trials <= TRIED + 10
 
@@ -40,10 +40,10 @@ def test_a_confirmed_speed_is_that_of_the_whole_grid(plan: Study, limit: SpeedLi
 def test_a_bracket_takes_few_trials(plan: Study, limit: SpeedLimit) -> None:
     """To a hundredth, or of a device that is slower than another to a twentieth."""
     guesses = [
-        Asked({}),
-        Asked({}, near=1.1 * limit.speed),
-        Asked({}, near=0.9 * limit.speed),
-        Asked({}, near=1.02 * limit.speed, beat=2.0 * limit.speed),
+        SpeedRequest({}),
+        SpeedRequest({}, near=1.1 * limit.speed),
+        SpeedRequest({}, near=0.9 * limit.speed),
+        SpeedRequest({}, near=1.02 * limit.speed, beat=2.0 * limit.speed),
     ]
     most = (11, 7, 7, 3)
     for (speed, trials), asked, budget in zip(speeds(plan, guesses), guesses, most, strict=True):
@@ -54,7 +54,7 @@ def test_a_bracket_takes_few_trials(plan: Study, limit: SpeedLimit) -> None:
 
 def test_a_device_that_cannot_exist_has_no_speed(plan: Study) -> None:
     at = {"plate.kinetic": 0.02, "plate.static": 0.01}
-    ((speed, trials),) = speeds(plan, [Asked(at)])
+    ((speed, trials),) = speeds(plan, [SpeedRequest(at)])
     assert isnan(speed) and trials == 0
 
 
@@ -102,7 +102,7 @@ def test_a_gap_below_a_speed_ends_the_interval(
 
     monkeypatch.setattr(line_speed, "two_lines", trial)
     ((whole, _), (taken, _), (slower, _)) = speeds(
-        plan, [Asked({}, 0.4, confirmed=True), Asked({}, 0.4), Asked({}, 0.1)]
+        plan, [SpeedRequest({}, 0.4, confirmed=True), SpeedRequest({}, 0.4), SpeedRequest({}, 0.1)]
     )
     assert whole == pytest.approx(0.2, rel=1e-3) and whole <= 0.2
     assert taken == pytest.approx(0.5, rel=1e-2)

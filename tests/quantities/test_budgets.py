@@ -29,7 +29,7 @@ MEGABYTE = 1 << 20
 Found = TypeVar("Found")
 TABLE = {name: part for name, part in vars(budgets).items() if isinstance(part, Budget)}
 
-LOOKS = "the looks of the control block must be at most 20000000, got "
+CONTROL = "the samples of the control block must be at most 20000000, got "
 STIFF = "--set finger.stiffness: finger.stiffness must be finite and at least 1e-12 N/m"
 TURNS = "the turning points of the pins must be at most 1500000, got "
 REFUSED = {
@@ -42,10 +42,10 @@ REFUSED = {
     ("speed --pitch 2mm", "array.columns=1e9"): "--set array.columns: array.columns must be",
     ("scan --text Hello", "array.columns=1000"): "the pixels of the page must be at most 40000000",
     ("scan --text A", "control.sample_rate=1e12 Hz"): "--set control.sample_rate: control.sample",
-    ("scan --text Hello", "control.sample_rate=1e6 Hz"): f"{LOOKS}",
-    ("speed --pitch 2mm", "control.sample_rate=1e6 Hz"): f"{LOOKS}",
+    ("scan --text Hello", "control.sample_rate=1e6 Hz"): f"{CONTROL}",
+    ("speed --pitch 2mm", "control.sample_rate=1e6 Hz"): f"{CONTROL}",
     ("scan --text A", "scan.pause=1e9 s"): "--set scan.pause: scan.pause must be finite and at",
-    ("scan --text Hello", "scan.pause=3600 s"): f"{LOOKS}",
+    ("scan --text Hello", "scan.pause=3600 s"): f"{CONTROL}",
     ("scan --text A", "magnet.deviation=1e-16"): "--set magnet.deviation: magnet.deviation must be",
     ("speed --pitch 2mm", "magnet.deviation=1e-300"): "--set magnet.deviation: magnet.deviation",
     ("scan --text A", "magnet.saturation=1e-300"): "--set magnet.saturation: magnet.saturation",
@@ -136,9 +136,9 @@ def test_the_table_has_a_reason_for_each() -> None:
         with pytest.raises(ValueError, match=f"a: {budget.counted} must be at most {budget.most}"):
             budget.check(budget.most + 1, where="a")
     with pytest.raises(ValueError, match=r"got nan$"):
-        budgets.LOOKS.check(float("nan"))
+        budgets.SAMPLES_OF_CONTROL.check(float("nan"))
     with pytest.raises(ValueError, match=r"got 1e\+40 \(why\)$"):
-        budgets.LOOKS.check(1e40, "why")
+        budgets.SAMPLES_OF_CONTROL.check(1e40, "why")
 
 
 # ---- memory grows with what is kept --------------------------------------------------------------
@@ -224,7 +224,7 @@ def test_switchings_and_rows_are_counted_pin_by_pin(monkeypatch: pytest.MonkeyPa
         ("SWITCHINGS", 3, r"got 4 \(up to pin 0 of 2\)"),
         ("INPUT_ROWS", 2 * rows + 2, r"got \d+ \(4 switchings of one coil\)|up to pin 0 of 2"),
         ("INPUT_ROWS", rows, rf"got {2 * rows} \(2 pins, {rows} rows of hand speed for each\)"),
-        ("PAGE_LOOKS", 1000, r"2 pins, 0.009 m of way, pixels of 0.1 mm"),
+        ("SAMPLES_OF_PAGE", 1000, r"2 pins, 0.009 m of way, pixels of 0.1 mm"),
     ):
         with monkeypatch.context() as patch:
             patch.setattr(budgets, name, replace(getattr(budgets, name), most=most))

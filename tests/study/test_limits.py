@@ -62,7 +62,7 @@ def test_a_disk_that_fills_up_keeps_finished_chunks(small_disk: Path) -> None:
 
     words = r"study\.nc\.partial: cannot be written: No space left on device; \d+ finished chunks "
     with pytest.raises(OutputError, match=words + "are kept, `resume=True` continues with them"):
-        runner.sweep(study, target, tell=fill)
+        runner.sweep(study, target, progress=fill)
     ballast.unlink()
     result = runner.sweep(study, target, resume=True)
     assert 0 < result.worked_out < result.points
@@ -123,7 +123,7 @@ def test_a_cluster_that_loses_a_worker_gives_the_same_file() -> None:
                 os.kill(killed[0], signal.SIGKILL)
 
         result = runner.sweep(
-            plan(), Path("study.nc"), work=on_cluster(cluster.scheduler_address), tell=kill
+            plan(), Path("study.nc"), work=on_cluster(cluster.scheduler_address), progress=kill
         )
     assert killed and result.complete
     assert Path("study.nc").read_bytes() == whole

@@ -240,7 +240,7 @@ def test_ctrl_c_keeps_what_is_done(whole: bytes) -> None:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        runner.sweep(study, Path("study.nc"), tell=interrupt)
+        runner.sweep(study, Path("study.nc"), progress=interrupt)
     result = runner.sweep(study, Path("study.nc"), resume=True)
     assert 0 < result.worked_out <= result.points - 1500
     assert Path("study.nc").read_bytes() == whole

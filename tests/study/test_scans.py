@@ -322,7 +322,7 @@ def test_processes_change_nothing_and_their_death_loses_nothing() -> None:
                 os.kill(process.pid or 0, signal.SIGKILL)
 
     with pytest.raises(OutputError, match="died; finished chunks are kept, `resume=True`"):
-        sweep(plan, Path("study.nc"), work=on_threads(2), tell=kill)
+        sweep(plan, Path("study.nc"), work=on_threads(2), progress=kill)
     result = sweep(plan, Path("study.nc"), work=on_threads(2), resume=True)
     assert result.worked_out < result.points
     assert Path("study.nc").read_bytes() == Path("whole.nc").read_bytes()

@@ -48,8 +48,8 @@ def robustness(
         title = "Draws within the tolerances"
         targets += datasets(output, title, ("design",), Robustness.to_dataset)
         with results(targets, loaded.inputs, force=force) as write:
-            with points_bar() as tell:
-                found = analyse(loaded, count=draws, seed=seed, threads=threads, progress=tell)
+            with points_bar() as progress:
+                found = analyse(loaded, count=draws, seed=seed, threads=threads, progress=progress)
             write(found)
     from pindrive.cli.study_tables import robustness_report, say_coefficient
     from pindrive.cli.tables import show

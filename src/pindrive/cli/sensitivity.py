@@ -68,7 +68,7 @@ def sensitivity(
         targets += datasets(output, title, ("number", "key"), SobolIndices.to_dataset)
         with results(targets, loaded.inputs, force=force) as write:
             among = askable(loaded)
-            with points_bar() as tell:
+            with points_bar() as progress:
                 found = sobol(
                     loaded,
                     tolerances=tolerances,
@@ -76,7 +76,7 @@ def sensitivity(
                     rows=rows,
                     seed=seed,
                     threads=threads,
-                    progress=tell,
+                    progress=progress,
                     near=True,
                 )
             write(found)

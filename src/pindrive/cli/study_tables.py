@@ -141,14 +141,14 @@ def _short(name: str, value: float) -> str:
 
 def sobol_report(found: SobolIndices) -> RenderableType:
     """Three tables: elasticities, and Sobol' indices of first order and in total."""
-    told = [name for name in found.over if found.over[name].spread > 0.0]
+    varied = [name for name in found.over if found.over[name].spread > 0.0]
     tables: list[RenderableType] = [_near(found, found.near)] if found.near else []
     for title, order in (
         ("Over the whole ranges: part of the variance due to, by itself", "first"),
         ("Over the whole ranges: part of the variance due to, with all interactions", "total"),
     ):
         cell = partial(_index, found, order)
-        tables.append(_by_key(title, found.keys, told, cell))
+        tables.append(_by_key(title, found.keys, varied, cell))
     return Group(*tables, *_notes(found))
 
 

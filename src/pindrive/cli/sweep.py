@@ -62,7 +62,7 @@ def sweep(
         loaded = load_study(study, overrides or ())
         if not loaded.dimensions:
             raise ValueError(f"{study}: has no axes; write what to vary in [axes]")
-        with points_bar() as tell:
+        with points_bar() as progress:
             done = compute(
                 loaded,
                 target,
@@ -70,7 +70,7 @@ def sweep(
                 force=force,
                 stop_after=stop_after,
                 work=on_cluster(cluster) if cluster else on_threads(threads),
-                tell=tell,
+                progress=progress,
             )
     from pindrive.cli.study_tables import say_coefficient, sweep_report
 

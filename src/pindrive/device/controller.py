@@ -1,4 +1,4 @@
-"""The control block: looks at the scene at its own rate, and switches the coils a little later."""
+"""Control block: samples the luminance at its own rate, and switches the coils after a delay."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class ControlBlock:
     above threshold + hysteresis/2: the black line energises the magnet (the paper, introduction).
 
     Args:
-        sample_rate: Hz, greater than 0; it looks at the whole multiples of 1/sample_rate.
+        sample_rate: Sampling rate, Hz, greater than 0; samples are at multiples of 1/sample_rate.
         latency: Delay from sampling to switching, s, at least 0.
         threshold: Luminance in [0, 1].
         hysteresis: Width of the band about it, in [0, 1]; the band lies within [0, 1].
@@ -53,23 +53,23 @@ class ControlBlock:
         """Validate what follows from them."""
         check_band(self.threshold, self.hysteresis)
 
-    def looks(self, begin: float, end: float) -> NDArray[np.float64]:
+    def sample_times(self, begin: float, end: float) -> NDArray[np.float64]:
         """Return the sampling instants in [begin, end), s, shape (n,)."""
-        self.check_looks(begin, end)
+        self.check_samples(begin, end)
         first, last = ceil(begin * self.sample_rate), ceil(end * self.sample_rate)
         times = np.arange(first - 1, last + 1, dtype=np.float64) / self.sample_rate
         return times[(times >= begin) & (times < end)]
 
-    def check_looks(self, begin: float, end: float, pins: int = 1) -> None:
+    def check_samples(self, begin: float, end: float, pins: int = 1) -> None:
         """Reject too many samples of the pins from `begin` to `end` (s)."""
         each, lasts = ceil((end - begin) * self.sample_rate), end - begin
         of = f"{pins} pins, {lasts:g} s at {self.sample_rate:g} Hz"
-        budgets.LOOKS.check(float(pins * each), of)
+        budgets.SAMPLES_OF_CONTROL.check(float(pins * each), of)
 
     def decide(
         self,
         luminance: NDArray[np.float64],
-        looks: NDArray[np.float64],
+        sample_times: NDArray[np.float64],
         end: float,
         before: Decision | None = None,
     ) -> tuple[Commands, Decision]:
@@ -77,7 +77,7 @@ class ControlBlock:
 
         Args:
             luminance: Luminance at each sample, shape (n,).
-            looks: s, shape (n,), as from `looks`.
+            sample_times: Times of the samples, s, shape (n,), as from `sample_times`.
             end: Until when, s; a switching due then or later is left pending.
             before: State of the control block at the first sample; None: all magnets off.
 
@@ -87,10 +87,10 @@ class ControlBlock:
         before = before or Decision()
         dark = luminance < self.threshold - 0.5 * self.hysteresis
         light = luminance > self.threshold + 0.5 * self.hysteresis
-        told = np.flatnonzero(dark | light)
-        on = np.concatenate([[before.on], dark[told]])
-        changes = told[on[1:] != on[:-1]]
-        due = np.concatenate([before.pending, looks[changes] + self.latency])
+        decided = np.flatnonzero(dark | light)
+        on = np.concatenate([[before.on], dark[decided]])
+        changes = decided[on[1:] != on[:-1]]
+        due = np.concatenate([before.pending, sample_times[changes] + self.latency])
         times = due[due < end]
         switched = before.switched ^ (len(times) % 2 == 1)
         after = Decision(bool(on[-1]), switched, tuple(due[due >= end].tolist()))

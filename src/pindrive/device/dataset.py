@@ -296,7 +296,7 @@ def _doubts(scan: Scan) -> list[str]:
     enough = speed / scene.pixel
     if control.sample_rate < enough * (1.0 - ROUNDING):
         found.append(
-            f"control.sample_rate = {control.sample_rate:g} Hz looks every "
+            f"control.sample_rate = {control.sample_rate:g} Hz samples every "
             f"{1e3 * speed / control.sample_rate:.3g} mm at {1e3 * speed:.4g} mm/s, past pixels of "
             f"{1e3 * scene.pixel:.3g} mm: thin lines may be missed; {enough:.4g} Hz sees each"
         )
@@ -337,11 +337,11 @@ def _beyond(scan: Scan) -> str:
     worst, part = 0, 0.0
     for pin in scan.pins:
         off = 0
-        for begin in range(0, len(pin.looks), AT_ONCE):
-            spots = scan.spot(pin.number, pin.looks[begin : begin + AT_ONCE])
+        for begin in range(0, len(pin.sample_times), AT_ONCE):
+            spots = scan.spot(pin.number, pin.sample_times[begin : begin + AT_ONCE])
             off += int(np.count_nonzero(~scan.scene.contains(spots[:, 0], spots[:, 1])))
-        if off > part * len(pin.looks):
-            worst, part = pin.number, off / len(pin.looks)
+        if off > part * len(pin.sample_times):
+            worst, part = pin.number, off / len(pin.sample_times)
     if not part:
         return ""
     left, right, top, bottom = (1e3 * edge for edge in scan.scene.extent)

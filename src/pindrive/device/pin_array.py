@@ -68,14 +68,14 @@ class PinArray:
         slot_length: float | str | None = default("slot_length"),
     ) -> None:
         """Validate, and keep tuples of plain floats."""
-        stands = _pairs(places, "places")
-        if not stands:
+        places = _pairs(places, "places")
+        if not places:
             raise ValueError(refusal("places", "at least one place", "none"))
-        check_apart(stands)
-        shows = stands if spots is None else _pairs(spots, "spots")
-        if len(shows) != len(stands):
-            raise ValueError(refusal("spots", f"as many as pins, {len(stands)}", str(len(shows))))
-        object.__setattr__(self, "places", stands)
+        check_apart(places)
+        shows = places if spots is None else _pairs(spots, "spots")
+        if len(shows) != len(places):
+            raise ValueError(refusal("spots", f"as many as pins, {len(places)}", str(len(shows))))
+        object.__setattr__(self, "places", places)
         object.__setattr__(self, "spots", shows)
         object.__setattr__(self, "axis", check("axis", axis))
         object.__setattr__(self, "pin_diameter", check("pin_diameter", pin_diameter))
@@ -130,8 +130,8 @@ class PinArray:
         slot_length: float | str | None = default("slot_length"),
     ) -> PinArray:
         """Pins at given places (m), their spots likewise, `spot_scale` times as far apart."""
-        stands = _pairs(places, "places")
-        return cls(stands, _scaled(stands, spot_scale), axis, pin_diameter, slot_length)
+        places = _pairs(places, "places")
+        return cls(places, _scaled(places, spot_scale), axis, pin_diameter, slot_length)
 
     def __len__(self) -> int:
         """Return the number of pins."""

@@ -84,7 +84,7 @@ class PinScan:
     begin: float
     end: float
     """End of the scan, s."""
-    looks: NDArray[np.float64]
+    sample_times: NDArray[np.float64]
     """Sampling instants of the control block, s, shape (n,)."""
     luminance: NDArray[np.float64]
     """Luminance at the pin's spot, shape (n,)."""
@@ -468,7 +468,7 @@ def prepare(
     Arguments and errors as for `scan`.
     """
     check_work(device, scene, path)
-    looks = device.control.looks(path.begin, path.end)
+    sample_times = device.control.sample_times(path.begin, path.end)
     plate_velocity = path.plate_velocity(device.array.axis)
     across_velocity = path.across_velocity(device.array.axis)
     pressed = finger_load(device.drive, touch, path.begin)
@@ -476,8 +476,9 @@ def prepare(
     prepared: list[PinScan] = []
     rows = switchings = 0
     for number, state in enumerate(states):
-        luminance = _seen(device, scene, path, looks, number)
-        commands, decision = device.control.decide(luminance, looks, path.end, state.decision)
+        luminance = _seen(device, scene, path, sample_times, number)
+        decide = device.control.decide
+        commands, decision = decide(luminance, sample_times, path.end, state.decision)
         before = CoilState(path.begin) if state.coil is None else state.coil
         current = device.magnet.current(commands, before, path.begin, path.end)
         switchings += len(current.begins) - 1
@@ -493,7 +494,7 @@ def prepare(
                 drive=device.drive,
                 begin=path.begin,
                 end=path.end,
-                looks=looks,
+                sample_times=sample_times,
                 luminance=luminance,
                 commands=commands,
                 current=current,
@@ -518,13 +519,13 @@ def prepare(
 def check_work(device: Device, scene: Scene, path: HandPath) -> None:
     """Refuse a scan whose counts are beyond the budgets: known before anything is allocated."""
     pins, lasts = len(device.array), path.end - path.begin
-    device.control.check_looks(path.begin, path.end, pins)
+    device.control.check_samples(path.begin, path.end, pins)
     of = f"{pins} pins, {len(path.times)} rows of hand speed for each"
     budgets.INPUT_ROWS.check(float(pins * len(path.times)), of)
     check_vibration(device.drive, lasts, pins)
     length = float(Way(path)(path.end)[0])
     of = f"{pins} pins, {length:g} m of way, pixels of {1e3 * scene.pixel:g} mm"
-    budgets.PAGE_LOOKS.check(pins * (len(path.times) + FINER * length / scene.pixel), of)
+    budgets.SAMPLES_OF_PAGE.check(pins * (len(path.times) + FINER * length / scene.pixel), of)
 
 
 def _load(
@@ -560,11 +561,11 @@ def _spot(device: Device, path: HandPath, pin: int, t: ArrayLike) -> NDArray[np.
 
 
 def _seen(
-    device: Device, scene: Scene, path: HandPath, looks: NDArray[np.float64], pin: int
+    device: Device, scene: Scene, path: HandPath, sample_times: NDArray[np.float64], pin: int
 ) -> NDArray[np.float64]:
     """Return the luminance samples at one pin's spot, shape (samples,)."""
-    luminance = np.empty_like(looks)
-    for begin in range(0, len(looks), AT_ONCE):
+    luminance = np.empty_like(sample_times)
+    for begin in range(0, len(sample_times), AT_ONCE):
         part = slice(begin, begin + AT_ONCE)
-        luminance[part] = scene.at(*_spot(device, path, pin, looks[part]).T)
+        luminance[part] = scene.at(*_spot(device, path, pin, sample_times[part]).T)
     return luminance

@@ -59,7 +59,7 @@ def printed(device: Device, path: HandPath, scene: Scene) -> list[list[Printed]]
             x, y = path.position(t)
             return scene.at(x + dx, y + dy) - threshold
 
-        edges, first, last = _edges(lightness, _looks(path, counts))
+        edges, first, last = _edges(lightness, _sample_times(path, counts))
         passed += 0.5 * len(edges)
         budgets.LINES.check(passed, f"up to pin {len(found)} of {len(offsets)}")
         times = np.concatenate([[path.begin], edges, [path.end]])
@@ -85,17 +85,17 @@ def printed(device: Device, path: HandPath, scene: Scene) -> list[list[Printed]]
 
 def _edges(
     lightness: Callable[[NDArray[np.float64]], NDArray[np.float64]],
-    looks: Iterator[NDArray[np.float64]],
+    sample_times: Iterator[NDArray[np.float64]],
 ) -> tuple[NDArray[np.float64], bool, bool]:
     """Return the changes between dark and light, s, and the darkness at both ends.
 
     Args:
         lightness: Luminance above the threshold at times, s.
-        looks: Times that find each change, in order, some at a time.
+        sample_times: Times that find each change, in order, some at a time.
     """
     low, high, sign = [np.zeros(0)], [np.zeros(0)], [np.zeros(0)]
     first, before, was = False, np.zeros(0), np.zeros(0, bool)
-    for some in looks:
+    for some in sample_times:
         t = np.concatenate([before, some])
         dark = np.concatenate([was, lightness(some) < 0.0])
         changes = np.flatnonzero(dark[1:] != dark[:-1])
@@ -109,7 +109,7 @@ def _edges(
     return edges, first, bool(was[0])
 
 
-def _looks(path: HandPath, counts: NDArray[np.int64]) -> Iterator[NDArray[np.float64]]:
+def _sample_times(path: HandPath, counts: NDArray[np.int64]) -> Iterator[NDArray[np.float64]]:
     """Return the sampling times of the page, s, in order: several per row of a path."""
     starts = np.concatenate([[0], np.cumsum(counts)])
     lasts = np.diff(path.times)

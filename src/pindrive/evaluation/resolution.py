@@ -2,7 +2,7 @@
 
 Two lines, black, stand `pitch` apart; an even hand goes straight over them, at the angle of the
 drive axis (`array.axis`) to the drive. They are **distinct** at its
-speed if, wherever the control block's looks happen to fall (`PHASES` of them are tried),
+speed if, whatever the phase of the control block's samples (`PHASES` of them are tried),
 
 - between them the pin comes back at least `part` of its way from its highest place to where spring
   and dragging plate balance, before the second line takes it along, and
@@ -15,7 +15,7 @@ second line takes the pin along. Every trial is an exact simulation.
 Distinct speeds need not be one interval: a swing may fit by chance, and a slow hand may leave the
 pin where the finger's friction holds it. So all of a geometric grid of speeds is tried first, and
 the border of each interval it shows is found by bisection; intervals between two speeds of the grid
-may be missed. A border is as sharp as the control block looks: within a look it is chance.
+may be missed. Within a sampling interval of the control block a border is chance.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ PRECISION: Final = 1e-3
 FINE: Final = 40.0
 """Pixels in the thinner of line and gap."""
 MOMENT: Final = 0.002
-"""From the begin of a trial to the first line, s, and a look more."""
+"""From the begin of a trial to the first line, s, and a sampling interval more."""
 
 LONGEST: Final = 200.0
 """Longest simulated transient, in radians of its natural frequency."""
@@ -225,12 +225,12 @@ def largest_speeds(
     for pitch, line in zip(steps, lines, strict=True):
         done = len(found)
 
-        def tell(trials: int, done: int = done) -> None:
+        def report(trials: int, done: int = done) -> None:
             if progress:
                 progress(done * _TRIALS + min(trials, _TRIALS), len(steps) * _TRIALS)
 
-        found.append(_limit(device, pitch, line, needed, tried, limits, tell))
-        tell(_TRIALS)
+        found.append(_limit(device, pitch, line, needed, tried, limits, report))
+        report(_TRIALS)
     return SpeedLimits(tuple(found), needed, limits)
 
 
@@ -265,19 +265,19 @@ def check_work(
     Raises:
         ValueError: The trials exceed a budget.
 
-    The slowest trial takes the most looks, the fastest the most pixels; that the looks of all are
-    so many times those of the slowest follows from the grid.
+    The slowest trial takes the most samples, the fastest the most pixels; the grid of speeds
+    determines the ratio of all samples to those of the slowest trial.
     """
     drive = device.drive
     alone = _clear(device) + max(_followed(drive), 4.0 * pi / drive.natural_frequency)
     slowest, fastest = tried
     all_trials = sum(slowest / speed for speed in np.geomspace(*tried, TRIED).tolist())
-    looks = 0.0
+    samples = 0.0
     for pitch, width in zip(pitches, widths, strict=True):
         of = f"for lines {1e3 * pitch:g} mm apart and {1e3 * width:g} mm wide"
         lasts = (pitch + width) / slowest + alone
-        looks += PHASES * device.control.sample_rate * all_trials * (pitch + width) / slowest
-        looks += PHASES * device.control.sample_rate * TRIED * alone
+        samples += PHASES * device.control.sample_rate * all_trials * (pitch + width) / slowest
+        samples += PHASES * device.control.sample_rate * TRIED * alone
         check_vibration(drive, TRIED * alone + all_trials * lasts, PHASES)
         pixel = min(width, pitch - width) / FINE
         most = (
@@ -285,7 +285,7 @@ def check_work(
         ) / pixel
         budgets.PIXELS.check(most, of)
     of = f"{len(pitches)} pitches, hands from {slowest:g} m/s, at {device.control.sample_rate:g} Hz"
-    budgets.LOOKS.check(looks, of)
+    budgets.SAMPLES_OF_CONTROL.check(samples, of)
 
 
 def _followed(drive: Drive) -> float:
@@ -300,7 +300,7 @@ def _limit(
     part: float,
     tried: Band,
     criteria: Criteria,
-    tell: Callable[[int], None],
+    progress: Callable[[int], None],
 ) -> SpeedLimit:
     """The limit for one pitch; tells the number of trials after each."""
     speeds = np.geomspace(*tried, TRIED).tolist()
@@ -310,7 +310,7 @@ def _limit(
     def trial(speed: float) -> Trial:
         if speed not in trials:
             trials[speed] = two_lines(device, pitch, width, speed, criteria)
-            tell(len(trials) + len(calm))
+            progress(len(trials) + len(calm))
         return trials[speed]
 
     def bands(holds: Callable[[Trial], bool]) -> list[Band]:
@@ -341,7 +341,7 @@ def _limit(
     def settled(trial: Trial) -> bool:
         if distinct(trial) and trial.speed not in calm:
             calm[trial.speed] = settles(device, pitch, width, trial, criteria)
-            tell(len(trials) + len(calm))
+            progress(len(trials) + len(calm))
         return calm.get(trial.speed, False)
 
     apart = bands(distinct)
@@ -359,7 +359,7 @@ def _limit(
 def two_lines(
     device: Device, pitch: float, width: float, speed: float, criteria: Criteria
 ) -> Trial:
-    """Go over two lines at an even speed, once for each phase of the control block's looks.
+    """Go over two lines at an even speed, once for each phase of the control block's samples.
 
     Args:
         device: Device of which one pin is evaluated.
@@ -409,14 +409,14 @@ def _pass(
     criteria: Criteria,
 ) -> list[EvaluatedPin]:
     """Go evenly over lines that begin at these places (m), once for each phase, and `after` (s)."""
-    look = 1.0 / device.control.sample_rate
-    begin, end = -speed * (MOMENT + look), begins[-1] + width + speed * after
+    interval = 1.0 / device.control.sample_rate
+    begin, end = -speed * (MOMENT + interval), begins[-1] + width + speed * after
     pixel = min(width, pitch - width) / FINE
-    shifts = [speed * look * i / PHASES for i in range(PHASES)]
+    shifts = [speed * interval * i / PHASES for i in range(PHASES)]
     axis = device.array.axis
     spots = [(s * cos(axis), -s * sin(axis)) for s in shifts]  # s ahead along the hand's way
     phases = PinArray([(0.0, float(i)) for i in range(PHASES)], spots, axis)
-    page = _page(begins, width, begin - pixel, end + speed * look + pixel, pixel)
+    page = _page(begins, width, begin - pixel, end + speed * interval + pixel, pixel)
     lasts = (end - begin) / speed
     path = HandPath([0.0, lasts], [speed] * 2, [0.0] * 2, (begin, 0.5 * pixel))
     done = scan(

@@ -81,5 +81,5 @@ def _comment(estimate: Estimate) -> str:
     error = ""
     if isfinite(estimate.standard_error):
         error = f" ± {significant(estimate.standard_error * scale, 2)}"
-    told = f"; {estimate.identifiability} identifiable" if estimate.explanation else ""
-    return f"{value}{error} {unit}, interval {low} to {high} {unit}{told}".replace("  ", " ")
+    note = f"; {estimate.identifiability} identifiable" if estimate.explanation else ""
+    return f"{value}{error} {unit}, interval {low} to {high} {unit}{note}".replace("  ", " ")

@@ -75,9 +75,9 @@ class _Side:
         self._end = float((problem.upper if way > 0 else problem.lower)[i])
         spread = covariance[i, i]
         extent = float(problem.upper[i] - problem.lower[i])
-        told = 0.0 < spread < inf
-        self._tangent = covariance[:, i] / spread if told else np.zeros(len(best.theta))
-        self._sigma = min(sqrt(spread), extent) if told else 1e-2 * extent
+        determined = 0.0 < spread < inf
+        self._tangent = covariance[:, i] / spread if determined else np.zeros(len(best.theta))
+        self._sigma = min(sqrt(spread), extent) if determined else 1e-2 * extent
         self.points: dict[float, float] = {}
         self._near = {float(best.theta[i]): best.theta}
 

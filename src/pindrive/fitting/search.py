@@ -23,7 +23,7 @@ BATCHED: Final = 16384
 """Candidates of plain releases, which `simulate_batch` follows."""
 SINGLE: Final = 1024
 """Candidates of what only the general core follows."""
-LOOKS: Final = 40
+COARSE: Final = 40
 """Samples of each recording at which candidates are compared."""
 _OTHER: Final = (
     *("finger.stiffness", "skin_stretch", "force", "across_velocity", "finger_load"),
@@ -72,14 +72,15 @@ def polished(problem: Problem, best: Optimum, covariance: Array, seed: int) -> O
     """
     rng = np.random.default_rng(seed)
     spread = np.sqrt(np.diag(covariance))
-    told = np.isfinite(spread) & (spread > 0.0)
+    determined = np.isfinite(spread) & (spread > 0.0)
     for _ in range(ROUNDS):
-        factor = _root(covariance[np.ix_(told, told)])
-        normal = rng.normal(size=(DRAWN, int(np.count_nonzero(told))))
+        factor = _root(covariance[np.ix_(determined, determined)])
+        normal = rng.normal(size=(DRAWN, int(np.count_nonzero(determined))))
         near = np.tile(best.theta, (DRAWN, 1))
         size = rng.choice(SIZES, (DRAWN, 1))
-        near[:, told] += size * normal @ factor.T
-        near[:, ~told] *= 2.0 ** rng.uniform(-3.0, 3.0, (DRAWN, int(np.count_nonzero(~told))))
+        near[:, determined] += size * normal @ factor.T
+        free = int(np.count_nonzero(~determined))
+        near[:, ~determined] *= 2.0 ** rng.uniform(-3.0, 3.0, (DRAWN, free))
         near = np.clip(near, problem.lower, problem.upper)
         costs = np.array([problem.plain_cost(theta) for theta in near])
         # Far points cost more by their distance alone; of that their size is a measure.
@@ -103,9 +104,9 @@ def search(model: Model, weights: Array, seed: int) -> tuple[Optimum, Array]:
     """Return the best optimum of the best of many candidates, and all candidates, shape (n, k)."""
     counts = [len(recording.time) for recording in model.recordings]
     strides = [max(1, n // ROUGH) for n in counts]
-    looks = [max(1, n // LOOKS) for n in counts]
+    strides = [max(1, n // COARSE) for n in counts]
     args = model.parameters, model.drive, model.releases, model.recordings
-    coarse = Model(*args, looks)
+    coarse = Model(*args, strides)
     rough = Model(*args, strides)
     thin, few = _thinned(model, rough, weights), _thinned(model, coarse, weights)
     problem = Problem(rough, thin)

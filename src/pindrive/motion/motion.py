@@ -82,8 +82,8 @@ class Motion(lazy.NotebookHtml):
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickle the arguments of the simulation, which is repeated."""
-        asked = self.core_numbers[-1]
-        duration = None if asked == inf else asked
+        requested = self.core_numbers[-1]
+        duration = None if requested == inf else requested
         return solve, (self.drive, self.release, duration, self.settling_band)
 
     def __eq__(self, other: object) -> bool:

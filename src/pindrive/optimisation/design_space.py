@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from pindrive.lazy import qmc
 from pindrive.optimisation.effort import Count
-from pindrive.optimisation.goals import PRICE, SPEED, Asked, Goal, Variable
+from pindrive.optimisation.goals import PRICE, SPEED, Goal, SpeedRequest, Variable
 from pindrive.optimisation.scanned import Scanned
 from pindrive.optimisation.search import Population
 from pindrive.quantities.budgets import worker_count
@@ -59,7 +59,7 @@ class DesignSpace:
         threads: Number of workers.
         count: Counter of the simulations.
         scanned: Scanned devices.
-        tell: Function called after each part of the work.
+        progress: Function called after each part of the work.
     """
 
     study: Study
@@ -69,7 +69,7 @@ class DesignSpace:
     links: Mapping[str, Linked]
     constraints: tuple[Constraint, ...]
     goals: tuple[Goal, ...]
-    line_speeds: Callable[[Study, Sequence[Asked]], list[tuple[float, int]]]
+    line_speeds: Callable[[Study, Sequence[SpeedRequest]], list[tuple[float, int]]]
     threads: int | None = None
     crew: Cluster | None = None
     """Workers elsewhere, which take scans, and motions by the ten thousand; None: none are."""
@@ -79,7 +79,7 @@ class DesignSpace:
     scanned: Scanned = field(default_factory=Scanned)
     coarse: bool = False
     """True if hand speeds are computed roughly, as for a map."""
-    tell: Callable[[], None] = lambda: None
+    progress: Callable[[], None] = lambda: None
 
     @cached_property
     def names(self) -> tuple[str, ...]:
@@ -144,7 +144,7 @@ class DesignSpace:
         parts = []
         for begin in range(0, len(points), each):
             parts.append(self._numbers(points[begin : begin + each], at))
-            self.tell()
+            self.progress()
         return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
     def _numbers(self, points: Array, cases: Array) -> dict[str, Array]:
@@ -164,12 +164,12 @@ class DesignSpace:
 
     def _simulated(self, columns: dict[str, Array], size: int) -> dict[str, Array]:
         """The numbers of motions or of scans, each (size,)."""
-        asked = [name for name in self.names if name not in DESIGN_OUTPUTS]
-        if not asked:
+        requested = [name for name in self.names if name not in DESIGN_OUTPUTS]
+        if not requested:
             return {}
-        table = self._evaluated(columns, size, (*asked, "status"))
+        table = self._evaluated(columns, size, (*requested, "status"))
         exists = exist(table["status"])
-        return {name: np.where(exists, table[name], np.nan) for name in asked}
+        return {name: np.where(exists, table[name], np.nan) for name in requested}
 
     # ---- scans -----------------------------------------------------------------------------------
 
@@ -284,13 +284,15 @@ class DesignSpace:
         self, columns: dict[str, Array], near: Array, beat: float, confirmed: bool
     ) -> Array:
         """The largest speeds of devices, m/s, shape (n,)."""
-        asked = [
-            Asked({key: float(x[i]) for key, x in columns.items()}, float(guess), beat, confirmed)
+        requested = [
+            SpeedRequest(
+                {key: float(x[i]) for key, x in columns.items()}, float(guess), beat, confirmed
+            )
             for i, guess in enumerate(near)
         ]
         processes = worker_count(self.threads)
-        each = min(PORTION, -(-len(asked) // processes)) or 1
-        portions = [asked[i : i + each] for i in range(0, len(asked), each)]
+        each = min(PORTION, -(-len(requested) // processes)) or 1
+        portions = [requested[i : i + each] for i in range(0, len(requested), each)]
         if self.crew is not None:
             rows = [*self.crew.spread(self.line_speeds, self.study, portions)]
         elif processes == 1 or len(portions) == 1:

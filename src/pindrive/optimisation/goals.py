@@ -85,7 +85,7 @@ class Variable:
         return (row + 0.5) / self.choices
 
 
-class Asked(NamedTuple):
+class SpeedRequest(NamedTuple):
     """A device whose speed is to be found.
 
     Attributes:

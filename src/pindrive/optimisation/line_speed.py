@@ -17,7 +17,7 @@ import numpy as np
 
 from pindrive.device.device import Criteria, Device
 from pindrive.evaluation.resolution import PRECISION, TRIED, check_work, two_lines
-from pindrive.optimisation.goals import Asked
+from pindrive.optimisation.goals import SpeedRequest
 from pindrive.quantities.table import default
 from pindrive.study.study import Study
 
@@ -31,29 +31,29 @@ SLOWEST: Final[float] = default("speed.slowest")
 FASTEST: Final[float] = default("speed.fastest")
 
 
-def speeds(study: Study, portion: Sequence[Asked]) -> list[tuple[float, int]]:
+def speeds(study: Study, portion: Sequence[SpeedRequest]) -> list[tuple[float, int]]:
     """The largest speed of each device, m/s, and the trials that it took.
 
     NaN where there is no such device, or no speed was found at which the lines are distinct.
     """
-    return [_speed(study, asked) for asked in portion]
+    return [_speed(study, requested) for requested in portion]
 
 
-def _speed(study: Study, asked: Asked) -> tuple[float, int]:
+def _speed(study: Study, requested: SpeedRequest) -> tuple[float, int]:
     assert study.page
     found, count = np.inf, 0
     try:
-        file = study.device_at(asked.at)
+        file = study.device_at(requested.at)
         device, criteria = file.device, file.criteria
         pitches = study.page.page.grating or ()
         check_work(device, pitches, [0.5 * p for p in pitches], (SLOWEST, FASTEST))
         for pitch in pitches:
             climb = Climb(device, pitch, criteria)
-            if asked.confirmed:
+            if requested.confirmed:
                 own = climb.first_interval()
             else:  # the least of several counts: no pitch is followed beyond the one before
-                near = asked.near if found == np.inf else found
-                own = climb.bracket(near, asked.beat, min(found, FASTEST))
+                near = requested.near if found == np.inf else found
+                own = climb.bracket(near, requested.beat, min(found, FASTEST))
             count += len(climb.trials)
             if isnan(own):
                 return nan, count

@@ -99,7 +99,7 @@ def rows(facts: Facts) -> list[Row]:
     has = np.isfinite(facts.number("first_reversal_time"))
     t_1 = np.where(has, facts.number("first_reversal_time"), np.nan)
 
-    def judged(printed: Array, right: Array, of: Releases) -> tuple[float, float, float, str]:
+    def evaluated(printed: Array, right: Array, of: Releases) -> tuple[float, float, float, str]:
         light = damping_ratio(of) <= max(FACTORS)
         return _worst(printed), _worst(right), _worst(printed[light]), where_good(printed, of)
 
@@ -107,7 +107,7 @@ def rows(facts: Facts) -> list[Row]:
         right = (getattr(formulas, name)(r) - exact) / unit
         if not hasattr(as_printed, name):
             return same(right)
-        return judged((getattr(as_printed, name)(r) - exact) / unit, right, r)
+        return evaluated((getattr(as_printed, name)(r) - exact) / unit, right, r)
 
     def same(deviation: Array) -> tuple[float, float, float, str]:
         return _worst(deviation), _worst(deviation), _worst(deviation), ""
@@ -123,7 +123,7 @@ def rows(facts: Facts) -> list[Row]:
             r"F_2\,\mathrm{sign}(\dot x - v_p)",
             "its residual, part of the largest force; with the signs alone corrected, (2) does not "
             "follow from F_1 = 0",
-            *judged(facts.friction_law(1.0), facts.friction_law(-1.0), f),
+            *evaluated(facts.friction_law(1.0), facts.friction_law(-1.0), f),
         ),
         Row(
             "2",

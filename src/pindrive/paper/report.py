@@ -71,10 +71,10 @@ class Report:
         count = Counter(claim.verdict.split(" when ")[0] for claim in self.claims)
         unproved = count["not proved"]
         whole = sum(c.verdict == "holds" for c in self.claims)
-        judged = count["holds"] + count["does not hold"] + unproved
+        evaluated = count["holds"] + count["does not hold"] + unproved
         wrong = [row.number for row in self.rows if row.right]
         return (
-            f"The paper makes {judged} statements about the drive: {whole} hold, "
+            f"The paper makes {evaluated} statements about the drive: {whole} hold, "
             f"{count['holds'] - whole} hold under an additional condition, "
             f"{count['does not hold']} do not hold, and {unproved}, that no analytical solution "
             f"exists, are not proved. {count['done here']} statements describe work of the authors "
@@ -123,8 +123,8 @@ class Report:
 
     def trials(self) -> xr.Dataset:
         """The table of equations and the verdicts as data."""
-        judged = [claim for claim in self.claims if claim.true is not None]
-        trials = [np.asarray(claim.true) for claim in judged]
+        evaluated = [claim for claim in self.claims if claim.true is not None]
+        trials = [np.asarray(claim.true) for claim in evaluated]
         return xr.Dataset(
             {
                 "off_printed": ("equation", [row.off_printed for row in self.rows], {"units": "1"}),
@@ -137,11 +137,11 @@ class Report:
                 "off_right": ("equation", [row.off_right for row in self.rows], {"units": "1"}),
                 "trials": ("sentence", [true.size for true in trials]),
                 "true": ("sentence", [int(true.sum()) for true in trials]),
-                "verdict": ("sentence", [claim.verdict for claim in judged]),
+                "verdict": ("sentence", [claim.verdict for claim in evaluated]),
             },
             coords={
                 "equation": [row.number for row in self.rows],
-                "sentence": [claim.sentence for claim in judged],
+                "sentence": [claim.sentence for claim in evaluated],
             },
             attrs={
                 "title": "Largest deviation of each equation, and verdicts",

@@ -364,5 +364,5 @@ def _title(evaluation: Evaluation) -> str:
                 f"{label} {value:.2f}" if unit == "1" else f"{label} {MM * value:.2g} mm"
             )
     found = f"{shown} of {counted(lines, 'line')} shown, {counts['lines.false']} false"
-    told = [*([f"Medians: {', '.join(medians)}."] if medians else []), *gap_words(scan)]
-    return "\n".join([f"{what}: {found}.", *told])
+    notes = [*([f"Medians: {', '.join(medians)}."] if medians else []), *gap_words(scan)]
+    return "\n".join([f"{what}: {found}.", *notes])

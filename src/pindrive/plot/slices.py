@@ -77,7 +77,7 @@ def plot_study(
         if handles:
             figure.legend(handles=handles, loc="outside lower left", ncols=len(handles))
         still = {**rows[0][0].at} if columns == 1 and y else _common(rows[0])
-        _title(figure, view, {**view.told, **still}, int(width * 0.66))
+        _title(figure, view, {**view.stated, **still}, int(width * 0.66))
     return figure
 
 

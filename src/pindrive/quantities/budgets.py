@@ -44,8 +44,8 @@ class Budget:
 PINS: Final = Budget(
     "the pins of the array", 10_000, "each is a motion of its own: a full page of Braille has 6000"
 )
-LOOKS: Final = Budget(
-    "the looks of the control block",
+SAMPLES_OF_CONTROL: Final = Budget(
+    "the samples of the control block",
     20_000_000,
     "a time and a luminance of 8 bytes each are kept for every pin",
 )
@@ -75,8 +75,8 @@ TURNS: Final = Budget(
     1_500_000,
     "2 in each period of the fastest vibration; 16 bytes and some µs each to evaluate",
 )
-PAGE_LOOKS: Final = Budget(
-    "the looks for lines on the page",
+SAMPLES_OF_PAGE: Final = Budget(
+    "the samples of lines on the page",
     20_000_000,
     "4 in each pixel of every pin's way, 0.3 µs each; nothing of them is kept",
 )

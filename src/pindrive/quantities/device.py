@@ -25,7 +25,7 @@ CONTROL: Final = optional(
         "sample_rate",
         "f_s",
         "Hz",
-        "how often the control block looks at the scene",
+        "rate at which the control block samples the scene",
         between(0.1, 1e6),
         1000.0,
         "mice report 125 to 1000 times a second (USB HID)",

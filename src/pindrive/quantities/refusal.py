@@ -41,16 +41,16 @@ def refusal(label: str, required: str, given: object, where: str = "") -> Refusa
     return Refusal.of(label, f"{label} must be {required}, got {given}", where)
 
 
-def told_by(error: Exception) -> Refusal | str:
+def message_of(error: Exception) -> Refusal | str:
     """The first thing that an error tells, as it was made."""
-    told = getattr(error, "problems", error.args)
-    return told[0] if told and isinstance(told[0], str) else str(error)
+    message = getattr(error, "problems", error.args)
+    return message[0] if message and isinstance(message[0], str) else str(error)
 
 
 def refused_by(error: Exception) -> str:
     """Return the label of the rejected quantity, or the kind of an error without a label."""
-    told = told_by(error)
-    return told.label if isinstance(told, Refusal) else type(error).__name__
+    message = message_of(error)
+    return message.label if isinstance(message, Refusal) else type(error).__name__
 
 
 def check_whole(

@@ -22,7 +22,7 @@ from pindrive.motion.profile import Profile
 from pindrive.motion.release import INPUTS, Release
 from pindrive.motion.simulate import motion_of, simulated
 from pindrive.quantities.budgets import worker_count
-from pindrive.quantities.refusal import Refusal, refused_by, told_by
+from pindrive.quantities.refusal import Refusal, message_of, refused_by
 from pindrive.quantities.status import End, SimulationError, Status
 from pindrive.study.design import Columns, Ranges
 from pindrive.study.outputs import MEASURED, SCANNED, variables
@@ -324,6 +324,6 @@ def _reason(study: Study, at: Mapping[str, float]) -> str:
         else:
             motion_of(study.device_at(at))
     except (ValueError, ArithmeticError, MemoryError) as error:
-        told = told_by(error)
-        return told.said if isinstance(told, Refusal) else told
+        message = message_of(error)
+        return message.said if isinstance(message, Refusal) else message
     return ""

@@ -99,7 +99,7 @@ def sweep(
     force: bool = False,
     stop_after: int | None = None,
     work: Work | None = None,
-    tell: Progress = lambda done, total: None,
+    progress: Progress = lambda done, total: None,
 ) -> Sweep:
     """Compute all points of a study and write them into the NetCDF file `target`.
 
@@ -113,7 +113,7 @@ def sweep(
             when the new one is whole.
         stop_after: Stop when at least so many points are done; `resume` continues.
         work: Computation of the chunks; None: on all cores.
-        tell: Function called after each chunk with the points done and the points in all.
+        progress: Function called after each chunk with the points done and the points in all.
 
     Raises:
         OutputError: An interrupted run or an earlier study is there and neither `resume` nor
@@ -138,7 +138,7 @@ def sweep(
         with Store(part, study) as store, _keeping(part, journal):
             _drop_damaged(journal, store, study)
             done = before = sum(tally.points for _, tally in journal.done.values())
-            tell(done, study.size)
+            progress(done, study.size)
             todo = [chunk for chunk in range(study.chunks) if chunk not in journal.done]
             if stop_after is not None:
                 todo = todo[: max(0, -(-(stop_after - done) // study.chunk))]
@@ -147,7 +147,7 @@ def sweep(
                 tally = _tally(pieces)
                 journal.note(chunk, checksum(pieces), tally)
                 done += tally.points
-                tell(done, study.size)
+                progress(done, study.size)
             complete = done == study.size
             if complete:
                 store.sync()

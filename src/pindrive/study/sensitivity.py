@@ -279,11 +279,11 @@ def sobol(
     ranges = ranges_of(study, tolerances)
     keys = tuple(ranges.scatter)
     usual = (name for name in askable(study) if name not in LEDGER or name in study.outputs)
-    asked = tuple(dict.fromkeys(numbers)) or tuple(usual)
+    requested = tuple(dict.fromkeys(numbers)) or tuple(usual)
     if rows is None:
         rows = USUAL_ROWS_OF_SCANS if study.page else USUAL_ROWS
     varied = len(keys)
-    results = len(asked) + 2  # status and reason
+    results = len(requested) + 2  # status and reason
     each = (varied + 2) * (varied + results) + 3 * (varied + 1) * results
     of = f"{rows} rows of {each}, for {varied} keys and {results} results"
     budgets.DESIGN_VALUES.check(rows * each, of)
@@ -291,7 +291,7 @@ def sobol(
 
     def function(points: NDArray[np.float64]) -> dict[str, Any]:
         nonlocal refused
-        found, refused = evaluate_all(study, ranges, points, asked, threads, progress)
+        found, refused = evaluate_all(study, ranges, points, requested, threads, progress)
         designs = exist(found.pop("status"))
         if _SETTLED in found:
             found[_SETTLED] = np.where(designs, found[_SETTLED].astype(float), np.nan)

@@ -216,8 +216,8 @@ class Slice:
         found = names.matches(given)
         if len(found) == 1:
             return found[0]
-        told = names.suggestion(given)
-        raise ValueError(f"`{argument}` {given}: {self.path} does not vary it; {told}")
+        stated = names.suggestion(given)
+        raise ValueError(f"`{argument}` {given}: {self.path} does not vary it; {stated}")
 
     def number(self, given: str) -> str:
         """The number that is meant, if the file holds it."""
@@ -235,7 +235,7 @@ class Slice:
         return [usual if usual in self.numbers else self.numbers[0]]
 
     @property
-    def told(self) -> dict[str, float]:
+    def stated(self) -> dict[str, float]:
         """The device's values that a picture states: without a default, or other than it.
 
         Of a study of releases all that was not varied.

@@ -328,8 +328,8 @@ class Study:
         if path is None:
             with TemporaryDirectory(prefix="pindrive-") as folder:
                 target = Path(folder) / "study.nc"
-                sweep(self, target, work=work, tell=progress)
+                sweep(self, target, work=work, progress=progress)
                 return xr.load_dataset(target, engine="h5netcdf")
         target = Path(path)
-        done = sweep(self, target, resume=resume, force=force, work=work, tell=progress)
+        done = sweep(self, target, resume=resume, force=force, work=work, progress=progress)
         return done.to_dataset()
