@@ -325,7 +325,7 @@ def test_warnings_are_told_beside_the_report(device: Path) -> None:
     result = run("scan", device, "--text", "A", "--set", "sample_rate=200 Hz")
     assert result.exit_code == 0
     (line,) = result.stderr.splitlines()
-    assert line.startswith("warning: control.sample_rate = 200 Hz looks every 0.3 mm at 60 mm/s")
+    assert line.startswith("warning: control.sample_rate = 200 Hz samples every 0.3 mm at 60 mm/s")
     assert line.endswith("600 Hz sees each")
 
 
