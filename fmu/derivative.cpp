@@ -72,7 +72,7 @@ pindrive_error Instance::derivative(std::size_t unknown, const unsigned* knowns,
     along[knowns[i] - 1] = seeds[i];
   }
   if (which >
-      next_event_time) {  // of the magnet: no input changes it, and at first its residual pull alone
+      next_event_time) {  // load of the magnet: no input changes it; initially the residual pull alone
     value = which == magnet_pull
                 ? Given(variables_, values_.start.data(), along.data()).of("magnet.residual").slope
                 : 0;

@@ -270,7 +270,7 @@ pindrive_error Instance::step(double from, double size, bool may_end_early, bool
     return fail(PINDRIVE_BAD_VALUE, "a step must be finite and at least 0 s long, not %.9g s",
                 size);
   const double until = std::max(from + size, at.time);
-  do {  // what is due at the end of the step waits for the next one: a command may come first
+  do {  // an event due at the end of the step waits for the next step: a command may come first
     if (magnet_.present() && magnet_.next() <= at.time) {
       magnet_.pass(at.time);
       error = pulled(stepper_.get(), magnet_, at.time);

@@ -23,7 +23,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // The constants and formulas of pindrive.device.coil, closing, heating and electromagnet.
 constexpr double magnetic_constant = 1.25663706127e-6, copper = 1 / 58e6, copper_rise = 3.93e-3;
 constexpr double pi = 0x1.921fb54442d18p+1;
-constexpr double at_once = 0.01;  // how soon after a switching the pull is exact
+constexpr double at_once = 0.01;  // time after a switching from which the pull is exact
 
 /// Flux linkage that tends to `target`, a number of time constants later.
 double flux_after(double start, double target, double constants) {

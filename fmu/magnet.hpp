@@ -72,14 +72,14 @@ class Magnet {
   bool present_{false};
   double hold_force_{0}, residual_{0}, saturation_{0}, rise_constant_{0}, fall_constant_{0};
   double deviation_{0}, tolerance_{0}, normal_force_{0};
-  double frequency_{0}, duty_{1};  // of pulses
+  double frequency_{0}, duty_{1};  // pulses: Hz, and part
   double own_resistance_{0}, outer_resistance_{0}, power_{0}, cooling_resistance_{0};
   double heat_capacity_{0};  // 0: the temperature is not followed
   double edge_{0};           // the flux linkage beyond which the gap is closed
   double opened_{1};         // the inductance while it is open over that while it is closed
-  std::vector<Row> steps_;   // of the voltage: a part of the full one
+  std::vector<Row> steps_;   // voltage over time, as a part of the full voltage
   std::vector<double> rising_, falling_;
-  std::vector<Row> rows_;  // of the pull since then
+  std::vector<Row> rows_;  // pull since the last switching
   CoilState state_;
 };
 

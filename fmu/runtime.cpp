@@ -1,4 +1,4 @@
-// What the headers of the C++ library need of its runtime. The unit carries no more of that: it would be as large
+// Runtime functions that the headers of the C++ library need. The whole runtime would be as large
 // again as all else, and no exception may pass through an importer. Without memory, the process ends.
 #include <cstdlib>
 #include <new>

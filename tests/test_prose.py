@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import ast
+import io
 import re
+import tokenize
 from collections.abc import Callable, Iterator
 from itertools import pairwise
 from pathlib import Path
@@ -92,6 +94,13 @@ CPP = [
     for folder in ("include", "capi", "fmu", "src", "tests")
     for path in sorted((ROOT / folder).rglob("*.[ch]pp"))
 ]
+SOURCES = {
+    "src": {".py", ".cpp", ".hpp"},
+    "include": {".hpp"},
+    "capi": {".cpp", ".hpp"},
+    "fmu": {".cpp", ".hpp"},
+    "studio/src": {".ts"},
+}
 TYPESCRIPT = sorted((ROOT / "studio" / "src").rglob("*.ts"))
 
 
@@ -110,6 +119,40 @@ def test_summaries_neither_begin_with_a_question_word_nor_lean_on_a_pronoun(
         count = sum(map(len, found.values()))
         assert sum(map(len, wrong.values())) <= share * count, wrong
         assert not {path: w for path, w in wrong.items() if len(w) > 0.1 * len(found[path])}
+
+
+COMMENT = re.compile(
+    r"^(what|how|whether|where|which|when|why|whose|of|by|as|to|that|likewise|it|its|they|their"
+    r"|the same|those|these|else)\b",
+    re.IGNORECASE,
+)
+
+
+def comments(path: Path) -> Iterator[str]:
+    """First lines of the comments of a file, of Python, C++ or TypeScript."""
+    text = path.read_text("utf-8")
+    if path.suffix == ".py":
+        for token in tokenize.generate_tokens(io.StringIO(text).readline):
+            alone = token.line.lstrip().startswith("#")
+            above = text.split("\n")[token.start[0] - 2].lstrip()[:1] if token.start[0] > 1 else ""
+            if token.type == tokenize.COMMENT and not (alone and above == "#"):
+                yield token.string.lstrip("# ")
+        return
+    above = ""
+    for line in text.split("\n"):
+        match = re.search(r"(?<![:/\"])//(?!/)\s*(.*)", line)
+        alone = line.lstrip().startswith("//")
+        if match and not (alone and above.startswith("//")):
+            yield match[1]
+        above = line.lstrip()
+
+
+def test_comments_begin_with_their_subject() -> None:
+    folders = [(ROOT / name, suffixes) for name, suffixes in SOURCES.items()]
+    paths = [p for folder, suffixes in folders for p in folder.rglob("*") if p.suffix in suffixes]
+    found = [(path, text) for path in paths for text in comments(path)]
+    assert len(found) > 600
+    assert [(path, text) for path, text in found if COMMENT.match(text)] == []
 
 
 def test_descriptions_of_arguments_are_noun_phrases() -> None:

@@ -91,7 +91,7 @@ void points(const Inputs& inputs, std::size_t first, std::size_t count,
   const std::size_t axes = inputs[0].ndim();
   const std::size_t along = axes == 0 ? 1 : inputs[0].shape(axes - 1);
   for (std::size_t done = 0; done < count;) {
-    // As far as the last axis goes.
+    // Range of the last axis.
     std::array<std::int64_t, input_count> offset{};
     std::size_t rest = first + done;
     for (std::size_t axis = axes; axis-- > 0;) {
@@ -163,7 +163,7 @@ class Batch {
     for (bool& each : varies_) each = !each;
     constexpr double infinite = std::numeric_limits<double>::infinity();
     ends_.fill({infinite, -infinite});
-    // What the load multiplies is written anew for each block, unless it stays as it is.
+    // The factors of the load are written for each block, unless they are constant.
     if (varies_[plate_load] || (size() > 0 && *inputs[plate_load].data() != 1.0))
       varies_[plate_kinetic] = varies_[plate_static] = varies_[plate_load] = true;
     for (std::size_t k = 0; k < input_count; ++k)
@@ -218,7 +218,7 @@ class Batch {
   struct Space {
     signed char broken[Block::capacity];
     Block block;
-    double rest_time[Block::capacity], events[Block::capacity];  // where no row is asked for
+    double rest_time[Block::capacity], events[Block::capacity];  // without requested rows
     std::vector<pd::Segment<double>> segments;
   };
 
@@ -317,7 +317,7 @@ class Batch {
 
   /// The load of the plate multiplies its friction forces.
   void press(Block& block, std::size_t count) const {
-    if (!varies_[plate_load]) return;  // it is 1
+    if (!varies_[plate_load]) return;  // the load is 1
     for (const std::size_t force : {plate_kinetic, plate_static})
       for (std::size_t i = 0; i < count; ++i) block.input[force][i] *= block.input[plate_load][i];
   }

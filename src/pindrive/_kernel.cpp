@@ -1,4 +1,4 @@
-// Which widths of the kernel this processor runs.
+// Widths of the kernel that this processor runs.
 #include "_kernel.hpp"
 
 #if defined(_MSC_VER) && defined(_M_X64)

@@ -110,7 +110,7 @@ bool judge(const pk::KernelBlock& block, int count, const Extremes* of_inputs, c
 }
 
 Extremes extremes(const double* values, std::size_t count) {
-  constexpr std::size_t width = PINDRIVE_WIDTH, packs = 4;  // which do not wait for each other
+  constexpr std::size_t width = PINDRIVE_WIDTH, packs = 4;  // independent of each other
   constexpr double infinite = __builtin_inf(), none = __builtin_nan("");
   V least[packs], largest[packs];
   pk::MaskOf<V> lost[packs];

@@ -27,7 +27,7 @@ const PANELS: readonly Panel[] = [
   },
   { title: "Skin stretch", symbol: "s", names: ["stretch"], channel: null },
 ];
-const POINTS = 4000; // of a recording that one plot draws
+const POINTS = 4000; // samples of a recording in one plot
 
 export interface ChartActions {
   readonly cursor: (time: number) => void;

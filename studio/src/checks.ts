@@ -1,4 +1,4 @@
-// What is wrong with values that are each in range: rows, contacts, the skin, the drive together.
+// Contradictions between values in range: rows, contacts, skin, drive.
 import type { Rows } from "./core";
 import {
   byCoefficient,

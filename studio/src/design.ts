@@ -61,7 +61,7 @@ export function coreInput(values: Values): Input {
   const profiles: Record<string, Rows> = {};
   for (const name of TABLES.overTime) {
     const value = valueFor(values, `motion.${name}`)!;
-    // One that never changes is a constant, as it is in Python.
+    // An input that never changes is a constant, as in Python.
     const changes = isRows(value) && value.some(([, y]) => y !== value[0]![1]);
     profiles[name] = changes ? value : [[0, isRows(value) ? value[0]![1] : value]];
   }
@@ -137,7 +137,7 @@ export function direction(values: Values, key: string, part: number): Input {
   const relative: Record<string, number> = { [key]: part };
   const of = (name: string): number => relative[name] ?? 0;
   const input = coreInput(values);
-  // What follows from coefficients is known once these have followed one another.
+  // Forces follow from coefficients after the coefficients have followed one another.
   const follow = (pressed: boolean): void => {
     for (const [other, quantity] of DRIVE) {
       const [over, under] = quantity.follows ?? [];
@@ -165,7 +165,7 @@ export function direction(values: Values, key: string, part: number): Input {
     const coefficients = byCoefficient(values, contact);
     const [ofKinetic, ofStatic, ofCurve] = frictionKeys(contact, coefficients);
     const pressed = coefficients ? pressRate(values, contact, of) : 0;
-    // Of a curve the first force is the kinetic friction; without static friction that is it, too.
+    // The first force of a curve is kinetic friction and, without static friction, also the static limit.
     const kinetic = of(curve ? ofCurve : ofKinetic) + pressed;
     const still = values[ofStatic] === undefined ? kinetic : of(ofStatic) + pressed;
     if (curve) curves[contact] = scaled(curve, kinetic);

@@ -14,7 +14,7 @@ export interface FitResult {
   readonly steps: number;
 }
 
-const SAMPLES = 2000; // of a recording that are fitted
+const SAMPLES = 2000; // samples of a recording that are fitted
 const STEPS = 40;
 const SMALL = 1e-10;
 

@@ -1,4 +1,4 @@
-// Which number the map and the bars are of, over which parameters, and the specification.
+// Controls of map and bars: number, parameters, and specification.
 import { isRows } from "./design";
 import { button, h, option, refill } from "./dom";
 import { nameOf } from "./results";

@@ -87,7 +87,7 @@ export class MapView {
       const at = 4 * ((SIZE - 1 - Math.floor(p / SIZE)) * SIZE + (p % SIZE));
       const missing = Number.isNaN(value);
       const color = missing ? [128, 128, 128] : mapColor((value - lower) / span);
-      // Where the specification is not met: paler, in stripes of the grid.
+      // Regions outside of the specification are paler, in stripes of the grid.
       const striped = ((p % SIZE) + Math.floor(p / SIZE)) % 4 < 2;
       const outside = this.shown?.limited === true && !result.met[p];
       for (let c = 0; c < 3; ++c) pixels.data[at + c] = color[c]!;
@@ -172,7 +172,7 @@ export class MapView {
     const across = align === "center";
     context.textAlign = align;
     context.textBaseline = across ? "top" : "middle";
-    let end = -Infinity; // of the last text along a narrow axis, which the next must not touch
+    let end = -Infinity; // end of the last text along a narrow axis
     for (const value of axisTicks(range)) {
       const words = tickText(value * quantity.displayScale);
       const [x, y] = place(partOf(range, value));

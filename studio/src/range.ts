@@ -1,4 +1,4 @@
-// Where the slider of a quantity begins and ends, and how its places stand for values.
+// Range of the slider of a quantity, and the values of its positions.
 import type { Quantity } from "./table";
 
 export interface Range {

@@ -1,4 +1,4 @@
-// What the plots show of motions: columns at common times, with both limits at each event.
+// Samples of motions for plots: columns at common times, with both limits at each event.
 
 import { problemOf } from "./checks";
 import {

@@ -1,4 +1,4 @@
-// What the page shows at one time: the state, and what was computed of it.
+// View of the page: its state and the computed results.
 import type { Values } from "./friction";
 import type { Recording } from "./recording";
 import type { ContactName, Curves, EventKind, Simulated } from "./sample";

@@ -1,4 +1,4 @@
-// What of the whole device does not fit together, though each value is in range: magnet, control, array.
+// Contradictions of the whole device between values in range: magnet, control, array.
 import { Refusal } from "./checks";
 import type { Rows } from "./core";
 import { type Found, frictionOf } from "./friction";

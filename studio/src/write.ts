@@ -1,4 +1,4 @@
-// What the page writes: device files (TOML), samples and events (CSV).
+// Files that the page writes: device files (TOML), samples and events (CSV).
 
 import type { QuantityName } from "./core";
 import { type Design, isRows } from "./design";

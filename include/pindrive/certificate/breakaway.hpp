@@ -36,7 +36,7 @@ T spare_stick_limit(const Drive<T>& drive, const Mode& mode, const Beginning<T>&
   const T pull = drive.damping * now.v + drive.stiffness * now.x - now.force;
   const T inertia = drive.mass * now.plate_velocity.rate;
   if (plate && finger && inertia == 0) return std::max(at_plate + at_finger - abs(pull), T(0));
-  // Each alone. Where both part, the one that does not stick slips the way in which they part.
+  // Each contact alone. If the surfaces part, the slipping contact slips in the direction of parting.
   const int side = inertia > 0 ? 1 : -1;
   const T of_finger =
       plate && finger ? -side * drive.finger.kinetic * now.finger_load : now.finger_force;
@@ -114,7 +114,7 @@ class Breakaways {
     // A given velocity is exact: next to that of the plate, the pin slides.
     const T still = segment.segment.begin > 0 ? T(still_velocity) * segment.scales.v : T(0);
     const bool with_plate = abs(s.v - plate_velocity.value) <= still;
-    // Where both sliding velocities are zero, a plate's direction is that in which the pin sets out, or stays.
+    // With both sliding velocities zero, the direction of the plate's friction is that of the relative acceleration.
     const T drags = plate_velocity.rate, turns = hypot(drags, segment.across.rate);
     if (segment.oblique() && turns > 0 && with_plate && abs(segment.across.value) <= still)
       s.plate_force = segment.load.value * kinetic_friction(drive.plate, T(0)) * drags / turns;
@@ -133,7 +133,7 @@ class Breakaways {
                                             rests_on_plate, rests_on_finger, plate, finger}) -
              unsure;
     };
-    // What slid before and slides on is at rest or not where its speed is rounding.
+    // A contact that slides before and after may be at rest or not if its speed is rounding.
     T spare = spare_of(on_plate, on_finger);
     if (on_plate && !plate) spare = std::min(spare, spare_of(false, on_finger));
     if (on_finger && !finger) spare = std::min(spare, spare_of(on_plate, false));

@@ -377,7 +377,7 @@ class Certifier {
     using std::abs;
     const Event event = before.event;
     worst(result_.continuity, left.x - right.x, scales_.x);
-    if (stops(event.stop) && drive_.stops.rigid()) {  // it takes the velocity, which was towards it
+    if (stops(event.stop) && drive_.stops.rigid()) {  // the stop takes the velocity towards it
       worst(result_.continuity, right.v, scales_.v);
       worst(result_.sliding_sign, std::min(left.v * (left.x < 0 ? -1 : 1), T(0)), scales_.v);
       worst(result_.continuity, abs(left.x) - drive_.stops.travel, scales_.x);

@@ -49,7 +49,7 @@ T root_between(const Oscillator<T>& oscillator, const Path<T>& path, T low, T hi
     T next = tau - (near ? newton * (1 - bend) / (1 - 2 * bend + twist) : newton);
     if (abs(newton) <= root_error<T> * tau) return next;
     if (near && next > low && next < high) {
-      // What such a step leaves is of third order in how far the path is from straight.
+      // The error of such a step is of third order in the curvature of the path.
       const T curved =
           std::max({bend * bend, abs(twist), oscillator.hurry_squared() * newton * newton});
       if (8 * curved * sqrt(curved) * abs(newton) <= root_error<T> * tau) return next;

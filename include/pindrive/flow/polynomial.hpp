@@ -78,7 +78,7 @@ std::array<Real, series_order + 2> bernstein(const std::array<Real, series_order
                                              int degree) {
   std::array<Real, series_order + 2> b{};
   for (int i = 0; i <= degree; ++i) {
-    Real ratio{1};  // of binomials: (i over j) / (degree over j)
+    Real ratio{1};  // ratios of binomials: (i over j) / (degree over j)
     for (int j = 0; j <= i; ++j) {
       b[i] += ratio * powers[j];
       ratio *= Real(i - j) / Real(degree - j);
@@ -156,7 +156,7 @@ class SignIsolation {
       return search(lower, low, half, visit) && search(upper, low + half, half, visit);
     }
     if (beyond(b[degree_])) return change(root(low, low + width), low + width, visit);
-    left_ = low + width;  // what changes twice in so short a time is a touch, to rounding
+    left_ = low + width;  // two changes of sign in so short a time are a touch, to rounding
     return true;
   }
 

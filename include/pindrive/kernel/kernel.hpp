@@ -198,7 +198,7 @@ class Round {
     const V from = x_ - middle, first = absolute(from), second = w_.shrink * first - loss;
     const Mask forward = from < zero, moves = still_ & (stick < first);
 
-    // Of all half turns forward the first one is the fastest: where it does not meet the plate, none does.
+    // The first forward half turn is the fastest: if it does not meet the plate, none does.
     const V ahead = select(forward, first, second), fastest = w_.extreme * (ahead - friction);
     const Mask comes = moves & (stick < ahead);
     give_up(comes & grazes(fastest));
@@ -250,7 +250,7 @@ class Round {
       numbers.plate_slid = numbers.plate_slid + select(some, r_.vp * time - (position - x_), zero);
       numbers.plate_peak = select(some, larger(numbers.plate_peak, r_.fp), numbers.plate_peak);
       numbers.moved = select(some, one, numbers.moved);
-      // What moves on after one half turn came back from a turn outside.
+      // A pin that moves on after one half turn came back from a turn outside.
       progress_.settling.remember(some & left, x_, t_, x_ - r_.outside, r_.outside, one);
       last_ = {from, t_, select(on & !left, n, zero), w};
     }
@@ -258,7 +258,7 @@ class Round {
     pass_time(on, time);
     resting_ = on & !left;
     const Mask moves_on = on & left;
-    v_ = select(moves_on, zero, v_);  // which may have been −0
+    v_ = select(moves_on, zero, v_);  // removes −0
     centre_ = select(moves_on, select(x_ < middle, r_.between, r_.outside), centre_);
     acceleration_ = select(moves_on, zero - w_.omega0_squared * (x_ - centre_), acceleration_);
     late_ = late_ | (on & late);

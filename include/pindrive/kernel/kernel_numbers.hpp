@@ -100,7 +100,8 @@ struct TransientNumbers {
          select(returned, zero - outward * return_speed * r.mirror, V(none)));
     give(Name::return_velocity_time, select(returned, return_time, V(none)));
     give(Name::first_reversal_time, first_reversal);
-    const V shown = larger(V(1.25) * time, period);  // of what is followed until it rests
+    const V shown =
+        larger(V(1.25) * time, period);  // numbers of a motion that is followed until rest
     const V duration = select(r.until < V(__builtin_inf()), r.until, shown);
     const V held = absolute(r.fp - r.stiffness * position);
     give(Name::end_time, select(resting, time, duration));

@@ -63,7 +63,7 @@ class KernelSettling {
     V time = entry_.time, side = entry_.side, turning = entry_.distance;
     V distance = target - entry_.centre;
     const Mask entered = entry_.start == entry_.start;
-    // Of the half turns, what is an even number before the end is on its side.
+    // Half turns at an even distance from the end are on its side.
     const V friction = r.ff * r.flexibility, loss = friction * (one + r.swing.shrink);
     V w = absolute(last.from), end = last.end * one_or_minus_one(last.count), n = zero;
     V from = zero, far = w, near = end;

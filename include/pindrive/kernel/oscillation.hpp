@@ -22,7 +22,7 @@ PastTurn<V> past_turn(const V& part, const V& rho) {
   using Mask = MaskOf<V>;
   const V zero(0.0), pi(0x1.921fb54442d18p+1);
   const V scale = V(1.0) + rho * rho, lack = larger(V(1.0) - part, zero);
-  // Of the first terms of its power series.
+  // From the first terms of the power series.
   const V arc = root(V(2.0) * lack / scale);
   const V bend_of_arc = rho * rho * V(11.0 / 72) + (V(1.0 / 24) + arc * arc * V(3.0 / 640));
   const V arched = arc * (V(1.0) + arc * (rho * V(1.0 / 3) + arc * bend_of_arc));

@@ -153,7 +153,7 @@ class Profile {
     if (i == 0) return {first(), T(0)};
     if (i == count_) return {values_[count_ - 1], T(0)};
     const T rate = (values_[i] - values_[i - 1]) / (times_[i] - times_[i - 1]);
-    const T after = t - times_[i - 1];  // what lies after a row by the rounding of a time is at it
+    const T after = t - times_[i - 1];  // a time after a row within rounding is at the row
     return {after > detail::rounding<T> * t ? values_[i - 1] + rate * after : values_[i - 1], rate};
   }
   /// First breakpoint after time t, s; infinite without one.

@@ -81,7 +81,7 @@ class ContactMeasurement {
     };
     if (!skin())
       finger(along.velocity(), distance);
-    else {  // its slider is slower than the pin by what the skin stretches
+    else {  // the slider is slower than the pin by the stretch rate
       const T compliance = 1 / motion_.drive().finger.stiffness;
       const T stretched = along.at(along.finger_force(), from) - along.at(along.finger_force(), to);
       finger(along.velocity() + compliance * along.derivative(along.finger_force()),

@@ -39,7 +39,7 @@ class SignChanges {
     const T terms = along.terms(path, span);
     if (more)
       along.each_root(path, start, span, [&](T tau) {
-        // What comes to zero where the segment ends, to rounding, is judged by how the next one begins.
+        // A zero at the end of the segment, to rounding, is decided by the start of the next segment.
         const T rest = span - tau, rate = along.at(slope, tau);
         const bool soon = along.hurry_squared() * rest * rest <= T(at_end * at_end);
         if (rest <= rounding<T> * (begin + span) ||
@@ -87,7 +87,7 @@ void extrema(const Motion<T>& motion, Quantity quantity, T until, Visitor&& visi
   const Drive<T>& drive = motion.drive();
   detail::SignChanges<T> changes;
   bool began = false, more = true, struck = false;  // a rigid stop, where the last segment ended
-  T time{0}, end{0};  // of the last visit; value where the last segment ended
+  T time{0}, end{0};  // time of the last visit; value at the end of the last segment
   const auto add = [&](T at, T value) {
     time = at;
     if (quantity == Quantity::position) value = drive.stops.within(value);

@@ -125,7 +125,7 @@ Ledger<T> energy_ledger(const Motion<T>& motion, T duration, GoOn go_on = {}) {
       }
       ledger.stop_dissipated +=
           times * detail::lost_at_stop(motion, along, segment, from, to, v_squared / times);
-      // What goes in and comes out again within a segment leaves its rounding in their sum: by Schwarz's
+      // Energy that enters and leaves within a segment leaves its rounding in the sum: by Schwarz's
       // inequality no part of it is larger.
       ledger.exchanged += abs(plate_work) + largest * sqrt((to - from) * times * v_squared);
     });

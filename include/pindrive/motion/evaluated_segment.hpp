@@ -152,7 +152,7 @@ class EvaluatedSegment {
   T unsure_slider() const {
     if (!drive.finger.compliant() || finger_load.rate == 0) return T(0);
     const auto bend = along.derivative(finger_rate);
-    T most{0}, terms{0};  // of its rate, and of the force, whose parts may cancel
+    T most{0}, terms{0};  // rounding of the rate, and of the force, whose parts may cancel
     for (const T tau : {T(0), span}) {
       const auto now = along.moment(tau);
       const T faster = along.at(acceleration, now) + along.at(bend, now) / drive.finger.stiffness;

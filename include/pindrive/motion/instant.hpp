@@ -29,12 +29,12 @@ class Instant {
     const T pull = e.force.value - e.damping * velocity_ - e.stiffness * position_ - skin;
     const T plate = is_slip(mode.plate) ? plate_slip(e, pull) : T(0);
     acceleration_ = e.held ? surface.rate : (pull + plate) / e.mass;
-    const T carried = e.mass * acceleration_ - pull - plate;  // by what holds the pin
+    const T carried = e.mass * acceleration_ - pull - plate;  // force of the holding contact
     const bool plate_holds = mode.plate == ContactState::stick && !at_stop;
     const bool finger_holds = mode.finger == ContactState::stick && !at_stop;
     friction_.plate = plate_holds ? carried : plate;
     if (finger_holds && !plate_holds) friction_.finger = carried;
-    if (finger_holds && plate_holds) {  // they share as in friction_along()
+    if (finger_holds && plate_holds) {  // shared as in friction_along()
       const T at_plate = drive.plate.static_limit * inputs.plate_load.value;
       const T at_finger = drive.finger.static_limit * inputs.finger_load.value;
       const T part = at_plate > 0 ? at_plate / (at_plate + at_finger) : T(0);
@@ -107,7 +107,7 @@ detail::State<T> released(const Drive<T>& drive, const Mode& mode, const InputLi
   if (!detail::SeriesMode<T>(drive, mode, inputs).has_slider_state()) return state;
   const int slid = finger.branch_of(speed);
   const Branch<T> branch = finger.branch(mode.finger_branch);
-  // Where its curve falls a slider goes on at once to another speed, of the same friction.
+  // On a falling curve a slider jumps to another speed with equal friction.
   const T asked = abs(state.skin) / load - branch.force;
   state.slider_velocity = slid == mode.finger_branch && isnan(stretch)
                               ? state.v

@@ -177,7 +177,7 @@ class Motion {
   template <class Visitor>
   void expanded(T from, T to, Visitor&& visit) const {
     using std::floor;
-    T round{-1};  // as simulated
+    T round{-1};  // simulated part
     if (outcome_.cycles() && from > outcome_.until)
       round = std::max(floor((from - outcome_.until) / outcome_.period) - 1, T(-1));
     do {

@@ -57,7 +57,7 @@ inline constexpr int exact_over = 8;
 /// is none, grow with time.
 template <class T, class Function>
 T panels(const Oscillator<T>& oscillator, T to, Function&& f) {
-  // Where panels end says nothing of the integral: plain numbers, as rates have a cusp at critical
+  // The ends of panels do not affect the integral: plain numbers, as rates have a cusp at critical
   // damping, and no derivative there.
   const T quick = exact_over / plain(oscillator.fastest_rate());
   T sum{0};

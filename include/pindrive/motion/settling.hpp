@@ -33,11 +33,11 @@ class Settling {
     T size = abs(x_end);
     for (const Segment<T>& segment : motion_)
       size = std::max(size, abs(segment.flow.position.start));
-    // What turns at the edge of the band to its error stays within.
+    // A motion that turns at the edge of the band, to its error, stays within.
     const bool by_criterion = std::prev(motion_.end())->eliminated == EliminatedPart::motion;
     const T part = by_criterion ? T(band_error_at_rest) : band_error<T>;
     const T error = part * size;
-    const bool returns = !(abs(way) > error);  // to where it began: the band has no width
+    const bool returns = !(abs(way) > error);  // ends at its start: the band has no width
     const bool rests = motion_.outcome().end == End::resting;
     const T since =
         returns && !rests ? never : last_outside(x_end, returns ? error : band * abs(way) + error);

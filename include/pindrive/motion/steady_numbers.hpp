@@ -90,7 +90,8 @@ class SteadyMeasurement {
       T from{0};
       changes.follow(along, path, path, begin, span, [&](T time, T, int side) {
         if (side < 0) return true;
-        const T tau = std::max(time - begin, from);  // it may have come to the centre before
+        const T tau =
+            std::max(time - begin, from);  // an earlier pass through the centre is possible
         add_position(round, along, from, tau);
         from = tau;
         if (found.crossings > 0) {

@@ -156,7 +156,7 @@ class Measurement {
       const T from = std::max(result.peak_time - segment.begin, T(0));
       const T to = std::min(segment.end, until) - segment.begin;
       if (from > to || (from > 0 && from == to)) continue;
-      // Where it ends the next mode begins, with the velocity that the event has set exactly.
+      // At its end the next mode begins, with the velocity that the event has set exactly.
       const bool ends = segment.end <= until && &segment + 1 != motion_.end();
       const auto compare = [&](T tau, T velocity) {
         if (-outward * velocity <= 0 || (ends && tau == to && !stops(segment.event.stop))) return;

@@ -87,7 +87,7 @@ Circular<V> quarters_and_rest(const BitsOf<V>& quarters, const V& r, const V& lo
   const V cosine =
       whole + (((V(1.0) - whole) - half) + (z * z * polynomial(z, of_cosine) - r * low));
 
-  // By the number of quarters they change places and signs.
+  // The number of quarters exchanges sine and cosine and changes signs.
   const Bits odd = Bits(0) - (quarters & Bits(1));
   const Bits exchanged = (bits(sine) ^ bits(cosine)) & odd;
   const Bits of_sine_sign = (quarters & Bits(2)) << 62;
@@ -117,7 +117,7 @@ Circular<V> sine_and_cosine(const V& angle) {
 template <class V>
 Circular<V> sine_and_cosine_in_turn(const V& angle) {
   const Nearest<V> turns(angle * V(0x1.45f306dc9c883p-1));
-  // Of π/2 the first part has 50 bits: its products and the difference are exact.
+  // The first part of π/2 has 50 bits: its products and the difference are exact.
   const V near = angle - turns.value * V(0x1.921fb54442d18p+0);
   const V rest = turns.value * V(0x1.1a62633145c07p-54), r = near - rest;
   return quarters_and_rest(turns.low, r, (near - r) - rest);

@@ -37,7 +37,7 @@ class CreepFlow : public SeriesStep<T> {
   CreepFlow(SeriesEquation<T> e, const SeriesState<T>& start, T limit, bool within_step = false) {
     this->eliminated = EliminatedPart::of_friction;
     if (e.across.value < 0 || (e.across.value == 0 && e.across.rate < 0))
-      e.across = {-e.across.value, -e.across.rate};  // by symmetry w >= 0
+      e.across = {-e.across.value, -e.across.rate};  // symmetry: w >= 0
     acceleration_[0] = e.plate_velocity.rate;        // initial guess: acceleration of the plate
     if (e.held || e.side != 0 || !(e.load.value * e.plate_force > 0) || !balance(e, start)) return;
     Real farthest = plain(limit);
@@ -264,7 +264,7 @@ class CreepFlow : public SeriesStep<T> {
 
   T t_{0};                               // at the start
   std::array<T, N + 1> acceleration_{};  // a, in the time σ, m/s²
-  std::array<Real, N> changes_{};        // its changes in the last iteration
+  std::array<Real, N> changes_{};        // changes in the last iteration
   bool converged_{false}, holds_{false};
 };
 

@@ -209,7 +209,7 @@ class SeriesMode {
     Polynomial<T> above = speed, below = T(-1) * speed;
     above += Line<T>{-range.from, T(0)};
     below += Line<T>{range.to, T(0)};
-    if (!oblique || range.from > 0)  // else the transverse velocity keeps the speed positive
+    if (!oblique || range.from > 0)  // otherwise the transverse velocity keeps the speed positive
       found.add(above, at == ActiveGuard::lower, ActiveGuard::lower, is_plate, 0);
     if (range.to < never)
       found.add(below, at == ActiveGuard::upper, ActiveGuard::upper, is_plate, 0);

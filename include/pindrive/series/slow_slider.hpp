@@ -149,7 +149,7 @@ class SlowSliderFlow : public SeriesFlow<T> {
   }
 
   std::array<T, N + 1> stretching_{};  // (φ y)', in the time σ
-  std::array<Real, N + 1> changes_{};  // its changes in the last iteration
+  std::array<Real, N + 1> changes_{};  // changes in the last iteration
   bool holds_{false};
 };
 

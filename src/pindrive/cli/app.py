@@ -54,7 +54,7 @@ def main() -> None:
     if status == INTERRUPTED:
         from pindrive.study.workers import stop_at_once
 
-        gc.collect()  # what an exception held is closed: no file is left half written
+        gc.collect()  # close what the exception holds, so that no file is left half written
         stop_at_once(INTERRUPTED)  # threads and processes at work would be waited for
     sys.exit(status)
 

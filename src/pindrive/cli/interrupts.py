@@ -22,7 +22,7 @@ STOPPED = "stopped; nothing was written"
 
 _UNINTERRUPTIBLE = (
     "importlib._bootstrap",
-    "_frozen_importlib",  # its name until importlib is imported
+    "_frozen_importlib",  # name until importlib is imported
     "multiprocessing",
     "scipy.stats._qmc",  # calls Python from functions that cannot raise
 )

@@ -136,7 +136,7 @@ class Current:
         left = np.exp(-np.maximum(times - self.begins[i], 0.0) / self.constants[i])
         target = self.targets[i]
         return np.where(
-            target == 1.0,  # to the bit 1 where it is reached
+            target == 1.0,  # exactly 1 where it is reached
             1.0 - (1.0 - self.starts[i]) * left,
             target + (self.starts[i] - target) * left,
         )
@@ -203,7 +203,9 @@ class Pulses:
             return times, on
         if times[:1] == begin:  # a pulse that continues is no switching
             return times[1:], on[1:]
-        return np.concatenate([[begin], times]), np.concatenate([[False], on])  # it ends there
+        return np.concatenate([[begin], times]), np.concatenate(
+            [[False], on]
+        )  # the piece ends there
 
     def steady(
         self, rise_constant: float, fall_constant: float, closing: Closing

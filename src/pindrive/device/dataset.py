@@ -168,7 +168,7 @@ def _columns(scan: Scan, pin: PinScan, t: NDArray[np.float64]) -> dict[str, NDAr
     """Return the state of one pin at times on the path's clock (s, shape (n,))."""
     found: dict[str, NDArray[Any]] = columns(pin.motion, pin.since(t))
     del found["time"]
-    found.pop("plate_velocity", None)  # that of all pins
+    found.pop("plate_velocity", None)  # begin of all pins
     return found | {
         "luminance": scan.scene.at(*scan.spot(pin.number, t).T),
         "command": pin.commands.on(t),

@@ -105,7 +105,7 @@ class Electromagnet:
         if self.steps is not None and self.pwm_frequency is not None:
             required = "left out where pwm_frequency gives pulses"
             raise ValueError(refusal("voltage", required, "both"))
-        _ = self.closing  # each force in range, yet it may never close or open
+        _ = self.closing  # each force is in range, but the gap may never close or open
 
     @classmethod
     def from_times(

@@ -187,7 +187,7 @@ class _Pieces:
         """Begin of each piece, and end of the last, s."""
         duration = self.motion.duration
         ends = np.array([segment.end for segment in self.motion.segments])
-        if ends[-1] < duration:  # of a cycle the segments hold one round
+        if ends[-1] < duration:  # the segments of a cycle cover one period
             period = self.motion.ending.period
             round_ = ends[ends > ends[-1] - period]
             shifts = period * np.arange(1.0, np.ceil((duration - ends[-1]) / period) + 1.0)

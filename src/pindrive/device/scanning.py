@@ -186,7 +186,7 @@ class PinScan:
         velocity = self.motion.velocity(lasts, "left")
         # a rigid stop that is struck at the end has taken the velocity: the skin grips as it was
         strikes = abs(position) == drive.rigid_travel and position * velocity > 0.0
-        # as its touch decreases, skin slips under a pin at rest too, and keeps a stretch
+        # under a falling touch skin also slips under a pin at rest, and keeps a stretch
         grips = (last.finger == 0 or strikes or velocity == 0.0) and not drive.finger.rigid
         return PinState(
             position=position,
@@ -443,7 +443,7 @@ def scan(
             budgets.SEGMENTS.check(segments, f"after {done} of {len(pins)} pins")
             if progress:
                 progress(done, len(pins))
-    finally:  # what has not begun never does, after an error or Ctrl-C
+    finally:  # after an error or Ctrl-C no further pin begins
         pool.shutdown(wait=False, cancel_futures=True)
     return Scan(
         device=whole,
@@ -536,7 +536,7 @@ def _load(
         return device.load(device.magnet.residual), before
     times, pull = device.magnet.pull_rows(current, path.end, before.pull)
     spans = commanded_spans(commands, before, path.begin, path.end)
-    last = max(0, int(np.searchsorted(current.begins, path.end)) - 1)  # its gap may open later
+    last = max(0, int(np.searchsorted(current.begins, path.end)) - 1)  # the gap may open later
     since = float(current.begins[last])
     after = CoilState(
         since,

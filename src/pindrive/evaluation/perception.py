@@ -463,7 +463,7 @@ class EvaluatedPin:
             (low, high, float(x(high) - x(low)), self._puller(low, high))
             for low, high in self.trajectory.swings(x, begin, end)
         ]
-        heights: dict[int, float] = {}  # of the line for which each pull was: its highest swing
+        heights: dict[int, float] = {}  # highest swing of each pull, by its line
         for _, _, height, k in swings:
             if k is not None:
                 heights[k] = max(heights.get(k, 0.0), height)

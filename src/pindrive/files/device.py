@@ -408,7 +408,7 @@ def _assembled(
         raise ConfigError(problems)
     try:
         drive = drive_of(values)
-    except ValueError as error:  # each value in range, but not all together
+    except ValueError as error:  # each value is in range, but a derived value is not
         raise ConfigError([f"{source.path}: {error}"]) from None
     device = DeviceFile(
         path=source.path,

@@ -132,7 +132,7 @@ def _parameters(device: DeviceFile) -> Iterator[FmuVariable]:
     left_out = {*device.derived, *ELSEWHERE, *(f"motion.{name}" for name in inputs_of(device))}
     for contact in ("plate", "finger"):
         for kinetic, static, rows in (tuple(COEFFICIENTS), tuple(COEFFICIENTS.values())):
-            if values[f"{contact}.{rows}"] is not None:  # its first row is the kinetic friction
+            if values[f"{contact}.{rows}"] is not None:  # the first row is the kinetic friction
                 left_out.add(f"{contact}.{kinetic}")
             if values[f"{contact}.{static}"] is None:
                 values[f"{contact}.{static}"] = values[f"{contact}.{kinetic}"]
@@ -232,7 +232,7 @@ def write_fmu(device: DeviceFile, path: Path, version: int = 3) -> None:
     }
     with ZipFile(path, "w", ZIP_DEFLATED) as archive:
         for name, content in files.items():
-            entry = ZipInfo(name, (1980, 1, 1, 0, 0, 0))  # the same drive makes the same archive
+            entry = ZipInfo(name, (1980, 1, 1, 0, 0, 0))  # one drive makes one archive
             entry.compress_type, entry.external_attr = ZIP_DEFLATED, 0o644 << 16
             archive.writestr(entry, content)
 

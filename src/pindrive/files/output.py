@@ -106,7 +106,7 @@ def check_unread(path: Path, inputs: Iterable[Path], label: str = "") -> None:
 def _are_one(one: Path, other: Path) -> bool:
     try:
         return os.path.samefile(one, other)
-    except (OSError, ValueError):  # one of them is not there
+    except (OSError, ValueError):  # a file does not exist
         return os.path.realpath(one) == os.path.realpath(other)
 
 
@@ -221,7 +221,7 @@ def write_files(
                     part.write_bytes(content)
     except BaseException:
         for place in reversed(made):
-            with suppress(OSError):  # where something was written meanwhile, it stays
+            with suppress(OSError):  # a file that was written meanwhile stays
                 place.rmdir()
         raise
 

@@ -263,7 +263,7 @@ def drive_problems(values: Mapping[str, Value], place: Place) -> list[str]:
     start = ("motion.displacement", "drive.travel")
     problems.check(check_within_travel, values[start[0]], travel, stiffness, keys=start)
     load = over_time(values["motion.finger_load"])
-    assert load is not None  # it is 1 unless given
+    assert load is not None  # default 1
     if stretch is not None:
         stretch_keys = ("motion.skin_stretch", "finger.stiffness")
         problems.check(check_stretch, stretch, finger, initial(load), keys=stretch_keys)

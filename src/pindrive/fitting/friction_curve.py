@@ -154,7 +154,7 @@ def fit_friction(speed: ArrayLike, force: ArrayLike, *, rows: int | None = None)
     count = rows or min(aicc, key=lambda n: aicc[n])
     knots = next(k for k in tried if len(k) == count)
     values, errors, noise = _solved(u, f, knots)
-    residuals = (f - np.interp(u, knots, values))[np.argsort(order)]  # as recorded
+    residuals = (f - np.interp(u, knots, values))[np.argsort(order)]  # recorded order
     if noise > SMALL * float(np.mean(f)) and _are_alike(residuals):
         warnings.warn(
             f"the forces differ from the curve by {noise:.3g} N, and neighbouring samples to the "

@@ -129,7 +129,7 @@ def parameters(
 
 def key_of(name: str) -> str:
     """The key of a device file in which a parameter stands."""
-    if name == "damping_ratio":  # it is written as the damping
+    if name == "damping_ratio":  # written as the damping
         return QUANTITIES["damping"].key
     match = ROW.fullmatch(name)
     return QUANTITIES[_TABLES[match[1]] if match else name].key
@@ -164,7 +164,7 @@ def _parameter(
         channel = key.removesuffix("_offset")
         if channel != "time" and channel not in recording.channels:
             if any(channel in other.channels for other in recordings):
-                return []  # of another recording
+                return []  # belongs to another recording
             raise ValueError(refusal("free", "an offset of a recorded channel", key))
         unit = "s" if channel == "time" else CHANNELS[channel].unit
         start, allowed = 0.0, Bounds()
@@ -388,7 +388,7 @@ def _assembled(values: Mapping[str, Any], base: Any, carried: bool, duration: fl
         v = _at_zero(plate_velocity)
     if "skin_stretch" in values:
         stretch = values["skin_stretch"]
-    elif stretch == stretch and contacts[1] is not finger:  # it follows the largest
+    elif stretch == stretch and contacts[1] is not finger:  # follows the largest
         stretch = stretch / (finger[1] / finger[2]) * (contacts[1][1] / contacts[1][2])
     return (
         *(mass, stiffness, damping, *contacts, plate_velocity, load),

@@ -112,7 +112,7 @@ def search(model: Model, weights: Array, seed: int) -> tuple[Optimum, Array]:
     problem = Problem(rough, thin)
     tried = _candidates(coarse, few, seed)
     starts = _distinct(tried, problem)
-    # What sticks too early is far off from then on whatever the rest is: begin with the first part.
+    # A motion that sticks too early is far off afterwards, so the first part is fitted first.
     first = _candidates(coarse, few * _beginning(coarse), seed)
     early = Problem(rough, thin * _beginning(rough))
     starts += [

@@ -50,7 +50,7 @@ _ARGUMENTS: Final = {
     )
 }
 _STOPS: Final = {name: QUANTITIES[name] for name in ("travel", "stop_stiffness", "stop_damping")}
-# What may be given in place of friction forces, likewise.
+# Arguments in place of friction forces.
 _FORCES: Final = [name for name in COEFFICIENT_OF if not name.endswith("curve")]
 _PRESSING: Final = [n for parts in PRESSED_BY.values() for n in parts if n not in _ARGUMENTS]
 _TAKEN: Final = (
@@ -66,7 +66,7 @@ _ARGUMENT_NAMES: Final = Names(
     {name: (quantity.key,) for name, quantity in _TAKEN.items()},
     listed="docs/reference/python.md",
 )
-# What an argument is where it is left out: another one, infinite, or the usual value.
+# Value of an omitted argument: another argument, infinite, or the default.
 _SAME_AS: Final = {
     "plate_static": "plate_kinetic",
     "finger_static": "finger_kinetic",
@@ -86,7 +86,7 @@ def _interval(*sets: Bounds) -> tuple[float, float, float]:
     return least, most, beside[0] if beside else nan
 
 
-# Of the arguments, then of what they make together: in the order of the codes of `Status`.
+# Checks of the arguments, then of their combinations, in the order of the codes of `Status`.
 _BOUNDS: Final = [
     *(
         _interval(POSITIVE_OR_RIGID, OR_INFINITE)
@@ -219,7 +219,9 @@ def _followed(
         aligned[name] = aligned[_SAME_AS[name]] if name in _SAME_AS else np.array(_LEFT_OUT[name])
     spread = [np.broadcast_to(aligned[name], shape) for name in _ARGUMENTS]
     if np.isinf(aligned["duration"]).any():
-        arguments.pop("duration", None)  # what the column says instead: until the ending was seen
+        arguments.pop(
+            "duration", None
+        )  # the column then has the time until which the ending was sought
     else:
         wanted = [name for name in wanted if name != "duration"]
     computed = [_SETTLING_TIME if name == _SETTLED else name for name in wanted]

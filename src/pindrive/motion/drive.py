@@ -230,9 +230,7 @@ class Drive:
     def _check_together(self) -> None:
         """Validate what follows from the values together; coefficients become forces."""
         ratios = _TABLE.rows["damping_ratio"].limits
-        if (
-            float(f"{self.damping_ratio:.12g}") not in ratios
-        ):  # what a ratio was made from is rounded
+        if float(f"{self.damping_ratio:.12g}") not in ratios:  # the parts of a ratio are rounded
             required = f"such that the damping ratio is {ratios.words()}"
             given = f"{self.damping!r} N*s/m, which makes it {self.damping_ratio:g}"
             raise ValueError(refusal("damping", required, given))
@@ -247,7 +245,7 @@ class Drive:
                 object.__setattr__(self, label, pressed)
                 contact = pressed
             steepest = max(map(abs, slopes_of(contact.curve or ())), default=0.0)
-            if steepest > ratios.upper * self._critical_damping:  # it acts as damping does
+            if steepest > ratios.upper * self._critical_damping:  # acts as damping
                 most = f"at most {brief(ratios.upper)} times critical damping"
                 raise ValueError(refusal(f"{label} curve slope", most, f"{steepest:g} N*s/m"))
 

@@ -112,7 +112,7 @@ def _in_si(values: list[Any]) -> tuple[str, list[Any]]:
     if str not in set(map(type, values)):
         return "", values
     over_time = [quantity for quantity in _TABLE.rows.values() if quantity.rows_of == "profile"]
-    first = {quantity.unit: quantity for quantity in reversed(over_time)}  # of each unit
+    first = {quantity.unit: quantity for quantity in reversed(over_time)}  # for each unit
     units = [*dict.fromkeys(quantity.unit for quantity in over_time)]
     for unit in units:
         with suppress(UnitError):

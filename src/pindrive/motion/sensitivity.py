@@ -146,7 +146,7 @@ class Sensitivity(lazy.NotebookHtml):
         """∂t/∂p of the events of the motion, shape (parameters, events)."""
         table = _core.simulate(*self._motion.core_numbers).segments()
         plate, finger = table["plate_event"], table["finger_event"]
-        # As `Motion.events` lists them: two at one instant are one if they are alike.
+        # Events as in `Motion.events`: two equal events at one instant are one.
         count = np.where(plate == finger, plate != 0, (plate != 0) + (finger != 0).astype(int))
         count = count + (table["stop_event"] != 0)
         return np.array(
@@ -227,7 +227,7 @@ def _parting(one: _core.Motion, other: _core.Motion) -> float:
 
     def first(edge: str, *names: str) -> float:
         differ = np.any([a[name][:common] != b[name][:common] for name in names], axis=0)
-        # Of two cycles, one may have been recognised a round later.
+        # One of two cycles may have been recognised a period later.
         if edge == "end" and one.cycle_begin == other.cycle_begin == 0.0:
             differ[-1] |= len(a["end"]) != len(b["end"])
         at = np.flatnonzero(differ)
@@ -279,7 +279,7 @@ def _direction(motion: pindrive.Motion, given: str) -> tuple[CoreNumbers, float]
     for contact, (kinetic, static, _, curve) in ((3, numbers[3]), (4, numbers[4])):
         first_row = [(contact, 3, 0, 1)] if curve else []
         if not {(contact, 0), *first_row}.isdisjoint(places):
-            # What is one number to the user: kinetic friction, the curve's force at rest, and
+            # One number of the user: kinetic friction, the curve's force at rest, and
             # static friction that is not greater.
             tied = [(contact, 1)] if static == kinetic else []
             places = [(contact, 0), *first_row, *tied]

@@ -171,11 +171,11 @@ class _Optimisation:
                 break
             more = (found + self.space.population(better[None])).best(len(found.points))
             more = self._again(more) if self.space.scans else more
-            found, chosen = self._with_worst_conditions(more)  # what is asked of less found more
+            found, chosen = self._with_worst_conditions(
+                more
+            )  # the smaller search found a better design
         point, device, excess = self._as_built(found, chosen)
-        self.space = replace(
-            self.space, constraints=self.problem.constraints
-        )  # as they were written
+        self.space = replace(self.space, constraints=self.problem.constraints)  # original limits
         goals, required = self._reached(point, limits)
         feasible = all(d.excess <= 0.0 for d in required) and all(isfinite(r.value) for r in goals)
         built = share_of(excess) if excess is not None else None

@@ -158,7 +158,7 @@ def non_dominated(goals: Array) -> NDArray[np.bool_]:
     kept = np.zeros(len(goals), np.bool_)
     order = np.lexsort(goals.T[::-1])
     front = np.empty((0, goals.shape[1]))
-    for i in order:  # one that comes later in this order dominates none before it
+    for i in order:  # in this order no point dominates an earlier one
         point = goals[i]
         if not ((front <= point).all(axis=1) & (front < point).any(axis=1)).any():
             kept[i] = True

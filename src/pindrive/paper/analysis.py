@@ -241,7 +241,7 @@ def steady_and_rest() -> Exhibit:
     rest = release(0.0, 1.0, 3.0, 0.0)
     found = batched(
         UNIT_DRIVE,
-        Release(mouse_velocity=1.0, displacement=3.0),  # where the pin breaks away: x_p - x_f
+        Release(mouse_velocity=1.0, displacement=3.0),  # start of slip: x_p - x_f
         dict(plate_kinetic=3.0 + finger, finger_kinetic=finger),
     )
     period = 2 * np.pi

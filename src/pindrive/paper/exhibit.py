@@ -50,7 +50,7 @@ class Exhibit:
         with matplotlib.style.context(STYLE, after_reset=True):
             figure = self.draw(self.data)
             for artist in figure.findobj():
-                artist.set_gid(None)  # what several artists share is no id of SVG
+                artist.set_gid(None)  # a gid of several artists is no id of SVG
             for format, about in metadata.items():
                 file = BytesIO()
                 figure.savefig(file, format=format, metadata=about, dpi=DPI)

@@ -138,7 +138,7 @@ def _write_gif(frames: Iterator[NDArray[np.uint8]], target: Path) -> None:
         palette: Image.Image | None = None
         for frame in frames:
             image = Image.fromarray(frame[..., :3])
-            if palette is None:  # one for all: still parts stay the same
+            if palette is None:  # one palette for all frames: still parts stay equal
                 palette = _palette(image)
             yield image.quantize(palette=palette, dither=Image.Dither.NONE)
 
@@ -186,7 +186,7 @@ def _write_mp4(frames: Iterator[NDArray[np.uint8]], target: Path) -> None:
                 writer.stdin.write(frame.tobytes())
             writer.stdin.close()
         except BrokenPipeError:
-            pass  # it says why below
+            pass  # the reason follows below
         said = writer.stderr.read().decode(errors="replace").strip()
     if writer.returncode:
         raise ValueError(f"ffmpeg could not write MP4: {said.splitlines()[-1] if said else ''}")

@@ -128,7 +128,7 @@ def _draw_maps(figure: Figure, panels: Sequence[Panel], row: Sequence[Axes]) -> 
         ticks: Any = MaxNLocator(_LEVELS).tick_values(low, high)
         contoured = low < high and panels[0].low is None and not is_stepped(name)
         levels = ticks[(ticks > low) & (ticks < high) & contoured]
-        if low == high:  # one colour, the middle one
+        if low == high:  # one colour: the middle
             low, high = low - 0.1 * (abs(low) or 1.0), high + 0.1 * (abs(high) or 1.0)
         norm = Normalize(low, high)
         for panel, values_shown, axes in group:

@@ -101,7 +101,7 @@ STYLE: Final[dict[str, Any]] = {
     "hatch.linewidth": 0.5,
     "agg.path.chunksize": 5000,  # a third faster with a hundred thousand points
     "svg.fonttype": "none",  # text as text
-    "svg.hashsalt": "pindrive",  # the same motion is the same file
+    "svg.hashsalt": "pindrive",  # one motion makes one file
     "pdf.fonttype": 42,  # TrueType: journals refuse Type 3
 }
 _SAVING: Final[dict[str, dict[str, Any]]] = {

@@ -29,7 +29,7 @@ _STUCK_POINTS: Final = 200
 _MOST_CLOSER: Final = 30.0
 """Largest refinement of the grid for sticking skin, which acts as a stiffer spring."""
 
-MICRON: Final = 1e6  # of stretches
+MICRON: Final = 1e6  # separate intervals
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +94,7 @@ class Trace:
         lasts = np.cumsum(sizes) - 1
         t = np.concatenate(grids)
         x, v, a = motion.position(t), motion.velocity(t), motion.acceleration(t)
-        v[lasts] = motion.velocity(t[lasts], "left")  # it jumps where a pin strikes a rigid stop
+        v[lasts] = motion.velocity(t[lasts], "left")  # jumps where a pin strikes a rigid stop
         a[lasts] = motion.acceleration(t[lasts], "left")
         s = motion.stretch(t)
         s[lasts] = motion.stretch(t[lasts], "left")

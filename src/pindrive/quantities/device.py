@@ -331,8 +331,8 @@ PIN: Final[tuple[Quantity, ...]] = (
 )
 """Results of each pin of a scan."""
 
-# One pin of a tactile mouse may be heavy. Sixteen under a finger have magnets a few millimetres
-# wide, and springs so stiff that none of them reaches the next.
+# A single pin of a tactile mouse may be heavy. Sixteen pins under a finger have magnets a few
+# millimetres wide, and springs so stiff that no pin reaches the next.
 READER: Final[dict[str, dict[str, Any]]] = {
     "drive.mass": {
         "default": 0.001,

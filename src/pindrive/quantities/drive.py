@@ -28,7 +28,7 @@ STEEL: Final = (
 )
 FINGER: Final = "ROBOMECH J. 2017, 10.1186/s40648-017-0080-8, Table 1"
 
-# What the core is given stays within 1e±12 SI, beyond any device by far. Then rates, sqrt(k/m) and
+# Inputs of the core stay within 1e±12 SI, far beyond any device. Then rates, sqrt(k/m) and
 # b/m, stay within 1e±24, forces under load below 1e24, lengths F/k below 1e36, energies k x² below
 # 1e84, and what the certificate bounds, the fifth derivative of a length, below 1e156: in doubles,
 # which end at 1e308, nothing overflows, nor does what matters vanish below 1e-308. A friction or a

@@ -255,7 +255,7 @@ def implied_links(
             continue
         value, leaders = device.values()[key], [base_value(device, k) for k in quantity.follows]
         if value is None and key in LEFT_OUT:
-            moving.add(key)  # what is left out is the leader's value in any case
+            moving.add(key)  # an omitted key has the leader's value anyway
         if (scans and key.startswith("motion.")) or not isinstance(value, float):
             continue
         if all(isinstance(leader, float) and leader for leader in leaders):

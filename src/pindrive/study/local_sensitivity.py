@@ -169,9 +169,9 @@ def _changes(study: Study, key: str, links: Mapping[str, Linked]) -> dict[str, f
             and contact.static_friction == contact.kinetic
         )
         if tied and name != key:
-            continue  # one number with the kinetic friction: the core changes it along
+            continue  # one number with the kinetic friction, which the core changes, too
         found[variable(name)] = share * base_value(study.device, name)
-        if contact and part in ("kinetic", "coefficient"):  # its curve keeps its shape
+        if contact and part in ("kinetic", "coefficient"):  # the curve keeps its shape
             rows = enumerate(contact.curve or ())
             found |= {f"{table}_curve[{i}].force": force for i, (_, force) in rows if i}
     return found

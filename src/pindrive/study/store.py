@@ -222,7 +222,7 @@ class Journal:
             self._file.close()
             ours = not isinstance(
                 error, OutputError
-            )  # else it may be another process's, just begun
+            )  # otherwise another process may have just begun
             if ours and not path.stat().st_size:
                 path.unlink()
             raise

@@ -199,7 +199,7 @@ def coefficient_range(study: Study, *, tolerances: bool) -> tuple[float, float] 
         if len(here) > 1 and zipped:
             every = study.dimensions[i].at(np.arange(study.dimensions[i].size))
             columns.append({key: every[key] for key in here})
-        else:  # each by itself; the coefficient is monotone in it, so that its ends tell
+        else:  # separately; the coefficient is monotone, so its ends suffice
             columns += [{key: np.array(axes[key].span)} for key in here]
     lengths = [len(next(iter(column.values()))) for column in columns]
     places = np.meshgrid(*(np.arange(length) for length in lengths), indexing="ij")

@@ -61,7 +61,7 @@ def stop_at_once(status: int) -> NoReturn:
     """End this process without waiting for what is under way."""
     if "multiprocessing.synchronize" not in sys.modules:  # nothing is shared with processes
         os._exit(status)
-    # Of pools that miss their processes, while they work and as this process ends.
+    # Errors of pools without their processes, during work and at the end of this process.
     threading.excepthook = lambda _: None
     sys.unraisablehook = lambda _: None
     for process in active_children():
