@@ -50,7 +50,7 @@ LIBRARY = BLOCKS["docs/c.md"][0].text.splitlines()
 """The commands that install the C interface, which a fixture runs."""
 
 
-def test_what_is_left_out_is_no_more_than_that() -> None:
+def test_truncation_is_within_its_bound() -> None:
     assert agrees("a  \nb\nc\n", "a\nb\nc\n")
     assert agrees("a\nb\nc\n", "a\n...\n")
     assert not agrees("a\nb\nc\n", "a\nc\n")
@@ -60,7 +60,7 @@ def test_what_is_left_out_is_no_more_than_that() -> None:
 
 
 @pytest.mark.parametrize("page", [page for page, found in BLOCKS.items() if found])
-def test_a_page_prints_what_it_says(
+def test_page_prints_its_text(
     page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
 ) -> None:
     """The blocks of a page run in sequence in one folder, and print the next block of text."""
@@ -78,7 +78,7 @@ def test_a_page_prints_what_it_says(
     assert bool(done.warnings) == bool(expected)
 
 
-def test_every_block_is_of_a_language_that_is_run_or_says_why_not() -> None:
+def test_every_block_is_run_or_names_a_reason() -> None:
     found = [block for page in BLOCKS.values() for block in page]
     assert {block.language for block in found if not block.reason} <= {
         *FILES,
@@ -242,9 +242,7 @@ def extension(name: str) -> ModuleType:
 
 
 @pytest.mark.parametrize("name", sorted(path.name for path in DOCS.glob("reference/*.md")))
-def test_what_is_made_of_pindrive_is_as_it_makes_it(
-    name: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_generated_files_are_current(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(DOCS / "_ext")
     page = (DOCS / "reference" / name).read_text("utf-8")
     assert page == extension("reference").whole(page), "make it anew: python3 run.py docs"
@@ -335,7 +333,7 @@ def test_calls_of_julia_are_those_of_the_header() -> None:
         (False, '<a href="https://a.example">there</a><link rel="next" href="a.html">'),
     ],
 )
-def test_what_a_page_asks_the_network_for_is_found(asks: bool, text: str) -> None:
+def test_network_requests_of_a_page_are_found(asks: bool, text: str) -> None:
     """The build of the site looks for it in every file that it made."""
     assert bool(extension("offline").requests(text, ".html")) == asks
     assert '"offline"' in (DOCS / "conf.py").read_text("utf-8")

@@ -61,7 +61,9 @@ def python(folder: Path, *arguments: str | Path) -> subprocess.CompletedProcess[
     ],
     ids=lambda value: value[0] if isinstance(value, tuple) else "",
 )
-def test_what_works_without(tmp_path: Path, command: tuple[str | Path, ...], said: str) -> None:
+def test_commands_work_without_optional_libraries(
+    tmp_path: Path, command: tuple[str | Path, ...], said: str
+) -> None:
     result = python(tmp_path, "-m", "pindrive", *command)
     assert (result.returncode, result.stderr) == (0, "")
     assert said in result.stdout
@@ -83,7 +85,7 @@ def test_what_works_without(tmp_path: Path, command: tuple[str | Path, ...], sai
     ],
     ids=lambda value: value[0] if isinstance(value, tuple) else "",
 )
-def test_what_does_not_says_what_to_install(
+def test_missing_library_names_its_installation(
     tmp_path: Path, command: tuple[str | Path, ...], line: str
 ) -> None:
     """In one line, before anything is computed or written."""
@@ -93,7 +95,7 @@ def test_what_does_not_says_what_to_install(
     assert [path.name for path in tmp_path.iterdir()] == ["hiding"]
 
 
-def test_the_same_from_python(tmp_path: Path) -> None:
+def test_python_equals_the_command(tmp_path: Path) -> None:
     program = f"""
 import pindrive
 

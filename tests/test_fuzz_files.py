@@ -74,7 +74,7 @@ def test_cases_end_well(said: tuple[str, str]) -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="it forks")
-def test_what_is_wrong_is_told(said: tuple[str, str]) -> None:
+def test_errors_are_reported(said: tuple[str, str]) -> None:
     """With a library that warns, the cases fail and report the warning."""
     assert said[1].endswith("status 1\n")
     assert ": a library warns: pindrive scan" in said[1]

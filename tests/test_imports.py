@@ -209,7 +209,7 @@ def test_a_circle_is_found_however_it_is_written(text: str) -> None:
 
 
 @pytest.mark.parametrize("line", ["def f():", "if TYPE_CHECKING:"])
-def test_what_does_not_run_at_import_is_no_circle(line: str) -> None:
+def test_lazy_imports_are_no_circle(line: str) -> None:
     files = {
         "pindrive.a": f"{line}\n    from pindrive.b import x",
         "pindrive.b": "from pindrive.a import y",

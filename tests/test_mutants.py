@@ -44,7 +44,7 @@ def test_a_mutant_that_is_none_is_an_error() -> None:
     ]
 
 
-def test_what_is_spoiled_dies_and_what_is_not_lives(runner: Runner) -> None:
+def test_mutants_fail_and_the_original_passes(runner: Runner) -> None:
     assert runner.control([UNITS]) == ""
     verdict, said = runner.verdict(PERCENT)
     assert (verdict, "FAILED" in said) == ("dies", True)

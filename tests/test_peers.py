@@ -70,7 +70,7 @@ def test_an_end_far_from_the_true_one_is_a_failure(truth: Floats) -> None:
     np.testing.assert_allclose(result.errors[2:4], (0.06, 0.04))
 
 
-def test_a_failing_drive_is_told_and_stops_nobody(truth: Floats) -> None:
+def test_failing_drive_is_reported_and_stops_nothing(truth: Floats) -> None:
     def solve(drive: Floats) -> Floats:
         if drive[0] == DRIVES[0, 1]:
             raise FailureError("did not finish")

@@ -41,7 +41,7 @@ def test_the_package_is_imported_without_its_modules() -> None:
         "optimisation",
     ],
 )
-def test_a_package_says_what_is_public(name: str) -> None:
+def test_package_lists_its_public_names(name: str) -> None:
     """Its docstring has a line for each name, and each name is what it is said to be."""
     package = importlib.import_module(f"pindrive.{name}")
     said = re.findall(r"^- `(\w+)`: \w.*$", package.__doc__ or "", re.MULTILINE)
@@ -57,7 +57,7 @@ def test_a_package_says_what_is_public(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)
-def test_functions_say_arguments_results_and_errors(name: str) -> None:
+def test_functions_document_arguments_results_and_errors(name: str) -> None:
     words = inspect.getdoc(getattr(pd, name)) or ""
     for part in ("Args:", "Returns:", "Raises:"):
         assert part in words, part

@@ -41,7 +41,7 @@ def rows(text: str) -> list[str]:
     return [row for table in tables for row in table.partition("\n\n")[0].splitlines()]
 
 
-def test_it_is_short() -> None:
+def test_readme_is_short() -> None:
     assert len(README.split()) <= 600
     before = README.partition("\n![")[0].splitlines()[1:]
     assert len([line for line in before if line]) <= 10, "who it is for and what it answers"
@@ -60,7 +60,7 @@ def test_run_and_test_each_start_with_their_one_command() -> None:
 # ---- evidence ------------------------------------------------------------------------------------
 
 
-def test_its_four_rows_of_evidence_stand_among_all_of_them() -> None:
+def test_readme_evidence_is_part_of_validation() -> None:
     all_rows = [row.replace("](../", "](") for row in rows(VALIDATION)]
     assert len(rows(README)) == 4
     assert {*rows(README)} <= {*all_rows}
@@ -80,7 +80,7 @@ def test_the_row_of_published_cases_counts_as_the_page_does() -> None:
 
 
 @pytest.mark.parametrize("row", rows(VALIDATION), ids=lambda row: row[2:40])
-def test_a_row_says_how_it_is_printed_by_what_is_there(row: str) -> None:
+def test_row_names_the_test_that_prints_it(row: str) -> None:
     """The programs that it names exist, and so does what they read."""
     said = row.rpartition(" | ")[2].rstrip(" |")
     for command in re.findall(r"`([^`]+)`", said):
@@ -98,7 +98,7 @@ def test_a_row_says_how_it_is_printed_by_what_is_there(row: str) -> None:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
-def test_what_a_page_links_to_is_there(page: Path) -> None:
+def test_links_of_a_page_exist(page: Path) -> None:
     text = page.read_text("utf-8")
     links = re.findall(r"\]\(([^)#:\s]+)(#[^)]*)?\)", text)
     assert [link for link, _ in links if not (page.parent / link).exists()] == []

@@ -131,7 +131,7 @@ def test_the_script_itself_without_a_compiler(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("arguments", [["tset"], ["format", "src"], ["lint", "rough"]])
-def test_a_command_it_does_not_know(arguments: list[str]) -> None:
+def test_unknown_command_is_refused(arguments: list[str]) -> None:
     with pytest.raises(SystemExit) as stopped:
         run.main(arguments)
     assert stopped.value.code == 2
@@ -140,7 +140,7 @@ def test_a_command_it_does_not_know(arguments: list[str]) -> None:
 MADE, NEEDS, BUILT = "making .venv", "installing what pindrive needs", "building pindrive"
 
 
-def test_what_is_installed_is_not_installed_again(
+def test_installed_packages_are_not_installed_again(
     installed: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     environment.install(set())
@@ -188,7 +188,7 @@ def test_an_environment_of_another_python_or_place_is_made_anew(
     assert installed == [MADE, NEEDS, BUILT]
 
 
-def test_a_step_that_fails_says_what_it_said(capsys: pytest.CaptureFixture[str]) -> None:
+def test_failing_step_prints_its_output(capsys: pytest.CaptureFixture[str]) -> None:
     speak = [sys.executable, "-c", "print('no such header'); raise SystemExit(3)"]
     with pytest.raises(SystemExit, match="building failed"):
         environment.quietly("building", speak)
@@ -203,7 +203,7 @@ def test_the_extras_hold_the_extras_they_name() -> None:
     assert all("pindrive" not in line for line in dev)
 
 
-def test_explore_draws_each_seed_and_says_how_to_draw_it_again(
+def test_explore_draws_each_seed_and_prints_its_command(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     started: list[tuple[str, ...]] = []

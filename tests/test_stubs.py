@@ -17,5 +17,5 @@ def test_the_committed_stub_is_up_to_date() -> None:
     )
 
 
-def test_the_package_says_that_it_is_typed() -> None:
+def test_package_is_marked_as_typed() -> None:
     assert files("pindrive").joinpath("py.typed").is_file()

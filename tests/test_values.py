@@ -120,7 +120,7 @@ def test_different_motions_differ() -> None:
     assert one != one.transient
 
 
-def test_a_representation_says_what_was_given() -> None:
+def test_representation_has_the_given_values() -> None:
     assert repr(pd.Contact(0.02, 0.03)) == "Contact(kinetic=0.02, static=0.03, stiffness=inf)"
     assert repr(drive()) == (
         "Drive(mass=0.01, stiffness=100, damping=0.32, "
@@ -156,7 +156,7 @@ def test_arrays_and_missing_numbers_are_compared(one: Mixed, other: Mixed, equal
     assert not equal or hash(one) == hash(other)
 
 
-def test_what_is_usual_or_missing_is_left_out() -> None:
+def test_default_and_missing_values_are_left_out() -> None:
     assert repr(Mixed(np.zeros((3, 2)), float("nan"))) == "Mixed(array=<3 x 2 values>)"
     many = repr(Mixed("a" * 300, 2.5, ("b" * 60, "c" * 60)))
     assert len(many) <= LONGEST

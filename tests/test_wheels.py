@@ -43,9 +43,7 @@ def test_a_whole_wheel_is_right(name: str) -> None:
         (GOOD, 1.0, ["pindrive/_core.cpython-312.so", *WHOLE[1:]], "was not built so"),
     ],
 )
-def test_what_is_wrong_with_a_wheel(
-    name: str, size: float, names: list[str], complaint: str
-) -> None:
+def test_faults_of_a_wheel(name: str, size: float, names: list[str], complaint: str) -> None:
     found = faults(name, size, names, complete=True)
     assert any(complaint in line for line in found), found
     assert all(line.startswith(name) for line in found)
@@ -89,7 +87,7 @@ def test_the_extension_forwards_the_component_of_the_stable_abi() -> None:
     assert "nanobind_add_module(_core STABLE_ABI" in text
 
 
-def test_the_recipe_asks_for_what_the_project_does() -> None:
+def test_recipe_has_the_dependencies_of_the_project() -> None:
     recipe = (ROOT / "recipe" / "recipe.yaml").read_text("utf-8")
     listed = {line.replace(" ", "") for line in re.findall(r"^    - (.*)", recipe, re.MULTILINE)}
     project = PROJECT["project"]
@@ -108,7 +106,7 @@ def test_the_recipe_asks_for_what_the_project_does() -> None:
     assert re.findall(r'^  version: "(.*)"', recipe, re.MULTILINE) == version
 
 
-def test_who_reports_a_wrong_result_is_asked_for_device_and_certificate() -> None:
+def test_wrong_result_form_requests_device_and_certificate() -> None:
     form = (ROOT / ".github" / "ISSUE_TEMPLATE" / "wrong-result.yml").read_text("utf-8")
     asked = re.findall(r"id: (\w+)\n(?:.*\n)*?    validations:\n      required: true", form)
     assert {"device", "certificate", "command", "version"} <= set(asked)

@@ -163,7 +163,7 @@ OF_THE_EXTENSION = {"kernel_widths", "elementary", "settling_band", "event_limit
 """Names of the extension without a function in C."""
 
 
-def test_what_python_can_do_with_the_core_c_can() -> None:
+def test_c_has_the_functions_of_python() -> None:
     header = (ROOT / "capi" / "pindrive.h").read_text("utf-8")
     functions = set(re.findall(r"pindrive_(\w+)\(", header))
     stub = ast.parse((ROOT / "src" / "pindrive" / "_core.pyi").read_text("utf-8"))

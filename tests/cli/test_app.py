@@ -43,7 +43,7 @@ def test_init_check_simulate() -> None:
     assert simulated.stdout == example, "the example is what init writes"
 
 
-def test_simulate_says_what_follows_from_other_values() -> None:
+def test_simulate_reports_derived_values() -> None:
     def said(*arguments: str | Path) -> list[str]:
         lines = run("simulate", *arguments).stdout.splitlines()
         return [line for line in lines if line.startswith("Follow from other values: ")]
@@ -109,7 +109,7 @@ def test_simulate_leaves_the_middle_of_many_phases_out() -> None:
     assert len(output.splitlines()) < 70
 
 
-def test_phases_are_told_in_their_units() -> None:
+def test_phases_are_printed_in_their_units() -> None:
     """The fourth phase of the example begins where the plate's velocity is crossed."""
     rows = [line.split() for line in run("simulate", EXAMPLE).stdout.splitlines()]
     assert ["ms", "ms", "ms", "mm", "mm/s"] in rows
@@ -223,7 +223,7 @@ def test_csv_holds_even_samples_and_events_beside_it() -> None:
         ]
 
 
-def test_the_number_of_samples_is_as_asked() -> None:
+def test_number_of_samples_is_as_requested() -> None:
     for suffix in (".csv", ".nc"):
         few, many = Path(f"few{suffix}"), Path(f"many{suffix}")
         run("simulate", EXAMPLE, "-o", few, "--samples", "2")

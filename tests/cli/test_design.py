@@ -113,7 +113,7 @@ def test_files_that_a_design_may_not_replace_are_refused() -> None:
     )
 
 
-def test_what_is_wrong_with_a_design_problem_is_said_in_a_line() -> None:
+def test_error_of_a_design_problem_is_one_line() -> None:
     Path("problem.toml").write_text(PROBLEM.replace("minimise", "minimize"))
     line = refused("design", "problem.toml")
     assert line == "problem.toml: unknown key goals.minimize; there are minimise and maximise"

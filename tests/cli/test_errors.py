@@ -160,7 +160,7 @@ def test_a_disk_that_fills_up_leaves_nothing(name: str, monkeypatch: pytest.Monk
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no full device")
 @pytest.mark.parametrize("arguments", [["--help"], ["init", "a"], ["simulate", str(EXAMPLE)]])
-def test_a_full_standard_output_is_said(arguments: list[str]) -> None:
+def test_full_standard_output_is_reported(arguments: list[str]) -> None:
     with Path("/dev/full").open("w") as full:
         done = subprocess.run(
             [sys.executable, "-m", "pindrive", *arguments],

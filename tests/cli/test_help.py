@@ -168,7 +168,7 @@ def test_the_script_for_a_shell(
         ("pindrive init --", ["--force", "--device", "--study", "--problem", "--help"]),
     ],
 )
-def test_a_shell_is_told_what_may_follow(typed: str, offered: list[str]) -> None:
+def test_shell_completion_lists_the_next_words(typed: str, offered: list[str]) -> None:
     words = typed.split()
     environment = {
         **os.environ,

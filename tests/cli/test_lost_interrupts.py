@@ -82,7 +82,7 @@ def test_ignored_stays_ignored(tmp_path: Path) -> None:
     assert (ended.returncode, ended.stderr) == (0, "")
 
 
-def test_a_second_one_says_nothing_more(tmp_path: Path) -> None:
+def test_second_interrupt_prints_nothing(tmp_path: Path) -> None:
     program = f"""
         import time
         import typer

@@ -74,7 +74,7 @@ def test_a_sampled_time_is_at_most_the_end() -> None:
     assert even_times(0.0, 0.02, 1000.0)[-1] == 0.02
 
 
-def test_a_study_is_told_without_a_picture() -> None:
+def test_study_is_printed_without_a_picture() -> None:
     Path("small.toml").write_text(
         f'base = "{(EXAMPLES / "tactile-mouse.toml").as_posix()}"\n[axes]\nmass = ["9 g", "10 g"]\n'
     )

@@ -64,7 +64,9 @@ def test_a_device_with_a_mistake_is_refused_as_by_check() -> None:
     assert refused("studio", "device.toml") == run("check", "device.toml").stderr.strip()
 
 
-def test_a_browser_that_does_not_open_is_said(page: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_browser_that_does_not_open_is_reported(
+    page: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     opened: list[str] = []
 
     def fails(url: str) -> bool:
@@ -79,6 +81,6 @@ def test_a_browser_that_does_not_open_is_said(page: Path, monkeypatch: pytest.Mo
 
 
 @pytest.mark.usefixtures("in_empty_folder")
-def test_a_package_without_the_page_says_what_builds_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_package_without_the_page_names_the_build_command(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(studio, "PAGE", Path("studio.html").absolute())
     assert refused("studio") == "the studio is not built; `python3 run.py studio` builds it"

@@ -86,7 +86,7 @@ def test_wrong_usage_is_one_line(arguments: str, line: str) -> None:
 # ---- which numbers -------------------------------------------------------------------------------
 
 
-def test_sensitivity_of_the_numbers_asked_for() -> None:
+def test_sensitivity_of_the_requested_numbers() -> None:
     done = run(
         *("sensitivity", "study.toml", "--rows", "128", "--plot", "a.svg", "--number", "swing"),
         *("--number", "transient.settling_time", "--number", "swing"),

@@ -139,7 +139,7 @@ def test_a_device_in_words(evaluated: Evaluation) -> None:
     assert numbers(reach) == pytest.approx([1e3 * device.reach], rel=1e-3)
 
 
-def test_what_became_of_the_lines(evaluated: Evaluation) -> None:
+def test_fates_of_the_lines(evaluated: Evaluation) -> None:
     heads, *rows = table(evaluation_report(evaluated), "Counts of the lines")
     assert heads == ["symbol", "count", "meaning"]
     found = {row[2]: int(row[1]) for row in rows}

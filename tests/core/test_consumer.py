@@ -152,7 +152,7 @@ def test_each_header_has_a_test_file() -> None:
     assert headers <= tested, sorted(headers - tested)
 
 
-def test_a_build_is_optimised_unless_it_is_told_otherwise(tmp_path: Path) -> None:
+def test_build_is_optimised_by_default(tmp_path: Path) -> None:
     for settings, kind in ((), "Release"), (("-DCMAKE_BUILD_TYPE=Debug",), "Debug"):
         folder = tmp_path / kind
         run("cmake", "-S", ROOT, "-B", folder, "-G", "Ninja", *settings)
@@ -207,7 +207,7 @@ def test_no_sanitizer_complains(tmp_path: Path) -> None:
     run("ctest", "--test-dir", tmp_path, "--output-on-failure", "--parallel", "2")
 
 
-def test_what_is_not_public_is_in_detail() -> None:
+def test_names_that_are_not_public_are_in_detail() -> None:
     for path in HEADERS:
         if path.stem in PUBLIC.get(path.parent.name, ()):
             continue

@@ -94,7 +94,7 @@ def test_rest_begins_before_the_rows_of_inputs_that_no_longer_matter() -> None:
 
 
 @given(cases())
-def test_each_time_means_what_it_says(case: Case) -> None:
+def test_each_time_has_its_meaning(case: Case) -> None:
     found = case.run()
     rest, last = found.transient.rest_time, found.transient.last_event_time
     if isinf(last):
@@ -110,7 +110,7 @@ def test_each_time_means_what_it_says(case: Case) -> None:
 
 
 @given(cases())
-def test_a_batch_tells_the_same_times(case: Case) -> None:
+def test_batch_has_the_times_of_single_motions(case: Case) -> None:
     drive, found = case.drive, case.run()
     velocity = found.release.initial_velocity
     table = simulate_batch(drive, case.release, velocity=velocity, threads=1)
@@ -138,7 +138,7 @@ displacement = "1.5 mm"
 
 
 @pytest.mark.usefixtures("in_empty_folder")
-def test_the_command_line_tells_them_apart() -> None:
+def test_command_line_separates_the_endings() -> None:
     Path("decays.toml").write_text(
         DEVICE.format(damping=0.1, static=50, finger=0), encoding="utf-8"
     )

@@ -158,7 +158,7 @@ def test_the_derivative_along_a_force(name: str) -> None:
     assert np.asarray(slope).ravel() == pytest.approx(near, rel=1e-5, abs=1e-9)
 
 
-def test_what_is_refused() -> None:
+def test_invalid_values_are_refused() -> None:
     with pytest.raises(ValueError, match="force must be finite"):
         Release(0.06, force=float("nan"))
     with pytest.raises(

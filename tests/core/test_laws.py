@@ -138,7 +138,7 @@ def test_left_and_right_limits_agree_in_position_and_velocity(case: Case) -> Non
 
 
 @given(cases())
-def test_every_motion_without_a_duration_knows_its_ending(case: Case) -> None:
+def test_every_motion_without_a_duration_has_an_ending(case: Case) -> None:
     motion = case.run()
     assert motion.status == Status.ok
     assert motion.ending.kind != "moving"

@@ -146,6 +146,6 @@ def test_derivatives(name: str) -> None:
     assert found == pytest.approx((ends[0] - ends[1]) / (2 * step), rel=1e-5, abs=1e-9)
 
 
-def test_what_is_refused() -> None:
+def test_invalid_values_are_refused() -> None:
     with pytest.raises(ValueError, match=r"across_velocity must be without a step"):
         Release(0.06, across_velocity=Profile([0.0, 0.1, 0.1], [0.0, 0.0, 0.1]))

@@ -263,7 +263,7 @@ def test_the_first_swing_breaks_a_grip_that_a_rigid_finger_keeps() -> None:
     st.one_of(st.just(0.0), decades(0.01, 2.0)),
     st.floats(-3e-3, 3e-3),
 )
-def test_its_limit_is_a_rigid_finger_that_stops_less(
+def test_stiff_skin_approaches_a_rigid_finger_that_stops_less(
     kinetic: float, ratio: float, damping: float, displacement: float
 ) -> None:
     """Static friction counts as max(F, (S - F) / 2) for a pin that arrives and is held for good."""

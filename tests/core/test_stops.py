@@ -230,7 +230,7 @@ BAD: dict[str, Callable[[], object]] = {
 
 
 @pytest.mark.parametrize("said", BAD)
-def test_what_is_refused(said: str) -> None:
+def test_invalid_values_are_refused(said: str) -> None:
     with pytest.raises(ValueError, match=said) as error:
         BAD[said]()
     assert "\n" not in str(error.value)

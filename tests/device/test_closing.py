@@ -192,7 +192,7 @@ def test_times_are_those_of_the_current(force: float) -> None:
     assert rises(made.closing_time - 1e-12) == pytest.approx(edge / q, rel=1e-6)
 
 
-def test_what_is_open_stays_open_at_a_voltage_that_keeps_it_closed() -> None:
+def test_open_gap_stays_open_at_a_voltage_that_keeps_it_closed() -> None:
     """Hysteresis: at 1.2 V the open gap's pull is below the force, the closed gap's above."""
     low = Electromagnet.from_coil(coil(**LIFT), voltage=[(0.0, 1.2)])
     kept = Electromagnet.from_coil(coil(**LIFT), voltage=[(0.0, 3.0), (0.003, 1.2)])
@@ -282,7 +282,7 @@ supply_voltage = "3 V"
 
 
 @pytest.mark.usefixtures("in_empty_folder")
-def test_check_says_when_the_gap_closes_and_opens() -> None:
+def test_check_reports_when_the_gap_closes_and_opens() -> None:
     Path("device.toml").write_text(GOOD + MAGNET)
     magnet = load_device("device.toml").device.magnet
     said = " ".join(run("check", "device.toml").stdout.split())

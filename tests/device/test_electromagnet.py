@@ -44,7 +44,7 @@ def test_current_obeys_its_differential_equation() -> None:
         assert current(end) == pytest.approx(value, abs=1e-9)
 
 
-def test_rise_and_fall_times_are_what_they_say() -> None:
+def test_rise_and_fall_times_equal_their_definition() -> None:
     for sigma in (1.0, 0.7, 0.3):
         magnet = Electromagnet.from_times(
             hold_force=2.0, rise_time=0.003, fall_time=0.005, saturation=sigma, residual=0.1
@@ -105,7 +105,7 @@ def test_rows_keep_their_bound(
     assert np.abs(np.interp(dense, rows, pull) - exact).max() <= deviation * (1.0 + 1e-6)
 
 
-def test_rows_are_no_more_than_the_bound_asks_for() -> None:
+def test_rows_are_no_more_than_the_bound_requires() -> None:
     """Rows follow from the curvature: the deviation is used up, and they go with its root."""
     counts = []
     for deviation in (1e-3, 1e-4, 1e-5):
@@ -208,7 +208,7 @@ def test_bad_magnets_are_refused(given: dict[str, float], message: str) -> None:
     assert str(refused.value) == message
 
 
-def test_a_magnet_is_told_one_way() -> None:
+def test_magnet_is_given_in_one_way() -> None:
     check_one_way({"hold_force", "rise_time"})
     check_one_way({"residual"})
     with pytest.raises(ValueError, match="hold_force must be left out where turns describes"):

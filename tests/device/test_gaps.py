@@ -142,7 +142,7 @@ def test_the_bound_on_the_acceleration_holds_where_the_damping_changes() -> None
     assert np.median(ratios) > 0.9, "a bound that says something"
 
 
-def test_steps_of_a_series_are_not_asked_for_their_acceleration(
+def test_acceleration_of_series_steps_is_not_evaluated(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Their bounds are known: of pins that never stop slipping only positions are evaluated."""
@@ -210,7 +210,7 @@ def test_a_turned_device_on_a_turned_page_has_the_same_gaps() -> None:
     assert [g.size for g in one.gaps] == pytest.approx([g.size for g in other.gaps], abs=1e-11)
 
 
-def test_a_later_clock_tells_a_later_time() -> None:
+def test_later_clock_shifts_all_times() -> None:
     scene, path = grating(), across(grating())
     late = HandPath(path.times + 16.0, path.vx, path.vy, (float(path.x[0]), float(path.y[0])))
     device = Device(drive=drive(), array=PinArray.grid(2, 1, 0.003))
@@ -270,7 +270,7 @@ def said(done: Scan) -> str:
     return captured.get()
 
 
-def test_pins_that_pass_through_each_other_are_said_everywhere() -> None:
+def test_overlapping_pins_are_reported_everywhere() -> None:
     """The first default array: 2.5 mm apart, and pins that go 7 mm."""
     done = scanned(PinArray.grid(2, 1, 0.0025))
     gap = done.smallest_gap
@@ -291,7 +291,7 @@ def test_pins_that_pass_through_each_other_are_said_everywhere() -> None:
     assert "pins overlap by " in reliefs.axes[1].get_title(loc="left")
 
 
-def test_pins_with_room_are_said_to_have_it() -> None:
+def test_pins_with_room_are_reported() -> None:
     done = scanned(PinArray.grid(3, 1, 0.015))
     gap = done.smallest_gap
     assert gap and gap.size > 0.0
@@ -340,7 +340,7 @@ def test_no_pin_goes_beyond_its_excursion() -> None:
         (0.0400, "Neighbouring pins have 38.50 mm between them at rest, and cannot meet: at 60.00"),
     ],
 )
-def test_geometry_says_whether_pins_can_meet(pitch: float, words: str) -> None:
+def test_geometry_reports_whether_pins_can_meet(pitch: float, words: str) -> None:
     magnet = Electromagnet.from_times(hold_force=3.0)
     device = Device(drive=drive(), magnet=magnet, array=PinArray.grid(2, 2, pitch))
     found = " ".join(meeting_words(device, 0.06))
@@ -351,7 +351,7 @@ def test_geometry_says_whether_pins_can_meet(pitch: float, words: str) -> None:
 
 
 @pytest.mark.usefixtures("in_empty_folder")
-def test_check_and_scan_say_it() -> None:
+def test_check_and_scan_report_it() -> None:
     Path("device.toml").write_text(GOOD + '\n[array]\ncolumns = 2\npitch = "2.5 mm"\n')
     checked = run("check", "device.toml")
     assert "Neighbouring pins have 1.000 mm between them at rest, and can meet" in checked.stdout

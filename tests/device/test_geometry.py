@@ -148,7 +148,7 @@ def test_impossible_sizes_are_refused(make: Callable[[], object], message: str) 
 
 
 @pytest.mark.usefixtures("in_empty_folder")
-def test_a_file_says_impossible_sizes_in_one_line() -> None:
+def test_impossible_sizes_are_reported_in_one_line() -> None:
     Path("device.toml").write_text(GOOD + '\n[array]\nslot_length = "1 mm"\n')
     assert refused("check", "device.toml") == (
         "device.toml: array.slot_length must be at least array.pin_diameter, 0.0015 m, which moves "
@@ -170,7 +170,7 @@ slot_length = "5 mm"
 
 
 @pytest.mark.usefixtures("in_empty_folder")
-def test_check_and_scan_say_what_does_not_fit() -> None:
+def test_check_and_scan_report_misfits() -> None:
     Path("device.toml").write_text(GOOD + SIZES)
     heavy = "warning: a magnet cannot be so heavy: drive.mass is 10.00 g"
     checked = run("check", "device.toml")
@@ -198,7 +198,7 @@ def test_check_and_scan_say_what_does_not_fit() -> None:
     assert f"Pin 1 would go {-1e3 * beyond:.4g}" in scanned.stdout
 
 
-def test_the_picture_says_it() -> None:
+def test_picture_states_it() -> None:
     made = device(pitch=0.0082, slot=0.005)
     reading = Reading(hand_speed=0.1)
     scene = reading.grating([0.004], made.array)

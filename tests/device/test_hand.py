@@ -35,7 +35,7 @@ def test_a_stroke_is_minimum_jerk_within_its_deviation(deviation: float) -> None
     assert_allclose([x[-1], y[-1]], [0.04, 0.06], rtol=1e-13)
 
 
-def test_the_peak_is_the_speed_asked_for() -> None:
+def test_peak_is_the_requested_speed() -> None:
     path = strokes([(0.0, 0.0), (0.1, 0.0)], 0.06)
     assert path.peak_speed == pytest.approx(0.06, rel=1e-3)
 

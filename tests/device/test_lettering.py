@@ -118,7 +118,7 @@ def test_plain_scripts_are_alike_on_every_machine(
 
 
 @shaping
-def test_what_the_font_lacks_is_named() -> None:
+def test_missing_characters_of_the_font_are_named() -> None:
     with pytest.raises(
         ValueError, match=r"lacks .* \(U\+0915 DEVANAGARI LETTER KA\); give another"
     ):

@@ -287,7 +287,7 @@ temperature_rise = "1 K"
 
 
 @pytest.mark.usefixtures("in_empty_folder")
-def test_a_scan_says_how_warm_its_coils_become() -> None:
+def test_scan_reports_the_warming_of_its_coils() -> None:
     Path("device.toml").write_text(GOOD + MAGNET)
     done = run("scan", "device.toml", "--grating", "8 mm", "-o", "a.nc")
     assert done.exit_code == 0, done.output

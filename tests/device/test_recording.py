@@ -85,7 +85,7 @@ FORMS = {
 
 
 @pytest.mark.parametrize("form", FORMS)
-def test_the_same_hand_however_it_is_written(tmp_path: Path, form: str) -> None:
+def test_one_hand_in_all_notations(tmp_path: Path, form: str) -> None:
     header, scale, relative = FORMS[form]
     t, ways = mouse(truth())
     x = scale * (ways if relative else np.cumsum(ways))
@@ -207,7 +207,7 @@ def test_a_scan_along_a_raw_recording_shows_what_the_hand_itself_does(tmp_path: 
 
 
 @pytest.mark.usefixtures("in_empty_folder")
-def test_check_says_what_a_recording_is(tmp_path: Path) -> None:
+def test_check_reports_a_recording(tmp_path: Path) -> None:
     t, ways = mouse(truth())
     file = write(tmp_path / "raw.csv", "time [s], dx [count], dy [count]", t, ways, 0.0 * ways)
     result = run("check", str(file))

@@ -120,7 +120,7 @@ def test_nothing_is_felt_under_a_lifted_finger() -> None:
     assert dataset.touch.units == "N"
 
 
-def test_when_a_finger_touches() -> None:
+def test_times_of_touch() -> None:
     assert spans(0.0) == []
     assert spans(2.0) == [(-inf, inf)]
     assert spans(Profile([0, 1, 2, 3], [1, 0, 0, 1])) == [(-inf, 1.0), (2.0, inf)]
@@ -174,7 +174,7 @@ def written(folder: Path, touch: str, finger: str = BY_COEFFICIENT) -> Path:
     return file
 
 
-def test_a_device_file_says_how_the_finger_presses(tmp_path: Path) -> None:
+def test_device_file_has_the_touch_of_the_finger(tmp_path: Path) -> None:
     (tmp_path / "press.csv").write_text("time [ms], touch [mN]\n0, 60\n200, 60\n220, 0\n")
     rows = Profile([0.0, 0.2, 0.22], [0.06, 0.06, 0.0])
     for touch in (

@@ -33,7 +33,7 @@ def test_the_limits_are_the_last_speeds_at_which_all_is_well() -> None:
 
 
 @pytest.mark.usefixtures("in_empty_folder")
-def test_the_command_says_it_of_a_text() -> None:
+def test_command_reports_the_speed_of_a_text() -> None:
     said = run("speed", READER, "--text", "I", "--slowest", "50 mm/s", "--plot", "a.png")
     assert said.exit_code == 0, said.output
     assert "All lines are shown and none is false: up to " in said.stdout

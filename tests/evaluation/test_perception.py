@@ -240,7 +240,7 @@ def test_a_later_clock_changes_nothing() -> None:
             assert numbers(a) == pytest.approx(numbers(b), rel=1e-6, abs=1e-9, nan_ok=True)
 
 
-def test_mirrored_scene_and_path_are_judged_alike() -> None:
+def test_mirrored_scene_and_path_are_evaluated_alike() -> None:
     scene = grating(0.002, 0.0071)
     mirrored = replace(scene, luminance=scene.luminance[:, ::-1])
     path = across(scene, 0.1)
@@ -261,7 +261,7 @@ def fates(told: Evaluation) -> list[str]:
     return [line.fate for line in told.lines]
 
 
-def test_lines_between_two_looks_are_missed() -> None:
+def test_lines_between_two_samples_are_missed() -> None:
     scene = grating(0.0008, 0.008)
     control = ControlBlock(sample_rate=40.0)
     told = evaluate(scan(Device(drive=drive(), control=control), scene, evenly(scene, 0.06)))
@@ -271,7 +271,7 @@ def test_lines_between_two_looks_are_missed() -> None:
     assert isnan(unseen.begin.command) and isnan(unseen.begin.latency) and isnan(unseen.smear)
 
 
-def test_a_gap_between_two_looks_merges_lines() -> None:
+def test_gap_between_two_samples_merges_lines() -> None:
     row = np.ones(800)
     row[200:290] = row[293:400] = 0.0
     scene = Scene(np.tile(row, (20, 1)), 1e-4, lines=(0.001,))
@@ -405,7 +405,7 @@ def test_a_blank_page_has_false_lines_only_where_the_pin_moves() -> None:
 
 
 @pytest.mark.parametrize("first", range(0, 60, 12))
-def test_random_devices_are_judged_by_what_can_be(first: int) -> None:
+def test_random_devices_are_checked_by_feasibility(first: int) -> None:
     """Over decades of every number: nothing comes before its cause, every part is a part."""
     for seed in range(first, first + 12):
         drawn = RandomScan.of(seed)

@@ -181,7 +181,7 @@ def test_skin_that_hardly_gives_allows_no_speed() -> None:
     assert beyond(limit, 0.5, 5e-5) == "at no speed tried are they distinct"
 
 
-def test_a_limit_beyond_what_was_tried_is_told_so() -> None:
+def test_limit_beyond_the_range_is_reported() -> None:
     limits = largest_speeds(DEVICE, [0.008], slowest=0.04, fastest=0.05)
     assert limits[0].speed == 0.05
     shown = console()
@@ -190,7 +190,7 @@ def test_a_limit_beyond_what_was_tried_is_told_so() -> None:
     assert "> 50.00" in captured.get()
 
 
-def test_islands_are_told() -> None:
+def test_islands_are_reported() -> None:
     limit = SpeedLimit(
         pitch=0.002,
         width=0.001,

@@ -333,13 +333,13 @@ def test_a_mistake_is_one_line(write: Write, old: str, new: str, problem: str) -
     assert line.startswith(problem)
 
 
-def test_the_line_of_bad_toml_is_said(write: Write) -> None:
+def test_line_of_bad_toml_is_reported(write: Write) -> None:
     (line,) = problems(write('"10 g"', "10 g"))
     assert "at line 3" in line
     assert line.endswith("a value with a unit stands in quotes")
 
 
-def test_all_problems_are_said_at_once(write: Write) -> None:
+def test_all_problems_are_reported_together(write: Write) -> None:
     path = write(new='[drive]\nmas = "1 g"\nstiffness = 3\n[motion]\nduration = "0 s"\n')
     lines = problems(path, "velocity=fast", "spring=1 N/m")
     assert len(lines) == 9
@@ -371,7 +371,7 @@ def test_all_problems_are_said_at_once(write: Write) -> None:
         ("mass=", 'mass: drive.mass must be a number with its unit, like "10 g", got ""'),
     ],
 )
-def test_a_bad_override_says_so(write: Write, override: str, problem: str) -> None:
+def test_bad_override_is_reported(write: Write, override: str, problem: str) -> None:
     (line,) = problems(write(), override)
     assert line.startswith(f"`overrides` {problem}")
 

@@ -314,7 +314,7 @@ def test_libcosim_drives_sixteen(archive: Archive) -> None:
             assert x == pytest.approx(motion.position(step * 1e-3), rel=1e-12, abs=1e-15)
 
 
-def test_it_says_what_is_refused(archive: Archive, capsys: pytest.CaptureFixture[str]) -> None:
+def test_refusal_names_the_value(archive: Archive, capsys: pytest.CaptureFixture[str]) -> None:
     unit, bad = archive.unit().begin(), archive.unit()
     for call, words in (
         (lambda: unit.set(drive__mass=1.0), "drive.mass is a fixed parameter"),

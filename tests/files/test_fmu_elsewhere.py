@@ -79,7 +79,7 @@ pytestmark = pytest.mark.skipif(
 )
 
 
-def test_the_windows_library_says_what_that_of_linux_does(unit: Path) -> None:
+def test_windows_library_equals_that_of_linux(unit: Path) -> None:
     if not WINE:
         pytest.skip("needs wine64")
     windows = library(unit, "x86_64-windows/pindrive.dll")

@@ -120,7 +120,7 @@ LINKS = [
 
 
 @pytest.mark.parametrize(("command", "link"), LINKS)
-def test_what_a_command_reads_is_never_written(command: str, link: str) -> None:
+def test_inputs_of_a_command_are_never_written(command: str, link: str) -> None:
     arguments, name = WRITERS[command]
     source = Path(arguments[1])
     content = source.read_bytes()
@@ -228,7 +228,7 @@ def test_init_replaces_nothing_unless_forced() -> None:
 # ---- the mechanism -------------------------------------------------------------------------------
 
 
-def test_kinds_are_told_by_what_stands_in_a_file() -> None:
+def test_kinds_follow_from_the_content_of_a_file() -> None:
     assert DEVICE_FILE.holds(EXAMPLE)
     assert not DEVICE_FILE.holds(EXAMPLES / "tactile-reader-study.toml")
     assert STUDY_NETCDF.holds(Path("swept.nc"))

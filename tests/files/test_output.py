@@ -30,7 +30,7 @@ def test_a_link_stays_and_its_target_is_replaced(tmp_path: Path) -> None:
     assert target.read_text() == "new"
 
 
-def test_what_goes_wrong_leaves_the_old_file_and_nothing_else(tmp_path: Path) -> None:
+def test_failure_leaves_the_old_file_alone(tmp_path: Path) -> None:
     target = tmp_path / "out"
     target.write_text("old")
     with pytest.raises(ZeroDivisionError), atomic_write(target) as part:

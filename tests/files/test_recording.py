@@ -90,7 +90,7 @@ def test_a_recorded_hand_gives_the_speed_along_the_drive_axis() -> None:
     assert max(turned.values) == pytest.approx(0.1, rel=1e-3)  # type: ignore[union-attr]
 
 
-def test_a_raw_recording_is_smoothed_and_the_output_says_so() -> None:
+def test_smoothing_of_a_raw_recording_is_reported() -> None:
     true = strokes([(0.0, 0.0), (0.03, 0.0)], 0.0625)
     t = np.arange(0.0, true.end, 1e-3)
     counts = np.floor(true.position(t)[0] / 25.4e-6).astype(int)
@@ -145,7 +145,7 @@ def test_a_finger_that_lifts_is_a_csv_rows_or_set() -> None:
     )
 
 
-def test_check_says_what_a_csv_of_rows_holds() -> None:
+def test_check_reports_the_rows_of_a_csv() -> None:
     csv("speed.csv", "time [ms], mouse_velocity [mm/s]\n0,60\n40,-10\n90,0\n")
     said = run("check", "speed.csv").stdout
     assert said == "mouse_velocity: 3 rows over 90 ms, from -10.00 mm/s to 60.00 mm/s.\n"
@@ -194,7 +194,7 @@ def test_refusals(text: str) -> None:
     assert said.startswith(f"device.toml: motion.mouse_velocity: speed.csv: {REFUSALS[text]}")
 
 
-def test_a_missing_file_is_said_beside_what_else_is_wrong() -> None:
+def test_missing_file_is_reported_beside_other_errors() -> None:
     path = device(SPEED, 'mouse_velocity = "none.csv"\nplate_load = "two"')
     result = run("simulate", str(path))
     assert result.exit_code == 2
@@ -213,7 +213,7 @@ def test_an_input_is_not_written_over() -> None:
     assert Path("speed.csv").read_text(encoding="utf-8") == text
 
 
-def test_the_template_says_that_a_csv_may_stand_there() -> None:
+def test_template_mentions_a_csv() -> None:
     assert GOOD
     words = " ".join(template().replace("#", " ").split())
     assert "one value, rows over time, or a CSV of them or of a recorded hand" in words

@@ -43,7 +43,7 @@ def problems(path: Path, *overrides: str) -> list[str]:
 # ---- good files ----------------------------------------------------------------------------------
 
 
-def test_a_curve_says_the_kinetic_friction(write: Write) -> None:
+def test_curve_gives_the_kinetic_friction(write: Write) -> None:
     curve = '[["0 mm/s", "22 mN"], ["5 cm/s", "15 mN"], ["1 m/s", "0 N"]]'
     plate = load_device(write('kinetic = "20 mN"', f"curve = {curve}")).drive.plate
     assert plate.curve == ((0.0, 0.022), (0.05, 0.015), (1.0, 0.0))
@@ -109,7 +109,7 @@ def test_overrides(write: Write, override: str, key: str, value: object) -> None
     assert load_device(write(), [override]).values()[key] == value
 
 
-def test_a_file_written_from_its_values_says_the_same(write: Write, tmp_path: Path) -> None:
+def test_file_written_from_its_values_is_equal(write: Write, tmp_path: Path) -> None:
     """To the last bit, through text with units."""
     device = load_device(
         write(), [*(override for override, _, _ in OVERRIDES[::2]), "duration=0.3 s"]
@@ -262,7 +262,7 @@ def test_a_mistake_is_one_line(write: Write, old: str, new: str, problem: str) -
     assert line.startswith(f"FILE: {problem}")
 
 
-def test_what_does_not_fit_together_is_said_at_once(write: Write) -> None:
+def test_contradictions_are_reported_together(write: Write) -> None:
     skin = FALLING.replace("20 mN", "5 mN") + '\nstiffness = "1000 N/m"'
     stretched = '\nskin_stretch = "-6 µm"'
     path = write(PLATE, PLATE + FALLING, FINGER, FINGER + skin, SPEED, RAMP + stretched)
@@ -272,7 +272,7 @@ def test_what_does_not_fit_together_is_said_at_once(write: Write) -> None:
     ]
 
 
-def test_where_a_conflict_comes_from(write: Write) -> None:
+def test_conflict_names_its_origin(write: Write) -> None:
     path = write(PLATE, PLATE + FALLING)
     load_device(path, ['plate_load=[["0 ms", 1], ["5 ms", 2]]'])  # a curve fits a load that changes
     (line,) = problems(path, 'plate.curve=[["0 m/s", "30 mN"]]')
@@ -289,7 +289,7 @@ def test_where_a_conflict_comes_from(write: Write) -> None:
         ("curve=3", "curve: curve may be plate.curve or finger.curve; give it in full"),
     ],
 )
-def test_a_bad_override_says_so(write: Write, override: str, problem: str) -> None:
+def test_bad_override_is_reported(write: Write, override: str, problem: str) -> None:
     (line,) = problems(write(), override)
     assert line.startswith(f"`overrides` {problem}")
 

@@ -48,7 +48,7 @@ def write() -> Write:
 # ---- files ---------------------------------------------------------------------------------------
 
 
-def test_a_plain_drive_has_no_device_around_it_unless_asked(write: Write) -> None:
+def test_plain_drive_has_no_device_around_it_by_default(write: Write) -> None:
     assert load_device(write("")).whole is None
     whole = load_device(write(""), whole=True)
     assert whole.whole
@@ -91,7 +91,7 @@ line_pitch = "15 mm"
     assert "Its coil: 10.54 ohm, 5.655 mH, 284.7 mA, 0.8541 W; on for 23%" in checked.stdout
 
 
-def test_a_release_is_at_the_hands_speed_unless_said(write: Write) -> None:
+def test_release_has_the_speed_of_the_hand_by_default(write: Write) -> None:
     bare = GOOD.replace('mouse_velocity = "100 mm/s"', "")
     assert bare != GOOD
     path = Path("bare.toml")
@@ -103,7 +103,7 @@ def test_a_release_is_at_the_hands_speed_unless_said(write: Write) -> None:
         load_device(path)
 
 
-def test_the_template_of_a_whole_device_says_what_holds_anyway(write: Write) -> None:
+def test_template_of_a_whole_device_has_the_defaults(write: Write) -> None:
     Path("new.toml").write_text(template(whole=True), encoding="utf-8")
     new, plain = load_device("new.toml").whole, load_device(write(""), whole=True).whole
     assert new
@@ -321,7 +321,7 @@ def test_refusals(device: Path, arguments: tuple[str, ...]) -> None:
     assert refused("scan", device, *arguments).startswith(REFUSALS[arguments])
 
 
-def test_warnings_are_told_beside_the_report(device: Path) -> None:
+def test_warnings_are_printed_beside_the_report(device: Path) -> None:
     result = run("scan", device, "--text", "A", "--set", "sample_rate=200 Hz")
     assert result.exit_code == 0
     (line,) = result.stderr.splitlines()

@@ -71,13 +71,13 @@ def test_a_profile_is_the_least_cost_of_the_others(found: Fit) -> None:
     assert excess == pytest.approx(found.threshold, rel=0.02)
 
 
-def test_the_same_seed_gives_the_same_fit(found: Fit) -> None:
+def test_one_seed_gives_one_fit(found: Fit) -> None:
     again = fit(recorded(rate=5e3), START, RELEASE, free=FREE)
     assert np.array_equal(again.theta, found.theta)
     assert [e.interval for e in again.estimates] == [e.interval for e in found.estimates]
 
 
-def test_it_is_data_and_a_notebook_shows_it(found: Fit) -> None:
+def test_limits_are_data_shown_in_a_notebook(found: Fit) -> None:
     data = found.to_dataset()
     assert data.value.sel(parameter="damping") == found["damping"].value
     assert data.unit.values.tolist() == ["N/m", "N*s/m", "N", "N", "m"]
@@ -129,7 +129,7 @@ def test_two_recordings_share_the_drive() -> None:
 # ---- what recordings cannot tell -----------------------------------------------------------------
 
 
-def test_a_free_motion_tells_ratios_alone() -> None:
+def test_free_motion_identifies_ratios_alone() -> None:
     """Mass, stiffness, damping and force: found by the rank, reported with the remedy."""
     drive = Drive(
         mass=0.006, stiffness=160.0, damping=0.19, plate=Contact(0.0), finger=Contact(0.011)
@@ -169,7 +169,7 @@ def test_static_friction_that_only_lets_the_pin_stick_is_open_on_one_side() -> N
     assert done["finger.kinetic"].identifiability is Identifiability.identifiable
 
 
-def test_noise_that_was_given_is_kept_and_exceeded_noise_is_told() -> None:
+def test_given_noise_is_kept_and_exceeded_noise_reported() -> None:
     size = 0.01 * 2.3e-3
     given = recorded(rate=2e3)
     x = given.channels["position"]
@@ -183,7 +183,7 @@ def test_noise_that_was_given_is_kept_and_exceeded_noise_is_told() -> None:
 
 
 @pytest.mark.explore
-def test_intervals_hold_the_truth_as_often_as_they_say() -> None:
+def test_intervals_have_their_coverage() -> None:
     """A sample of `python3 run.py bench fitting`, which does it 500 times."""
     done = [outcome(1501, 100, i) for i in range(cases(10))]
     closed = [held for each in done for _, kind, held in each.held if kind == "closed"]
@@ -247,5 +247,5 @@ def test_times_before_the_release_need_a_free_offset() -> None:
         fit(early, START, RELEASE, free=["damping"])
 
 
-def test_it_is_public() -> None:
+def test_name_is_public() -> None:
     assert pd.fit is fit

@@ -105,7 +105,7 @@ def test_several_recordings_share_the_drive_and_have_starts_of_their_own() -> No
     ]
 
 
-def test_what_is_not_fitted_keeps_its_ratio_to_kinetic_friction() -> None:
+def test_fixed_friction_keeps_its_ratio_to_kinetic_friction() -> None:
     finger = Contact(0.010, 0.015, [(0.0, 0.010), (0.1, 0.008)])
     drive = Drive(mass=0.006, stiffness=160.0, damping=0.19, plate=Contact(0.03), finger=finger)
     recording = recorded(drive, RELEASE, rate=1e3)
@@ -138,7 +138,7 @@ def test_what_is_not_fitted_keeps_its_ratio_to_kinetic_friction() -> None:
         (["skin_stretch"], {}, "free must be one that the release was given"),
     ],
 )
-def test_what_cannot_be_free_is_refused(
+def test_fixed_parameters_are_refused(
     free: list[str], bounds: dict[str, object], said: str
 ) -> None:
     recording = recorded(rate=1e3)

@@ -10,7 +10,7 @@ from pindrive import Contact, Drive, Recording, Release, Status, fit
 MASS, STIFFNESS, DAMPING, FORCE, WIDTH = 0.006, 160.0, 0.15, 0.012, 0.05
 
 
-def test_a_smooth_friction_law_of_sundials_is_fitted_and_its_misfit_is_told() -> None:
+def test_misfit_of_a_smooth_friction_law_of_sundials_is_reported() -> None:
     def rhs(t: float, y: np.ndarray, yp: np.ndarray) -> None:
         friction = FORCE * np.tanh(y[1] / WIDTH)
         yp[0], yp[1] = y[1], -(STIFFNESS * y[0] + DAMPING * y[1] + friction) / MASS

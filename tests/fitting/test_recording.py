@@ -99,7 +99,7 @@ def test_a_window_keeps_the_times() -> None:
         ("", 'is empty; a recording begins with "time [s], position [m]"'),
     ],
 )
-def test_what_is_wrong_is_one_line_with_the_fix(tmp_path: Path, text: str, said: str) -> None:
+def test_error_is_one_line_with_the_remedy(tmp_path: Path, text: str, said: str) -> None:
     assert said in refused(written(tmp_path, text))
 
 

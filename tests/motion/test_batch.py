@@ -132,7 +132,7 @@ def test_every_number_is_that_of_simulate() -> None:
     assert endings >= {"moving", "resting", "decaying", "free", "grazing", "stick_slip"}
 
 
-def test_the_ledger_of_energies_is_there_when_asked_for_and_closes() -> None:
+def test_requested_energy_ledger_closes() -> None:
     points = drawn(200, seed=11)
     assert not any(
         str(name).startswith("energy") for name in simulate_batch(DRIVE, RELEASE, **points)
@@ -270,7 +270,7 @@ def test_a_bad_point_is_marked_and_the_others_go_on(name: str, value: float, tol
         alone(point)
 
 
-def test_the_first_bad_argument_is_told() -> None:
+def test_first_bad_argument_is_reported() -> None:
     batch = batch_of(displacement=[nan, 0.0], mass=[-1.0, 0.01])
     assert [meaning(status) for status in batch.status] == ["bad_mass", "ok"]
 
@@ -333,7 +333,7 @@ def test_masked_entries_are_points_that_are_refused() -> None:
         ),
     ],
 )
-def test_what_is_no_point_at_all_is_refused(change: dict[str, Any], message: str) -> None:
+def test_invalid_batches_are_refused(change: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError, match=message):
         batch_of(**change)
 

@@ -238,7 +238,7 @@ def test_a_batch_refuses_a_coefficient_beside_a_force() -> None:
         ),
     ],
 )
-def test_what_does_not_go_together_is_refused(make: Callable[[], object], message: str) -> None:
+def test_incompatible_arguments_are_refused(make: Callable[[], object], message: str) -> None:
     with pytest.raises(ValueError) as refused:
         make()
     assert str(refused.value) == message

@@ -106,7 +106,7 @@ def test_a_free_oscillation_in_closed_form() -> None:
     assert fastest.time[1:-1] == pytest.approx((np.arange(3) + 0.5) * pi / omega, rel=1e-14)
 
 
-def test_where_the_acceleration_jumps_both_sides_are_extrema() -> None:
+def test_both_sides_of_a_jump_of_the_acceleration_are_extrema() -> None:
     motion = simulate(CYCLE, Release(0.05))
     time, value = motion.extrema("acceleration")
     jumps = np.flatnonzero(np.diff(time) == 0.0)
@@ -117,7 +117,7 @@ def test_where_the_acceleration_jumps_both_sides_are_extrema() -> None:
         assert value[i : i + 2] == pytest.approx([left, right], rel=1e-9, abs=1e-9)
 
 
-def test_what_rests_before_it_turns_back_turns_where_it_comes_to_rest() -> None:
+def test_pin_that_rests_before_a_turn_turns_at_its_rest() -> None:
     """A pin held by the finger until the mouse pulls it on: the rest is one extremum."""
     drive = Drive(
         mass=0.010, stiffness=100.0, damping=2.0, finger=Contact(0.05), plate=Contact(0.3)
@@ -175,7 +175,7 @@ def test_crossings_alternate(case: Case, which: QuantityName, part: float) -> No
     assert ((time >= 0.0) & (time <= motion.duration)).all()
 
 
-def test_what_is_refused() -> None:
+def test_invalid_values_are_refused() -> None:
     motion = simulate(CYCLE, Release(0.05))
     with pytest.raises(ValueError, match=r"which must be 'position' or .*, got 'force'"):
         motion.extrema("force")  # type: ignore[arg-type]

@@ -87,7 +87,7 @@ def test_curve_is_kept_as_rows() -> None:
     assert hash(contact)
 
 
-def test_a_curve_alone_says_the_kinetic_friction() -> None:
+def test_curve_alone_gives_the_kinetic_friction() -> None:
     contact = Contact(curve=[(0, 0.02), (0.1, 0.01)])
     assert contact == Contact(None, None, [(0, 0.02), (0.1, 0.01)])
     assert contact == Contact(0.02, curve=[(0, 0.02), (0.1, 0.01)])

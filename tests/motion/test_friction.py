@@ -27,7 +27,7 @@ def drive(plate: Contact, mass: float, preload: float = 0.0) -> Drive:
 @pytest.mark.parametrize(
     ("mass", "kinetic", "static"), [(0.005, 0.449, 0.540), (0.010, 0.224, 0.270)]
 )
-def test_it_is_friction_over_weight(mass: float, kinetic: float, static: float) -> None:
+def test_coefficient_is_friction_over_weight(mass: float, kinetic: float, static: float) -> None:
     found = Coefficients.of(drive(PLATE, mass))
     assert (round(found.kinetic, 3), round(found.static, 3)) == (kinetic, static)
     words = f"friction coefficient {kinetic:.3f}, static {static:.3f}: its friction over "
@@ -66,13 +66,13 @@ def test_a_preload_presses_beside_the_weight() -> None:
         (Contact(0.0), 1.0, None),
     ],
 )
-def test_handbooks_are_asked(plate: Contact, mass: float, doubt: str | None) -> None:
+def test_handbook_values_agree(plate: Contact, mass: float, doubt: str | None) -> None:
     found = Coefficients.of(drive(plate, mass)).doubt
     assert found is None if doubt is None else found and found.startswith(doubt)
 
 
 @pytest.mark.parametrize(("mass", "value"), [("5 g", "0.408"), ("20 g", "0.102")])
-def test_check_and_scan_say_what_mass_makes_of_it(mass: str, value: str) -> None:
+def test_check_and_scan_report_the_effect_of_mass(mass: str, value: str) -> None:
     Path("device.toml").write_text(GOOD.replace('mass = "10 g"', f'mass = "{mass}"'))
     words = (
         f"warning: the plate's kinetic friction coefficient is {value}, outside the 0.15 to 0.30"
@@ -122,7 +122,7 @@ CASES = {
 
 
 @pytest.mark.parametrize("axes", CASES)
-def test_a_study_knows_its_range(axes: str) -> None:
+def test_study_has_its_range(axes: str) -> None:
     found, expected = over(axes), CASES[axes]
     if expected is None:
         assert found is None
@@ -142,7 +142,7 @@ def test_a_sampled_study_and_tolerances_go_to_their_ends() -> None:
     assert 0.0 < low < 0.1 and high == inf  # some of the masses are as small as you like
 
 
-def test_the_commands_of_studies_say_it_in_one_line() -> None:
+def test_commands_of_studies_report_in_one_line() -> None:
     study('[axes]\nmass = ["5 g", "20 g"]\n[tolerances]\nmass = "20 %"\n')
     words = "the plate's friction coefficient, plate.kinetic over what presses, goes from "
     swept = run("sweep", "study.toml")

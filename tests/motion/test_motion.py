@@ -145,7 +145,7 @@ def test_plate_load_multiplies_the_friction_of_the_plate() -> None:
     assert pressed.events != simulate(DRIVE, Release(0.06, 2e-3)).events
 
 
-def test_a_device_file_is_simulated_with_all_that_it_says() -> None:
+def test_device_file_is_simulated_with_all_its_values() -> None:
     device = load_device(EXAMPLES / "tactile-mouse.toml", ["motion.settling_band=0.1"])
     motion = simulate(device)
     assert motion.release == device.release

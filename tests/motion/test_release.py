@@ -39,7 +39,7 @@ def test_replace_takes_the_arguments_of_a_release() -> None:
         release.replace(displacement="far")
 
 
-def test_it_is_a_value() -> None:
+def test_energy_is_a_value() -> None:
     release = Release(STOP, 2e-3, plate_load=Profile([0.0, 0.01], [5.0, 1.0]))
     assert pickle.loads(pickle.dumps(release)) == release
     assert hash(release) == hash(replace(release))
@@ -124,7 +124,7 @@ def test_text_with_a_unit_is_the_number_in_si() -> None:
         ),
     ],
 )
-def test_what_is_wrong_is_said_in_a_line(make: Callable[[], object], message: str) -> None:
+def test_error_is_one_line(make: Callable[[], object], message: str) -> None:
     with pytest.raises(ValueError) as refused:
         make()
     assert str(refused.value).startswith(message)

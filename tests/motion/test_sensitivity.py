@@ -311,7 +311,7 @@ def test_a_start_at_the_plates_velocity_has_no_derivative_by_velocity_alone() ->
     assert isfinite(sensitivity.position(0.01)[1])
 
 
-def test_a_change_in_the_number_of_events_is_told() -> None:
+def test_change_in_the_number_of_events_is_reported() -> None:
     """Bisected to where one more swing begins; before that swing the derivatives exist."""
 
     def run(displacement: float) -> Motion:
@@ -333,7 +333,7 @@ def test_a_change_in_the_number_of_events_is_told() -> None:
     assert run(low * (1 - 1e-6)).sensitivity(["displacement"]).gaps == {}
 
 
-def test_a_grazing_event_is_told() -> None:
+def test_grazing_event_is_reported() -> None:
     """The plate moves exactly as fast as the pin ever comes: it touches that velocity."""
 
     def run(mouse_velocity: float) -> Motion:

@@ -106,7 +106,7 @@ def banded(text: str = GOOD, band: str = '"2 %"') -> Path:
 
 
 @pytest.mark.parametrize("how", ["file", "command line"])
-def test_simulate_says_uses_and_writes_it(how: str) -> None:
+def test_simulate_reports_uses_and_writes_it(how: str) -> None:
     Path("device.toml").write_text(GOOD)
     arguments: tuple[str | Path, ...] = (
         (banded(),) if how == "file" else ("device.toml", "--set", "settling_band=2 %")
@@ -184,7 +184,7 @@ def test_a_sweep_uses_it(how: str) -> None:
     assert "ε" in Path("map.svg").read_text("utf-8")
 
 
-def test_a_map_tells_the_band_where_it_is_not_the_usual_one() -> None:
+def test_map_states_an_unusual_band() -> None:
     Path("study.toml").write_text(f'base = "{EXAMPLE.as_posix()}"\n{AXES}')
     run("sweep", "study.toml")
     run("map", "study.nc", "--plot", "map.svg")

@@ -296,7 +296,7 @@ def test_numbers_of_the_transient_do_not_depend_on_the_duration() -> None:
         assert short.ending.plate.power == long.ending.plate.power
 
 
-def test_what_goes_on_is_reported_in_each_period_and_as_power() -> None:
+def test_steady_motion_is_reported_per_period_and_as_power() -> None:
     resting = simulate(
         Drive(mass=0.01, stiffness=100.0, damping=0.4, plate=Contact(0.02), finger=Contact(0.005)),
         Release(0.1, 1.5e-3),

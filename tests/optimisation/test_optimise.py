@@ -81,7 +81,7 @@ def test_the_papers_problem_beats_a_grid_and_holds_between_its_conditions(paper:
     assert paper.goals[0].value <= longest[met].min()
 
 
-def test_the_worst_conditions_are_said(paper: Design) -> None:
+def test_worst_conditions_are_reported(paper: Design) -> None:
     found = released(SPEEDS, **drive_values(paper))
     peak = found.transient_peak_displacement.values.ravel()
     (case,) = paper.constraints[0].case.values()
@@ -128,7 +128,7 @@ def test_a_relaxed_limit_gives_the_gain_and_a_stricter_one_does_not(paper: Desig
         assert (found.goals[0].value <= wanted) == gained
 
 
-def test_the_same_seed_gives_the_same_design(paper: Design) -> None:
+def test_one_seed_gives_one_design(paper: Design) -> None:
     again = pd.optimise(pd.load_device(MOUSE), PAPER, effort=SMALL, threads=1)
     assert again.values == paper.values and again.built == paper.built
     other = pd.optimise(pd.load_device(MOUSE), PAPER, effort=SMALL, seed=2)
@@ -136,7 +136,7 @@ def test_the_same_seed_gives_the_same_design(paper: Design) -> None:
     assert other.goals[0].value == pytest.approx(paper.goals[0].value, rel=0.01)
 
 
-def test_the_device_file_of_a_design_does_what_it_says(paper: Design) -> None:
+def test_device_file_of_a_design_has_its_numbers(paper: Design) -> None:
     drive = paper.device.drive
     assert drive.stiffness == paper.values["drive.stiffness"]
     assert drive.finger.static_friction == pytest.approx(1.5 * drive.finger.kinetic, rel=1e-12)
@@ -170,7 +170,7 @@ def test_maps_hold_what_each_place_is_worth(paper: Design) -> None:
 # ---- no design -----------------------------------------------------------------------------------
 
 
-def test_what_no_design_meets_is_said_with_the_closest() -> None:
+def test_infeasible_problem_is_reported_with_the_closest_design() -> None:
     problem = {**PAPER, "specification": {"peak_displacement": ">= 3 mm"}, "tolerances": {}}
     found = pd.optimise(pd.load_device(MOUSE), problem, effort=SMALL)
     assert not found.feasible and found.status is Status.incomplete
@@ -273,7 +273,7 @@ def test_a_design_goes_to_a_dataset(bought: Design) -> None:
     assert check_faces(bought) > 1
 
 
-def test_progress_is_told_and_ctrl_c_ends_it() -> None:
+def test_progress_is_reported_and_ctrl_c_ends_it() -> None:
     class Stop(Exception):
         pass
 

@@ -17,7 +17,7 @@ from pindrive.optimisation.problem import problem_of
 READER = EXAMPLES / "tactile-reader.toml"
 
 
-def test_a_design_problem_says_what_may_vary_and_under_which_conditions() -> None:
+def test_design_problem_has_variables_and_conditions() -> None:
     problem = read_problem(EXAMPLES / "catalogue-problem.toml")
     names = {variable.name: variable for variable in problem.variables}
     assert {*names} == {"drive.mass", "finger.kinetic", "spring", "damper"}
@@ -114,7 +114,7 @@ def changed(**tables: Any) -> dict[str, Any]:
         ),
     ],
 )
-def test_what_contradicts_itself_is_refused_in_a_line(problem: dict[str, Any], said: str) -> None:
+def test_contradictions_are_refused_in_a_line(problem: dict[str, Any], said: str) -> None:
     with pytest.raises(ValueError) as error:
         problem_of(pd.load_device(MOUSE), problem)
     assert str(error.value).splitlines()[0] == said

@@ -100,7 +100,7 @@ def test_the_limit_that_binds_is_named_with_what_gives_the_gain(found: Design) -
     assert not lag.binds
 
 
-def test_kriging_goes_through_what_is_known_and_says_how_surely() -> None:
+def test_kriging_interpolates_with_its_error() -> None:
     rng = np.random.default_rng(3)
     points = rng.random((40, 2))
 
@@ -118,7 +118,7 @@ def test_kriging_goes_through_what_is_known_and_says_how_surely() -> None:
     assert far > near
 
 
-def test_kriging_tells_noise_from_a_trend() -> None:
+def test_kriging_separates_noise_from_a_trend() -> None:
     rng = np.random.default_rng(4)
     points = rng.random((60, 1))
     noisy = points[:, 0] + 0.05 * rng.normal(size=60)

@@ -30,7 +30,7 @@ def test_one_goal_within_a_limit_ends_where_both_meet() -> None:
     assert found.points[0] == pytest.approx(np.full(3, 0.5), abs=2e-3)
 
 
-def test_what_no_point_meets_ends_at_the_nearest() -> None:
+def test_infeasible_search_ends_at_the_nearest_point() -> None:
     def worth(points: Array) -> tuple[Array, Array]:
         return points[:, :1], 2.0 - points.sum(axis=1) + 0.5
 
@@ -65,7 +65,7 @@ def test_a_front_is_where_it_must_be_and_spread(goals: int) -> None:
         assert np.linalg.norm(front - way, axis=1).min() < 0.2
 
 
-def test_non_dominated_is_what_its_definition_says() -> None:
+def test_non_dominated_equals_its_definition() -> None:
     goals = np.random.default_rng(4).integers(0, 6, (200, 3)).astype(float)
     slow = [
         not any((other <= one).all() and (other < one).any() for other in goals) for one in goals

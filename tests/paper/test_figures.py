@@ -205,7 +205,7 @@ def test_the_curves_of_one_parameter(name: str) -> None:
     assert [axes.get_ylabel() for axes in panels] == [label, "", "", "", label, "", "", ""]
 
 
-def test_settled_is_told_from_at_rest() -> None:
+def test_settled_differs_from_at_rest() -> None:
     _, figure = drawn("influence-on-time")
     handles = legend_of(figure)
     for words, gid in (("settled within 5 %", "settled"), ("at rest", "rest")):
@@ -342,7 +342,7 @@ def test_steady_state_and_rest() -> None:
     )
 
 
-def test_how_far_the_printed_forms_are_off() -> None:
+def test_errors_of_the_printed_forms() -> None:
     found, figure = drawn("printed-forms")
     (axes,) = figure.axes
     shown = by_label(axes)

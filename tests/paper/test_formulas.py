@@ -52,7 +52,7 @@ def test_6_solves_2_and_is_4() -> None:
     assert vanishes(x - general)
 
 
-def test_2_and_3_say_the_same_of_damping() -> None:
+def test_equations_2_and_3_agree_on_damping() -> None:
     a = -b / (2 * m)
     natural = sp.sqrt(k / m)
     assert vanishes(natural**2 * b / k - b / m)
@@ -150,7 +150,7 @@ def test_without_damping_the_printed_forms_are_right() -> None:
     assert vanishes(speed.subs(t, (sp.pi + 2 * phase) / w0) - speed.subs(t, 0))
 
 
-def test_what_the_paper_says_of_phase_and_amplitude() -> None:
+def test_statements_of_the_paper_on_phase_and_amplitude() -> None:
     """The signs of the derivatives of (7) and (8), for v_p > 0."""
     a, w, v = sp.Symbol("alpha", nonpositive=True), sp.Symbol("omega", positive=True), v_p
     along, across = w * d, v - a * d
@@ -466,7 +466,7 @@ def test_arrays_broadcast() -> None:
     assert paper.periods_to_rest(r, [1e-3, 2e-3, 3e-3]).shape == (2, 3)
 
 
-def test_where_the_analysis_does_not_apply_there_is_no_number() -> None:
+def test_analysis_outside_its_range_has_no_number() -> None:
     base = {"mass": 0.01, "stiffness": 100.0, "mouse_velocity": 0.1}
     r = Releases(
         **base,

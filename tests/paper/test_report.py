@@ -62,7 +62,7 @@ def exhibit(made: Report, name: str) -> Exhibit:
 # ---- the docs agree with the command -------------------------------------------------------------
 
 
-def test_the_docs_say_what_the_command_says(made: Report) -> None:
+def test_docs_equal_the_output_of_the_command(made: Report) -> None:
     assert (DOCS / report.NAME).read_text("utf-8") == report.text(made), REMAKE
 
 
@@ -94,7 +94,7 @@ def test_the_docs_tables_are_whole() -> None:
         assert len({row.count("|") for row in table.splitlines()}) == 1, table[:200]
 
 
-def test_what_the_docs_link_to_is_there() -> None:
+def test_links_of_the_docs_exist() -> None:
     text = (DOCS / report.NAME).read_text("utf-8")
     headings = re.findall(r"^#+ (.*)$", text, re.MULTILINE)
     plain = (re.sub(r"</?sub>", "", heading).lower() for heading in headings)
@@ -238,7 +238,7 @@ def test_the_data_have_units(files: dict[str, bytes]) -> None:
                         assert variable.attrs.get("units"), (name, key)
 
 
-def test_progress_is_told_as_often_as_announced(
+def test_progress_is_reported_as_often_as_announced(
     made: Report, files: dict[str, bytes], steps: list[str]
 ) -> None:
     assert len(steps) == report.STEPS + report.FIGURES
@@ -365,7 +365,7 @@ def test_at_the_plates_velocity_the_pin_passes_or_is_caught(made: Report) -> Non
     assert re.findall(r"(\d+) of (\d+)", said) == [("523", "605"), ("82", "605"), ("45", "82")]
 
 
-def test_where_a_printed_form_is_good() -> None:
+def test_range_of_a_printed_form() -> None:
     r = population.damped(400)
     ratio, beyond = damping_ratio(r), r.displacement > formulas.friction_offset(r)
     assert where_good(np.zeros(400), r) == "everywhere (400 of 400)"

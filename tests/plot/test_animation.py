@@ -68,7 +68,7 @@ def test_a_gif_shows_each_frame(evaluated: Evaluation, tmp_path: Path) -> None:
     assert lit[some_on].mean() > lit[~some_on].mean() + 20
 
 
-def test_what_moves_is_where_it_was(evaluated: Evaluation) -> None:
+def test_moving_pins_keep_their_places(evaluated: Evaluation) -> None:
     times = frame_times(evaluated.scan.path, 4.0)
     stage = film._Stage.of(evaluated, times, 4.0)
     (mouse, _, spots), (pins, arrows) = (
@@ -124,7 +124,9 @@ def test_ffmpeg_writes_a_real_mp4(evaluated: Evaluation, tmp_path: Path) -> None
     assert target.read_bytes()[4:8] == b"ftyp"
 
 
-def test_without_ffmpeg_it_says_what_to_do(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_ffmpeg_the_remedy_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
     target = tmp_path / "film.mp4"

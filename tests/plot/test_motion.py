@@ -246,7 +246,7 @@ def test_a_rigid_finger_has_no_panel(drawn: dict[str, tuple[Motion, Figure]], na
     assert "s" not in [axes.get_label() for axes in drawn[name][1].axes]
 
 
-def test_title_says_what_changes(drawn: dict[str, tuple[Motion, Figure]]) -> None:
+def test_title_has_the_varied_keys(drawn: dict[str, tuple[Motion, Figure]]) -> None:
     skin, magnet = (drawn[name][1].get_suptitle() for name in ("skin", "magnet"))
     assert r"$F_\mathrm{p}$ = 22 → 15 mN (static 26.5 mN)" in skin
     assert r"$k_\mathrm{f}$ = 1000 N/m" in skin
@@ -342,14 +342,14 @@ def test_each_tint_and_jump_is_explained(drawn: dict[str, tuple[Motion, Figure]]
         assert to_hex(example[words].get_facecolor()) == to_hex(PALETTE[mode])
 
 
-def test_title_says_the_numbers(drawn: dict[str, tuple[Motion, Figure]]) -> None:
+def test_title_has_the_numbers(drawn: dict[str, tuple[Motion, Figure]]) -> None:
     _, figure = drawn["example"]
     title = figure.get_suptitle()
     for words in ("settling time 116.2 ms", "swing 2.914 mm", "10 g", "100 N/m", "60 mm/s"):
         assert words in title
 
 
-def test_too_many_events_are_not_marked_and_it_says_so(
+def test_too_many_events_are_not_marked_and_this_is_reported(
     drawn: dict[str, tuple[Motion, Figure]],
 ) -> None:
     motion, figure = drawn["many"]

@@ -96,7 +96,7 @@ def test_no_result_is_left_out(results: dict[str, Any]) -> None:
     assert returned - {"None"} <= found | NO_RESULTS
 
 
-def test_a_sweep_that_was_stopped_says_so_and_is_not_drawn(tmp_path: Path) -> None:
+def test_stopped_sweep_is_reported_and_not_drawn(tmp_path: Path) -> None:
     text = f'base = "{EXAMPLE.as_posix()}"\nchunk = 1\n[axes]\nmass = ["9 g", "10 g", "11 g"]\n'
     (tmp_path / "study.toml").write_text(text)
     study = pd.load_study(tmp_path / "study.toml")

@@ -87,13 +87,13 @@ def test_each_sign_is_explained(figure: Figure) -> None:
     assert collisions(figure) == []
 
 
-def test_the_title_says_whose_and_by_what(figure: Figure) -> None:
+def test_title_names_study_and_method(figure: Figure) -> None:
     title = figure.get_suptitle()
     assert title.startswith(r"Largest hand speed: a \$ mouse of 5 \$")
     assert "at least 40% of its way" in " ".join(title.split())
 
 
-def test_what_is_nowhere_distinct_has_no_curve() -> None:
+def test_pitch_without_distinct_lines_has_no_curve() -> None:
     figure = plot_speeds([limit(0.001, [], [])], 0.5, Criteria())
     (axes,) = figure.axes
     assert {line.get_gid() for line in axes.lines} == set()

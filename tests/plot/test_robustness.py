@@ -78,7 +78,7 @@ def test_quantiles_are_those_of_the_designs(found: Robustness, figure: Figure) -
     assert list(drawn.values()) == pytest.approx(expected)
 
 
-def test_what_misses_the_specification_is_shaded(figure: Figure) -> None:
+def test_points_outside_of_the_specification_are_shaded(figure: Figure) -> None:
     axes = of(figure, "swing")
     low, high = axes.get_xlim()
     below, above = sorted(patch_spans(axes, "beyond"))
@@ -89,7 +89,7 @@ def test_what_misses_the_specification_is_shaded(figure: Figure) -> None:
     assert limits == pytest.approx([0.9, 1.2])
 
 
-def test_a_limit_far_off_is_told_and_does_not_squeeze_the_designs(
+def test_distant_limit_is_reported_and_does_not_squeeze_the_designs(
     found: Robustness, figure: Figure
 ) -> None:
     axes = of(figure, "settling time")
@@ -126,7 +126,7 @@ def test_the_design_and_the_worst_cases_are_marked(found: Robustness, figure: Fi
     assert signs["median; 5 and 95 % (dotted)"].get_linestyle() == "-"
 
 
-def test_the_title_says_yield_and_ranges(found: Robustness, figure: Figure) -> None:
+def test_title_has_yield_and_ranges(found: Robustness, figure: Figure) -> None:
     title = " ".join(figure.get_suptitle().split())
     assert found.all_met is not None
     assert f"a name: {found.all_met.text} of the designs have swing ≥ 0.9 mm and" in title
@@ -134,7 +134,7 @@ def test_the_title_says_yield_and_ranges(found: Robustness, figure: Figure) -> N
     assert r"$v_\mathrm{p}$ 80 … 130 mm/s" in title
 
 
-def test_missing_numbers_are_told(found: Robustness) -> None:
+def test_missing_numbers_are_reported(found: Robustness) -> None:
     values = dict(found.values)
     some = values["transient_swing"].copy()
     some[: COUNT // 4] = np.nan

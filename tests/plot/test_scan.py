@@ -183,7 +183,7 @@ def test_the_tactile_image_is_drawn_as_it_is(evaluated: Evaluation, figure: Figu
     assert scale.get_ylim() == (low, high)
 
 
-def test_what_goes_back_is_dotted_for_print_in_grey(evaluated: Evaluation, figure: Figure) -> None:
+def test_return_strokes_are_dotted_for_print_in_grey(evaluated: Evaluation, figure: Figure) -> None:
     axes, painting = panel(figure, "felt"), paint(evaluated.scan)
     (image,) = (i for i in axes.images if i.get_gid() == "relief")
     (dots,) = (c for c in axes.collections if c.get_gid() == "back")
@@ -290,7 +290,7 @@ def test_print_and_tactile_image_have_one_scale(figure: Figure) -> None:
     assert printed.get_window_extent().width == pytest.approx(felt.get_window_extent().width)
 
 
-def test_the_title_says_the_verdict(evaluated: Evaluation, figure: Figure) -> None:
+def test_title_has_the_verdict(evaluated: Evaluation, figure: Figure) -> None:
     title = figure.get_suptitle()
     counts = evaluated.counts
     assert "6 pins" in title
@@ -314,7 +314,7 @@ def test_a_blank_page_is_drawn() -> None:
         (0.0, 0.2, "beyond the page"),
     ],
 )
-def test_the_history_says_where_it_takes_place(velocity: float, start: float, where: str) -> None:
+def test_history_states_its_place(velocity: float, start: float, where: str) -> None:
     page = Scene(np.ones((60, 500)), 1e-4)
     path = HandPath([0.0, 1.0], [velocity] * 2, [0.0, 0.0], (start, 0.003))
     figure = plot_scan(evaluate(scan(Device(drive=DRIVE), page, path)))

@@ -103,7 +103,7 @@ def test_a_map_is_a_slice_of_the_file(grid: Slice) -> None:
     assert figure.axes[-1].get_ylabel() == r"settling time $t_\mathrm{s}$ (ms)"
 
 
-def test_what_did_not_settle_is_hatched_and_what_cannot_be_is_grey(grid: Slice) -> None:
+def test_unsettled_points_are_hatched_and_impossible_points_grey(grid: Slice) -> None:
     (key,) = draw(grid, ["swing"]).legends
     words = [text.get_text() for text in key.get_texts()]
     assert words == [
@@ -241,7 +241,7 @@ def test_contours_end_at_a_jump() -> None:
     assert {text.get_text() for text in axes.texts} == {"5", "25"}
 
 
-def test_what_is_steep_is_no_jump() -> None:
+def test_steep_slope_is_no_jump() -> None:
     for smooth in (X, X**4, np.exp(5 * X) / 150, np.sqrt(X), np.sin(9 * X), np.abs(X - 0.4)):
         assert not find_jumps(smooth, X).any()
     for jump in (0.6, -0.6):

@@ -113,7 +113,7 @@ def test_curves_are_wide_where_it_is_met(folder: Path, data: xr.Dataset) -> None
     assert [d.tolist() for d in drawn] == [e.tolist() for e in expected.T if e.any()]
 
 
-def test_of_draws_the_part_that_meets_it_counts(folder: Path, swept: str) -> None:
+def test_draws_count_by_the_part_that_meets_the_specification(folder: Path, swept: str) -> None:
     with Slice(folder / "drawn.nc") as view:
         (panel,) = view.panels("transient_settling_time", "plate_kinetic", "", {})
         with xr.open_dataset(folder / "drawn.nc", engine="h5netcdf") as opened:

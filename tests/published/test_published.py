@@ -45,7 +45,7 @@ def test_every_data_file_has_its_case_and_its_source(every: list[Case]) -> None:
         assert {"title", "authors", "where", "numbers"} <= load(name)["source"].keys()
 
 
-def test_what_pindrive_cannot_express_is_said_in_the_case(every: list[Case]) -> None:
+def test_published_case_names_what_cannot_be_expressed(every: list[Case]) -> None:
     incomplete = {case.key: case.missing for case in every if case.missing}
     assert incomplete.keys() == {"stick-slip"}
 

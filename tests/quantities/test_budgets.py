@@ -110,7 +110,7 @@ def test_a_motion_of_very_many_phases_is_no_json() -> None:
     assert not Path("a.json").exists()
 
 
-def test_a_damping_ratio_of_any_size_is_judged() -> None:
+def test_damping_ratio_of_any_size_is_evaluated() -> None:
     Path("device.toml").write_text(template(whole=True), encoding="utf-8")
     one = ("--set", "damping_ratio=1e6", "--set", "array.columns=1", "--set", "array.rows=1")
     for line in (
@@ -160,7 +160,7 @@ def traced(work: Callable[[], Found]) -> tuple[Found, int]:
         tracemalloc.stop()
 
 
-def test_looks_for_turning_points_are_not_kept() -> None:
+def test_samples_for_turning_points_are_not_kept() -> None:
     drive = device(stiffness=1e9).drive
     ramp = Profile((0.0, 0.5, 1.0), (0.05, 0.06, 0.05))
     motion = simulate(drive, Release(ramp), duration=1.0)
@@ -170,7 +170,7 @@ def test_looks_for_turning_points_are_not_kept() -> None:
     assert peak < 8 * looks + 64 * len(knots)  # not even one array of them
 
 
-def test_looks_at_the_page_are_not_kept() -> None:
+def test_samples_of_the_page_are_not_kept() -> None:
     page = np.ones((30, 6000))
     page[:, 1000:2000] = page[:, 3000:4000] = 0.0
     path = strokes([(1e-5, 1.5e-5), (0.00599, 1.5e-5)] * 40, 1.0)

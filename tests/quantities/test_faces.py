@@ -110,7 +110,7 @@ def test_a_contact_is_its_part_of_the_table() -> None:
             assert key in QUANTITIES or key == "plate.stiffness"  # the plate is rigid
 
 
-def test_what_a_batch_varies_has_the_names_of_device_files() -> None:
+def test_batch_arguments_have_the_names_of_device_files() -> None:
     in_files = {variable(key) for key in NUMERIC_KEYS if key.partition(".")[0] != "scan"}
     assert {*_ARGUMENTS} <= in_files
     for name, quantity in _ARGUMENTS.items():

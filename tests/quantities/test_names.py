@@ -54,7 +54,7 @@ def test_an_unknown_name_gets_the_nearest(given: object, said: str) -> None:
     assert str(refused.value) == said
 
 
-def test_of_two_names_with_one_spelling_the_first_has_it() -> None:
+def test_first_of_two_names_has_a_shared_spelling() -> None:
     two = Names("number", {"median_smear": ("smear",), "worst_smear": ("smear",)})
     assert two.matches("smear") == ("median_smear",)
 

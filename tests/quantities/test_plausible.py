@@ -100,7 +100,9 @@ def test_a_mass_that_no_double_can_move_is_refused_and_not_followed_for_ever() -
         ),
     ],
 )
-def test_what_is_not_computed_is_refused_in_a_line(given: dict[str, Any], message: str) -> None:
+def test_numbers_that_are_not_computed_are_refused_in_a_line(
+    given: dict[str, Any], message: str
+) -> None:
     with pytest.raises(ValueError) as refused:
         release, duration = parts(given)
         simulate(PIN, release, duration=duration)
@@ -125,9 +127,7 @@ def test_what_is_not_computed_is_refused_in_a_line(given: dict[str, Any], messag
         ({"duration": 1e-9}, "duration is 1e-9 s; any such device has 1e-6 to 1e7 s"),
     ],
 )
-def test_what_no_device_has_is_warned_of_where_it_was_written(
-    given: dict[str, Any], words: str
-) -> None:
+def test_implausible_value_is_warned_of_at_its_place(given: dict[str, Any], words: str) -> None:
     release, duration = parts(given)
     with pytest.warns(ImplausibleValueWarning) as told:
         simulate(PIN, release, duration=duration)

@@ -36,7 +36,7 @@ def test_each_code_has_words_of_its_own() -> None:
 
 
 @pytest.mark.parametrize(("name", "kind"), [("status", Status), ("ending", End)])
-def test_a_flag_says_what_its_values_mean(name: str, kind: type[Status | End]) -> None:
+def test_flag_has_the_meaning_of_its_values(name: str, kind: type[Status | End]) -> None:
     flags = outcome_attributes(name)
     names = flags["flag_meanings"].split()
     values = flags["flag_values"].tolist()
@@ -83,7 +83,7 @@ def test_an_error_keeps_its_code_between_processes() -> None:
     assert str(again) == str(error) == f"pin 3: the simulation {Status.standstill.explanation}"
 
 
-def test_no_code_looks_into_a_message_of_an_error() -> None:
+def test_no_code_parses_a_message_of_an_error() -> None:
     """Code uses the type and the attributes of an error, never its message."""
     looks = []
     for path in SOURCES:

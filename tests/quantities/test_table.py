@@ -97,7 +97,7 @@ def test_check_names_quantity_bound_and_value(name: str, value: object, message:
     assert str(refused.value) == message
 
 
-def test_check_says_where() -> None:
+def test_check_reports_the_place() -> None:
     with pytest.raises(ValueError) as refused:
         check("mass", -1.0, where="a.toml", label="drive.mass", given='"-1 kg"')
     assert str(refused.value) == (
@@ -124,7 +124,7 @@ def test_significant_digits(value: float, text: str) -> None:
     assert significant(value) == text
 
 
-def test_the_settling_band_is_said_as_it_is() -> None:
+def test_settling_band_is_printed_exactly() -> None:
     assert QUANTITIES["settling_band"].default == settling_band
     assert "settling band" in QUANTITIES["transient.settling_time"].meaning
 

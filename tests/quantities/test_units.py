@@ -61,13 +61,13 @@ def test_degrees_are_parts_of_a_turn() -> None:
         ("3 m", "1", 'a plain number or a percentage, like "10 g"'),
     ],
 )
-def test_what_is_no_such_quantity_is_refused(text: str, unit: str, words: str) -> None:
+def test_values_of_another_quantity_are_refused(text: str, unit: str, words: str) -> None:
     with pytest.raises(UnitError) as refused:
         to_si(text, unit, "10 g")
     assert str(refused.value) == words
 
 
-def test_what_is_shown_is_read_back() -> None:
+def test_displayed_values_are_read_back() -> None:
     """A displayed value in its unit is read back as the SI value."""
     for unit, (shown, scale) in DISPLAY.items():
         assert to_si(f"{scale!r} {shown}", unit, "1 x") == pytest.approx(1.0, rel=1e-14)

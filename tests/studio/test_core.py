@@ -86,7 +86,7 @@ def test_recordings_are_read_as_python_reads_them(node: Ask, tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize("device", [EXAMPLE, SKIN])
-def test_what_the_page_writes_is_read_as_what_python_writes(
+def test_files_of_the_page_are_read_like_those_of_python(
     node: Ask, device: Path, tmp_path: Path
 ) -> None:
     """Columns by name and unit, numbers to rounding, and the recording that both are."""

@@ -181,9 +181,7 @@ def said_by_python(text: str, path: Path) -> list[str]:
     return [line.removeprefix(f"{path}: ") for line in refused.value.problems]
 
 
-def test_a_mistake_in_a_device_file_is_said_in_the_words_of_the_command(
-    node: Ask, tmp_path: Path
-) -> None:
+def test_device_file_error_has_the_words_of_the_command(node: Ask, tmp_path: Path) -> None:
     texts = spoiled()
     asked = [asked_of(text) for text in texts]
     differ = []
@@ -196,7 +194,7 @@ def test_a_mistake_in_a_device_file_is_said_in_the_words_of_the_command(
 
 
 @pytest.mark.parametrize("bad", [b"mass = \xff", "mass = 'µ'".encode("latin-1"), b"\x89HDF..."])
-def test_what_is_no_text_is_said_so(node: Ask, tmp_path: Path, bad: bytes) -> None:
+def test_values_that_are_no_text_are_reported(node: Ask, tmp_path: Path, bad: bytes) -> None:
     path = tmp_path / "device.toml"
     path.write_bytes(bad)
     with pytest.raises(ConfigError) as refused:
@@ -274,9 +272,7 @@ def flat(core: dict[str, Any]) -> dict[str, Any]:
     return {name: np.array(value, float) for name, value in numbers.items()}
 
 
-def test_device_files_are_read_as_python_reads_them_and_written_so(
-    node: Ask, tmp_path: Path
-) -> None:
+def test_device_files_are_read_and_written_like_python(node: Ask, tmp_path: Path) -> None:
     examples = [path.read_text("utf-8") for path in EXAMPLES]
     texts = [
         template(),
@@ -328,9 +324,7 @@ def numbers_given(device: DeviceFile) -> dict[str, float]:
     [template(), BY_COEFFICIENTS, CURVED, STOPPED],
     ids=["forces", "pressed", "curve", "stops"],
 )
-def test_what_follows_a_value_that_is_set_is_as_in_python(
-    node: Ask, tmp_path: Path, text: str
-) -> None:
+def test_followers_of_a_set_value_equal_python(node: Ask, tmp_path: Path, text: str) -> None:
     """Also its exact rate, which derivatives and fits use."""
     path = tmp_path / "device.toml"
     path.write_text(text, "utf-8")
@@ -403,7 +397,7 @@ def corners_of_weight_and_preload(node: Ask, tmp_path: Path) -> None:
 
 
 def what_follows_a_coefficient(node: Ask, tmp_path: Path) -> None:
-    test_what_follows_a_value_that_is_set_is_as_in_python(node, tmp_path, BY_COEFFICIENTS)
+    test_followers_of_a_set_value_equal_python(node, tmp_path, BY_COEFFICIENTS)
 
 
 @pytest.mark.parametrize(
@@ -413,13 +407,13 @@ def what_follows_a_coefficient(node: Ask, tmp_path: Path) -> None:
             "friction.ts",
             "sum + size, sizes[0]!",
             "Math.max(sum, size), sizes[0]!",
-            test_device_files_are_read_as_python_reads_them_and_written_so,
+            test_device_files_are_read_and_written_like_python,
         ),
         (
             "friction.ts",
             "still: still * load",
             "still",
-            test_device_files_are_read_as_python_reads_them_and_written_so,
+            test_device_files_are_read_and_written_like_python,
         ),
         ("friction.ts", "[own, ...(DRIVE", "[...(DRIVE", what_follows_a_coefficient),
         ("design.ts", "of(ofStatic) + pressed", "of(ofStatic)", what_follows_a_coefficient),
@@ -430,25 +424,25 @@ def what_follows_a_coefficient(node: Ask, tmp_path: Path) -> None:
             "checks.ts",
             "const steps = !curve && !continuous",
             "const steps = !curve",
-            test_a_mistake_in_a_device_file_is_said_in_the_words_of_the_command,
+            test_device_file_error_has_the_words_of_the_command,
         ),
         (
             "checks.ts",
             "Math.abs(displacement) <= travel",
             "displacement <= travel",
-            test_a_mistake_in_a_device_file_is_said_in_the_words_of_the_command,
+            test_device_file_error_has_the_words_of_the_command,
         ),
         (
             "whole.ts",
             "2 * area <= face",
             "area <= face",
-            test_a_mistake_in_a_device_file_is_said_in_the_words_of_the_command,
+            test_device_file_error_has_the_words_of_the_command,
         ),
         (
             "device.ts",
             "checkTouch(coefficients,",
             "checkTouch(!coefficients,",
-            test_a_mistake_in_a_device_file_is_said_in_the_words_of_the_command,
+            test_device_file_error_has_the_words_of_the_command,
         ),
     ],
 )

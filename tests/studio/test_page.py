@@ -118,7 +118,7 @@ def test_a_ratio_survives_a_value_of_zero(page: Any) -> None:
 
 
 @pytest.mark.parametrize("device", [EXAMPLE, SKIN, READER, pushed, rigid_stops, elastic_stops])
-def test_what_is_shown_is_what_python_computes(
+def test_displayed_values_equal_python(
     page: Any, device: Path | Callable[[Path], Path], tmp_path: Path
 ) -> None:
     device = device if isinstance(device, Path) else device(tmp_path)
@@ -274,9 +274,7 @@ def test_a_recording_is_dropped_and_shifted_by_hand(page: Any) -> None:
     ("old", "new"),
     [("10 g", "10"), ("mass", "mas"), ("kinetic = ", "kinetic "), ("22 mN", "-1 mN")],
 )
-def test_a_mistake_is_said_in_the_words_of_the_command(
-    page: Any, tmp_path: Path, old: str, new: str
-) -> None:
+def test_error_has_the_words_of_the_command(page: Any, tmp_path: Path, old: str, new: str) -> None:
     path = tmp_path / "bad.toml"
     path.write_text(template().replace(old, new, 1), "utf-8")
     opened(page, path)
@@ -286,7 +284,7 @@ def test_a_mistake_is_said_in_the_words_of_the_command(
     assert page.locator("#problem").is_hidden()
 
 
-def test_what_is_being_typed_outlasts_a_drawing_of_the_page(page: Any) -> None:
+def test_typed_text_outlasts_a_drawing_of_the_page(page: Any) -> None:
     """A field keeps its text while the page is redrawn in the next frame."""
     page.locator("#drive-stiffness").select_text()
     page.keyboard.type("15")

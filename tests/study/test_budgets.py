@@ -47,7 +47,7 @@ def test_a_product_of_axes() -> None:
     assert load_study("study.toml").size == 490_000_000_000  # for the disk to say
 
 
-def test_the_disk_says_how_many_points_there_may_be() -> None:
+def test_disk_space_limits_the_points() -> None:
     write("chunk = 524288\n" + (AXES + SECOND).replace("COUNT", "700000"))
     said = run("sweep", "study.toml")
     assert said.exit_code == 2

@@ -341,7 +341,7 @@ def test_refusals(tmp_path: Path, text: str) -> None:
     assert refused(tmp_path, text) == REFUSED[text]
 
 
-def test_all_mistakes_are_said_at_once(tmp_path: Path) -> None:
+def test_all_errors_are_reported_together(tmp_path: Path) -> None:
     with pytest.raises(ConfigError) as error:
         study(tmp_path, 'outputs = ["swinge"]\n[axes]\nmas = [1]\ndrive.stiffness = []\n')
     assert len(error.value.problems) == 3

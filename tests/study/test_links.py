@@ -76,7 +76,7 @@ def run(*arguments: str) -> str:
 # ---- the mechanism -------------------------------------------------------------------------------
 
 
-def test_the_table_says_what_follows_what() -> None:
+def test_table_lists_linked_keys() -> None:
     follows = {quantity.key: quantity.follows for quantity in DRIVE_QUANTITIES if quantity.follows}
     assert follows == {
         "plate.static": ("plate.kinetic",),
@@ -128,7 +128,7 @@ def test_a_swept_point_is_the_device_with_that_value_set() -> None:
                 )
 
 
-def test_what_is_given_by_itself_does_not_follow() -> None:
+def test_given_values_do_not_follow() -> None:
     plan = study('[axes]\nplate.kinetic = ["5 mN"]\nplate.static = ["30 mN", "40 mN"]\n')
     assert plan.links == {}
     plan = study(
@@ -204,7 +204,7 @@ def test_links_may_follow_links_but_not_each_other() -> None:
     )
 
 
-def test_the_file_and_its_map_say_what_followed() -> None:
+def test_file_and_map_state_linked_keys() -> None:
     study('[axes]\nplate.kinetic = ["11 mN", "44 mN"]\n')
     run("sweep", "study.toml")
     with xr.open_dataset("study.nc") as data:
@@ -249,7 +249,7 @@ def test_the_yield_is_that_of_the_draws_that_exist() -> None:
     assert f"Yield: of {found.designs:,} designs".replace(",", " ") in said
 
 
-def test_what_never_settles_fails_and_is_told_from_what_cannot_exist() -> None:
+def test_unsettled_designs_fail_and_differ_from_impossible_ones() -> None:
     device = PLAIN + 'duration = "132.6 ms"\n'
     plan = study(TOLERANCES.replace("[spec", 'plate.static = "25 %"\n[spec'), device)
     found = robustness(plan, count=1000)
@@ -286,7 +286,7 @@ def test_draws_none_of_which_can_exist_are_refused() -> None:
     assert line.startswith("study.toml: of 50 draws none can exist: plate.static must be at least")
 
 
-def test_draws_of_scans_are_told_by_their_reasons() -> None:
+def test_draws_of_scans_are_counted_by_reason() -> None:
     Path("study.toml").write_text(
         PLAIN.partition("[motion]")[0].replace('kinetic = "5 mN"', 'kinetic = "20 mN"')
         + """
@@ -314,7 +314,7 @@ def test_draws_of_scans_are_told_by_their_reasons() -> None:
 # ---- sensitivity ---------------------------------------------------------------------------------
 
 
-def test_sensitivity_leaves_out_what_cannot_exist_and_says_why() -> None:
+def test_sensitivity_omits_impossible_draws_with_a_reason() -> None:
     plan = study(TOLERANCES.replace("[spec", 'plate.static = "25 %"\n[spec'))
     found = sobol(plan, rows=128, near=True)
     (refusal,) = found.refusals

@@ -104,7 +104,7 @@ def test_the_worst_case_is_no_better_than_a_million_draws() -> None:
             assert low <= case.keys[key] <= high
 
 
-def test_what_never_settles_meets_nothing_and_is_the_worst(tmp_path: Path) -> None:
+def test_unsettled_designs_meet_nothing_and_are_the_worst(tmp_path: Path) -> None:
     plan = study(tmp_path, TOLERANCES + '[specification]\nsettling_time = "<= 1 s"\n')
     plan = load_study(
         _edited(tmp_path, "motion", 'mouse_velocity = "100 mm/s"\nduration = "98 ms"')

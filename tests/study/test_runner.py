@@ -82,7 +82,7 @@ def test_the_ledger_is_kept_where_it_is_named() -> None:
             assert abs(named.energy_residual[i]) < 1e-12 * motion.energy.damper_dissipated
 
 
-def test_the_file_says_everything() -> None:
+def test_file_has_all_results() -> None:
     """Units, meanings, the whole study, the device and the version."""
     import pindrive
 
@@ -246,7 +246,7 @@ def test_ctrl_c_keeps_what_is_done(whole: bytes) -> None:
     assert Path("study.nc").read_bytes() == whole
 
 
-def test_what_is_damaged_is_worked_out_anew(whole: bytes) -> None:
+def test_damaged_chunks_are_computed_again(whole: bytes) -> None:
     """A line cut off, and bytes that never reached the disk."""
     run("study.toml", "--stop-after", "2000")
     journal, part = Path("study.nc.journal"), Path("study.nc.partial")

@@ -286,7 +286,7 @@ control.latency = ["1 ms", "4 ms", "7 ms", "10 ms"]
 """
 
 
-def test_the_file_says_everything() -> None:
+def test_file_has_all_results() -> None:
     data = swept(study('name = "lines"\n' + GRID))
     assert data.attrs["page"] == "lines every 4 mm"
     assert 'grating = ["4 mm"]' in data.attrs["study"]
@@ -339,7 +339,7 @@ def picture(name: str, dark: slice) -> None:
     Image.fromarray(pixels).save(name, dpi=(254, 254))
 
 
-def test_a_page_says_how_it_is_scanned() -> None:
+def test_page_has_the_options_of_its_scan() -> None:
     """As `pindrive scan` takes it, which a worst case tells to do."""
     assert Page(grating=(0.004, 0.0025)).options == '--grating "4 mm, 2.5 mm"'
     page = Page(text="A\nb", font=Path("a.ttf"), path=Path("hand.csv"))

@@ -76,7 +76,7 @@ def test_intervals_hold_the_truth() -> None:
     assert np.mean(held) > 0.9
 
 
-def test_what_does_not_exist_is_left_out_and_told() -> None:
+def test_missing_numbers_are_left_out_and_reported() -> None:
     """Points with x0 < 0 have no number; the result is that of half the range."""
 
     def partly(x: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:

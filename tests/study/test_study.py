@@ -67,7 +67,7 @@ def python(mouse: DeviceFile) -> pd.Study:
     )
 
 
-def test_python_and_a_file_say_the_same_study(mouse: DeviceFile, tmp_path: Path) -> None:
+def test_python_and_a_file_make_one_study(mouse: DeviceFile, tmp_path: Path) -> None:
     file = tmp_path / "study.toml"
     file.write_text(FILE.format(base=MOUSE.as_posix()), encoding="utf-8")
     written, made = pd.load_study(file), python(mouse)
@@ -83,7 +83,7 @@ def test_python_and_a_file_say_the_same_study(mouse: DeviceFile, tmp_path: Path)
     assert json.loads(other.attrs["study"])["outputs"] == ["settling_time", "swing"]
 
 
-def test_each_point_is_the_release_it_says(mouse: DeviceFile) -> None:
+def test_each_point_equals_its_release(mouse: DeviceFile) -> None:
     data = pd.Study(mouse, {"mass": [0.008, 0.012]}, ["settling_time"]).run()
     for i, mass in enumerate((0.008, 0.012)):
         from pindrive.motion.simulate import motion_of
@@ -165,7 +165,7 @@ def test_robustness_as_data(mouse: DeviceFile) -> None:
     assert f"{data.attrs['yield']:.3%}".replace("%", " %") in repr(found)
 
 
-def test_draws_that_cannot_exist_are_said_in_the_status(mouse: DeviceFile) -> None:
+def test_impossible_draws_have_a_status(mouse: DeviceFile) -> None:
     study = pd.Study(
         mouse,
         tolerances={
@@ -227,7 +227,7 @@ def test_a_device_that_is_none_is_refused(mouse: DeviceFile) -> None:
 # ---- scans ---------------------------------------------------------------------------------------
 
 
-def test_a_scan_reads_as_the_device_file_says() -> None:
+def test_scan_uses_the_hand_of_the_device_file() -> None:
     """Hand speed, criteria and angle come from the file; a `Reading` replaces the hand."""
     small = ["array.columns=1", "array.rows=1", "hand_speed=40 mm/s", "felt=0.1 mm"]
     reader = pd.load_device(READER, small)

@@ -47,7 +47,7 @@ def test_a_scan_of_the_study_of_a_whole_device() -> None:
 
 
 @pytest.mark.parametrize("whole", [False, True])
-def test_what_stands_in_comments_is_right_too(whole: bool) -> None:
+def test_commented_lines_are_valid(whole: bool) -> None:
     """A distribution and [sample], and the names under `outputs`."""
     text = re.sub(
         r"^# (?=outputs|\[sample\]|method|count|seed)", "", study_template(whole=whole), flags=re.M
@@ -86,9 +86,7 @@ def test_init_replaces_a_study_only_when_forced() -> None:
 
 @pytest.mark.parametrize("options", [[], ["--device"]])
 @pytest.mark.parametrize("command", ["check", "simulate", "scan", "speed"])
-def test_a_command_of_devices_says_in_one_line_that_it_is_a_study(
-    command: str, options: list[str]
-) -> None:
+def test_command_of_devices_refuses_a_study_in_one_line(command: str, options: list[str]) -> None:
     assert run("init", "study.toml", "--study", *options).exit_code == 0
     first = "[page]" if options else "[axes]"
     assert refused(command, "study.toml").startswith(
