@@ -65,7 +65,11 @@ PARTS: dict[str, tuple[Callable[..., Any], dict[str, Any], dict[str, Any]]] = {
         {"columns": 2, "pitch": 0.004, "spot_scale": 0.5},
         {"columns": 2, "pitch": "4 mm", "spot_scale": "50 %"},
     ),
-    "criteria": (Criteria, {"felt": 2e-5, "echo": 0.5}, {"felt": "20 µm", "echo": "50 %"}),
+    "criteria": (
+        Criteria,
+        {"felt": 2e-5, "false_line": 0.5},
+        {"felt": "20 µm", "false_line": "50 %"},
+    ),
 }
 
 

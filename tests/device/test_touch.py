@@ -106,7 +106,7 @@ def test_nothing_is_felt_under_a_lifted_finger() -> None:
     assert {line.fate for line in pressed.lines} == {"shown"}
     lifted = scan(given, scene, path, touch=0.0).evaluate()
     assert {line.fate for line in lifted.lines} == {"faint"}
-    assert not lifted.echoes
+    assert not lifted.false_lines
     assert not np.isfinite(paint(lifted.scan).deflection).any()
     partly = scan(given, scene, path, touch=LIFTS).evaluate()
     for line in partly.lines:

@@ -176,12 +176,12 @@ def sampled(done: Scan, pin: PinScan, passed: Any, felt: float) -> list[dict[str
 def test_numbers_are_those_of_dense_samples(finger: Contact, speed: float) -> None:
     scene = grating(0.004, 0.012)
     done = scan(Device(drive=drive(finger)), scene, across(scene, speed))
-    told = evaluate(done)
-    assert {line.fate for line in told.lines} == {"shown"}
+    evaluation = evaluate(done)
+    assert {line.fate for line in evaluation.lines} == {"shown"}
     expected = sampled(
-        done, done.pins[0], printed(done.device, done.path, done.scene)[0], told.criteria.felt
+        done, done.pins[0], printed(done.device, done.path, done.scene)[0], evaluation.criteria.felt
     )
-    for line, samples in zip(told.lines, expected, strict=True):
+    for line, samples in zip(evaluation.lines, expected, strict=True):
         for name, value in samples.items():
             size = {"line.overshoot": 1e-4, "line.contrast": 1e-4, "line.smear": 1e-6}
             size |= {"line.stroke": 1e-6, "line.skin_on": 5e-7, "line.skin_off": 5e-7}
@@ -249,7 +249,9 @@ def test_mirrored_scene_and_path_are_evaluated_alike() -> None:
         device = Device(drive=drive(finger))
         one, other = evaluate(scan(device, scene, path)), evaluate(scan(device, mirrored, back))
         assert one.counts == other.counts
-        assert [e.stroke for e in one.echoes] == pytest.approx([e.stroke for e in other.echoes])
+        assert [e.stroke for e in one.false_lines] == pytest.approx(
+            [e.stroke for e in other.false_lines]
+        )
         for a, b in zip(one.lines, other.lines, strict=True):
             assert numbers(a) == pytest.approx(numbers(b), rel=1e-9, abs=1e-12, nan_ok=True)
 
@@ -257,17 +259,17 @@ def test_mirrored_scene_and_path_are_evaluated_alike() -> None:
 # ---- fates ---------------------------------------------------------------------------------------
 
 
-def fates(told: Evaluation) -> list[str]:
-    return [line.fate for line in told.lines]
+def fates(evaluation: Evaluation) -> list[str]:
+    return [line.fate for line in evaluation.lines]
 
 
 def test_lines_between_two_samples_are_missed() -> None:
     scene = grating(0.0008, 0.008)
     control = ControlBlock(sample_rate=40.0)
-    told = evaluate(scan(Device(drive=drive(), control=control), scene, evenly(scene, 0.06)))
-    assert fates(told)[2:] == ["shown", "shown"]
-    assert "unseen" in fates(told)[:2]
-    unseen = next(line for line in told.lines if line.fate == "unseen")
+    evaluation = evaluate(scan(Device(drive=drive(), control=control), scene, evenly(scene, 0.06)))
+    assert fates(evaluation)[2:] == ["shown", "shown"]
+    assert "unseen" in fates(evaluation)[:2]
+    unseen = next(line for line in evaluation.lines if line.fate == "unseen")
     assert isnan(unseen.begin.command) and isnan(unseen.begin.latency) and isnan(unseen.smear)
 
 
@@ -276,9 +278,9 @@ def test_gap_between_two_samples_merges_lines() -> None:
     row[200:290] = row[293:400] = 0.0
     scene = Scene(np.tile(row, (20, 1)), 1e-4, lines=(0.001,))
     control = ControlBlock(sample_rate=40.0)
-    told = evaluate(scan(Device(drive=drive(), control=control), scene, evenly(scene, 0.06)))
-    assert fates(told) == ["shown", "merged"]
-    first, second = told.lines
+    evaluation = evaluate(scan(Device(drive=drive(), control=control), scene, evenly(scene, 0.06)))
+    assert fates(evaluation) == ["shown", "merged"]
+    first, second = evaluation.lines
     assert isnan(first.end.command) and not isnan(first.begin.response)
     assert isnan(second.begin.command) and not isnan(second.end.response)
 
@@ -286,27 +288,27 @@ def test_gap_between_two_samples_merges_lines() -> None:
 def test_a_pin_that_is_not_let_go_merges_lines() -> None:
     scene = grating(0.002, 0.016)
     slow = Electromagnet.from_times(fall_time=0.05)
-    told = evaluate(scan(Device(drive=drive(), magnet=slow), scene, evenly(scene, 0.09)))
-    assert fates(told) == ["shown", "merged", "shown", "shown"]
-    assert isnan(told.lines[0].end.response)
-    assert told.counts["lines.merged"] == 1
+    evaluation = evaluate(scan(Device(drive=drive(), magnet=slow), scene, evenly(scene, 0.09)))
+    assert fates(evaluation) == ["shown", "merged", "shown", "shown"]
+    assert isnan(evaluation.lines[0].end.response)
+    assert evaluation.counts["lines.merged"] == 1
 
 
 def test_pins_that_no_magnet_moves_show_faint_lines_not_merged_ones() -> None:
     weak = Electromagnet.from_times(hold_force=0.001)
     scene = grating(0.004, count=4)
-    told = evaluate(scan(Device(drive=drive(SKIN), magnet=weak), scene, across(scene)))
-    assert fates(told) == ["faint"] * 4
+    evaluation = evaluate(scan(Device(drive=drive(SKIN), magnet=weak), scene, across(scene)))
+    assert fates(evaluation) == ["faint"] * 4
 
 
 def test_skin_that_hardly_gives_makes_lines_faint() -> None:
     stiff = Contact(0.005, 0.0075, stiffness=2000.0)
     scene = grating(0.006)
-    told = evaluate(scan(Device(drive=drive(stiff)), scene, across(scene)))
-    assert fates(told) == ["faint", "faint"]
-    assert told.lines[0].end.skin == pytest.approx((0.0075 + 0.005) / 2000.0, rel=1e-9)
-    assert isnan(told.spread("line.stroke")[1])
-    felt = evaluate(told.scan, Criteria(felt=5e-6, direction=6e-6))
+    evaluation = evaluate(scan(Device(drive=drive(stiff)), scene, across(scene)))
+    assert fates(evaluation) == ["faint", "faint"]
+    assert evaluation.lines[0].end.skin == pytest.approx((0.0075 + 0.005) / 2000.0, rel=1e-9)
+    assert isnan(evaluation.spread("line.stroke")[1])
+    felt = evaluate(evaluation.scan, Criteria(felt=5e-6, direction=6e-6))
     assert fates(felt) == ["shown", "shown"]
     assert felt.counts["lines.direction"] == sum(line.begin.skin >= 6e-6 for line in felt.lines)
 
@@ -316,25 +318,29 @@ def test_cues_rise_with_what_the_skin_does() -> None:
     scene = grating(0.012)
     for friction, cue in ((0.0044, "none"), (0.0048, "felt"), (0.012, "direction"), (0.03, "sure")):
         finger = Contact(friction, 1.5 * friction, stiffness=250.0)
-        told = evaluate(scan(Device(drive=drive(finger)), scene, across(scene)))
-        assert [line.end.cue for line in told.lines] == [cue] * 2
-        assert told.lines[0].end.skin == pytest.approx(2.5 * friction / 250.0, rel=1e-9)
+        evaluation = evaluate(scan(Device(drive=drive(finger)), scene, across(scene)))
+        assert [line.end.cue for line in evaluation.lines] == [cue] * 2
+        assert evaluation.lines[0].end.skin == pytest.approx(2.5 * friction / 250.0, rel=1e-9)
     slow = Criteria(direction_speed=1.0)
-    assert [line.end.cue for line in evaluate(told.scan, slow).lines] == ["direction"] * 2
+    assert [line.end.cue for line in evaluate(evaluation.scan, slow).lines] == ["direction"] * 2
 
 
 def test_rebounds_are_false_lines_unless_damped() -> None:
     scene = grating(0.006, count=1, margin=0.03)
     for damping, some in ((0.05, True), (1.8, False)):
-        told = evaluate(scan(Device(drive=drive(damping=damping)), scene, evenly(scene, 0.06)))
-        assert fates(told) == ["shown"]
-        assert bool(told.echoes) == some
-        for echo in told.echoes:
-            assert echo.stroke >= 0.5 * told.lines[0].stroke
-            assert echo.time > told.lines[0].release
-            assert float(told.scan.pins[0].velocity(echo.time)) == pytest.approx(0.0, abs=1e-9)
-    ringing = evaluate(told.scan, Criteria(echo=1e-3))
-    assert len(ringing.echoes) >= len(told.echoes)
+        evaluation = evaluate(
+            scan(Device(drive=drive(damping=damping)), scene, evenly(scene, 0.06))
+        )
+        assert fates(evaluation) == ["shown"]
+        assert bool(evaluation.false_lines) == some
+        for line in evaluation.false_lines:
+            assert line.stroke >= 0.5 * evaluation.lines[0].stroke
+            assert line.time > evaluation.lines[0].release
+            assert float(evaluation.scan.pins[0].velocity(line.time)) == pytest.approx(
+                0.0, abs=1e-9
+            )
+    ringing = evaluate(evaluation.scan, Criteria(false_line=1e-3))
+    assert len(ringing.false_lines) >= len(evaluation.false_lines)
 
 
 def test_a_ripple_on_a_line_is_not_its_height() -> None:
@@ -349,13 +355,13 @@ def test_a_ripple_on_a_line_is_not_its_height() -> None:
     )
     device = Device(drive=body, magnet=Electromagnet.from_times(hold_force=1.0))
     scene = grating(0.006, 0.012)
-    told = evaluate(scan(device, scene, across(scene)))
-    assert fates(told) == ["shown"] * 4
-    assert told.echoes == ()
-    swings = evaluate(told.scan, Criteria(echo=0.03)).echoes
+    evaluation = evaluate(scan(device, scene, across(scene)))
+    assert fates(evaluation) == ["shown"] * 4
+    assert evaluation.false_lines == ()
+    swings = evaluate(evaluation.scan, Criteria(false_line=0.03)).false_lines
     assert len(swings) == 4, "one rebound each, a twentieth as high as its line"
-    for echo in swings:
-        assert 0.03 < echo.stroke / told.lines[0].stroke < 0.05
+    for line in swings:
+        assert 0.03 < line.stroke / evaluation.lines[0].stroke < 0.05
 
 
 def test_a_swing_that_the_skin_hardly_follows_is_no_false_line() -> None:
@@ -365,15 +371,15 @@ def test_a_swing_that_the_skin_hardly_follows_is_no_false_line() -> None:
         evaluate(scan(Device(drive=drive(finger, damping=0.05)), scene, evenly(scene, 0.06)))
         for finger in (RIGID, Contact(0.005, 0.0075, stiffness=2000.0))
     ]
-    assert ringing[0].echoes
+    assert ringing[0].false_lines
     assert fates(ringing[1]) == ["faint"]
-    assert ringing[1].echoes == ()
+    assert ringing[1].false_lines == ()
 
 
 def test_overdamped_pins_do_not_swing_over() -> None:
     scene = grating(0.006, count=1, margin=0.05)
-    told = evaluate(scan(Device(drive=drive(damping=4.0)), scene, evenly(scene, 0.05)))
-    (line,) = told.lines
+    evaluation = evaluate(scan(Device(drive=drive(damping=4.0)), scene, evenly(scene, 0.05)))
+    (line,) = evaluation.lines
     assert line.overshoot == 0.0
     assert 0.05 < line.settled - line.release < 0.5
 
@@ -381,13 +387,15 @@ def test_overdamped_pins_do_not_swing_over() -> None:
 def test_counts_add_up_over_an_array() -> None:
     scene = grating(0.001, 0.002, 0.004, count=3)
     array = PinArray.grid(2, 2, 0.002)
-    told = evaluate(scan(Device(drive=drive(SKIN), array=array), scene, across(scene, 0.15, 0.004)))
-    counts = told.counts
-    assert counts["lines.crossed"] == 36 == len(told.lines)
+    evaluation = evaluate(
+        scan(Device(drive=drive(SKIN), array=array), scene, across(scene, 0.15, 0.004))
+    )
+    counts = evaluation.counts
+    assert counts["lines.crossed"] == 36 == len(evaluation.lines)
     parts = ("shown", "unseen", "merged", "faint")
     assert sum(counts[f"lines.{fate}"] for fate in parts) == 36
     assert counts["lines.sure"] <= counts["lines.direction"] <= counts["lines.shown"]
-    least, median, largest = told.spread("line.lag_on")
+    least, median, largest = evaluation.spread("line.lag_on")
     assert 0.0 < least <= median <= largest
 
 
@@ -398,10 +406,10 @@ def test_a_blank_page_has_false_lines_only_where_the_pin_moves() -> None:
         (held, across(page), 0),  # the finger holds it
         (drive(), evenly(page), 1),  # the plate drags it 0.27 mm as the hand starts at once
     ):
-        told = evaluate(scan(Device(drive=pin), page, path))
-        assert told.lines == ()
-        assert len(told.echoes) == false
-        assert all(echo.stroke >= 2e-4 for echo in told.echoes)
+        evaluation = evaluate(scan(Device(drive=pin), page, path))
+        assert evaluation.lines == ()
+        assert len(evaluation.false_lines) == false
+        assert all(line.stroke >= 2e-4 for line in evaluation.false_lines)
 
 
 @pytest.mark.parametrize("first", range(0, 60, 12))
@@ -409,9 +417,9 @@ def test_random_devices_are_checked_by_feasibility(first: int) -> None:
     """Over decades of every number: nothing comes before its cause, every part is a part."""
     for seed in range(first, first + 12):
         drawn = RandomScan.of(seed)
-        told = evaluate(scan(drawn.device, drawn.scene, drawn.path))
+        evaluation = evaluate(scan(drawn.device, drawn.scene, drawn.path))
         latency = drawn.device.control.latency
-        for line in told.lines:
+        for line in evaluation.lines:
             found = {name: value for name, value in line.numbers.items() if not isnan(value)}
             for name, value in found.items():
                 assert value >= (latency if "latency" in name else 0.0) - 1e-12, (seed, name)
@@ -419,12 +427,15 @@ def test_random_devices_are_checked_by_feasibility(first: int) -> None:
             assert (line.fate == "unseen") <= isnan(line.begin.command)
             if line.fate == "shown":
                 assert line.begin.command <= line.begin.response
-                assert max(line.begin.skin, found.get("line.skin_off", 0.0)) >= told.criteria.felt
-        assert sum(told.counts[f"lines.{fate}"] for fate in FATES) == len(told.lines)
-        for echo in told.echoes:
-            pin = told.scan.pins[echo.pin]
-            assert echo.stroke >= told.criteria.direction
-            assert not pin.commands.on(echo.time)
+                assert (
+                    max(line.begin.skin, found.get("line.skin_off", 0.0))
+                    >= evaluation.criteria.felt
+                )
+        assert sum(evaluation.counts[f"lines.{fate}"] for fate in FATES) == len(evaluation.lines)
+        for line in evaluation.false_lines:
+            pin = evaluation.scan.pins[line.pin]
+            assert line.stroke >= evaluation.criteria.direction
+            assert not pin.commands.on(line.time)
 
 
 def test_criteria_are_checked() -> None:
@@ -432,5 +443,7 @@ def test_criteria_are_checked() -> None:
         ValueError, match="felt must be finite and at least 1e-9 m and at most 1 m, got"
     ):
         Criteria(felt=0.0)
-    with pytest.raises(ValueError, match="echo must be finite and at least 1e-6 and at most 1"):
-        Criteria(echo=1.5)
+    with pytest.raises(
+        ValueError, match="false_line must be finite and at least 1e-6 and at most 1"
+    ):
+        Criteria(false_line=1.5)

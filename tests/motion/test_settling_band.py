@@ -173,7 +173,7 @@ def test_a_sweep_uses_it(how: str) -> None:
     assert done.exit_code == 0, done.output
     with xr.open_dataset("study.nc", decode_timedelta=False) as data:
         assert float(data.settling_band.values.ravel()[0]) == 0.02
-        assert data.settling_band.attrs["long_name"].startswith("half the band about the end")
+        assert data.settling_band.attrs["long_name"].startswith("half-width of the settling band")
         for speed, time in zip(
             data.mouse_velocity.values, data.transient_settling_time.values.ravel(), strict=True
         ):

@@ -113,7 +113,7 @@ def numbers(evaluation: Evaluation) -> dict[str, float]:
         "lines_shown": len(shown),
         "lines_shown_part": len(shown) / len(evaluation.lines),
         "lines_merged": sum(line.fate == "merged" for line in evaluation.lines),
-        "lines_false": len(evaluation.echoes),
+        "lines_false": len(evaluation.false_lines),
         "lines_unsettled": sum(line.settled != line.settled for line in shown),
         "lines_direction": sum(line.begin.cue in ("direction", "sure") for line in shown),
         "hand_duration": evaluation.scan.path.end - evaluation.scan.path.begin,
@@ -159,7 +159,7 @@ VARIED = {
     "scan.hand_speed": (["40 mm/s", "150 mm/s"], [0.040, 0.150]),
     "scan.pause": (["0 ms", "80 ms"], [0.0, 0.080]),
     "criteria.felt": (["0.01 mm", "0.3 mm"], [1e-5, 3e-4]),
-    "criteria.echo": ([0.02, 1], [0.02, 1.0]),
+    "criteria.false_line": ([0.02, 1], [0.02, 1.0]),
 }
 
 
@@ -295,7 +295,7 @@ def test_file_has_all_results() -> None:
         *("lines_crossed", "hand_duration", "status"),
     }
     assert data.latency.attrs["units"] == "s"
-    assert data.median_smear.attrs["long_name"].startswith("median of the lines shown: what the")
+    assert data.median_smear.attrs["long_name"].startswith("median of the lines shown: path of the")
     assert data.worst_smear.attrs["units"] == "m"
     assert data.felt == 45e-6
     assert "mouse_velocity" not in data.coords, "it has no part in a scan"
@@ -352,7 +352,7 @@ def test_the_identity_holds_the_page() -> None:
     grating = study(axes).identity()
     assert study(axes).identity() == grating
     assert study(axes, GRATING.replace("4 mm", "3 mm")).identity() != grating
-    assert study(axes, device=DEVICE + "[criteria]\necho = 0.6\n").identity() != grating
+    assert study(axes, device=DEVICE + "[criteria]\nfalse_line = 0.6\n").identity() != grating
     assert study(axes, '[page]\ntext = "4"\n').identity() != grating
     Path("hand.csv").write_text("time [s], x [mm], y [mm]\n0, 2, 2\n1, 18, 2\n")
     page = '[page]\nimage = "page.png"\npath = "hand.csv"\n'
@@ -473,9 +473,9 @@ def test_maps_show_the_file() -> None:
 
 def test_releases_of_a_whole_device_are_swept_too() -> None:
     """Without a page, what stands around the drive has no part."""
-    data = swept(study('[axes]\nmass = ["5 g", "10 g"]\n', "", DEVICE + "[criteria]\necho = 0.6\n"))
+    data = swept(study('[axes]\nmass = ["5 g", "10 g"]\n', "", DEVICE + "[criteria]\nfalse_line = 0.6\n"))
     assert (data.status == 0).all()
-    assert "echo" not in data.coords
+    assert "false_line" not in data.coords
 
 
 def test_the_example_is_a_study_of_scans() -> None:

@@ -73,8 +73,6 @@ def _limits(found: Design) -> Table:
         name = required.constraint.name
         over = required.excess
         margin = shown(name, -over) if isfinite(over) else "no number"
-        if over > 0.0:
-            margin = f"violated by {shown(name, over)}" if isfinite(over) else "no number"
         row = [required.constraint.text(), shown(name, required.value), margin, _relaxed(required)]
         table.add_row(*row, *([_case(required.case)] if conditions else []))
     return table

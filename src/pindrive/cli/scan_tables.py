@@ -158,7 +158,7 @@ def verdict_words(evaluation: Evaluation) -> list[str]:
         f"Motion of the skin is felt from {limits.felt * _MM:g} mm on, its direction from "
         f"{limits.direction * _MM:g} mm, and right in 95 % of cases from "
         f"{limits.direction_sure * _MM:g} mm at {limits.direction_speed * _MM:g} mm/s; a false "
-        f"line is {limits.echo:.0%} as high as the line before, or more.",
+        f"line is {limits.false_line:.0%} as high as the line before, or more.",
     ]
     if evaluation.scan.device.drive.finger.rigid:
         words.append(

@@ -107,7 +107,7 @@ class Criteria:
         direction: Motion of skin whose direction is perceived, m, greater than 0.
         direction_sure: Deflection whose direction is recognised in more than 95 % of cases, m.
         direction_speed: Speed below which a deflection must decay, m/s.
-        echo: A swing so high, a part of the line before it, is a false line; in (0, 1].
+        false_line: Least height of a false line over that of the line before, in (0, 1].
 
     Raises:
         ValueError: A value is no number or out of its range.
@@ -117,4 +117,4 @@ class Criteria:
     direction: Number = default("direction")
     direction_sure: Number = default("direction_sure")
     direction_speed: Number = default("direction_speed")
-    echo: Number = default("echo")
+    false_line: Number = default("false_line")

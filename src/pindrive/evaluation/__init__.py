@@ -1,6 +1,6 @@
 """Evaluation of scans against the printed page: by lines, by pitch, as an image.
 
-- `Echo`: a swing of a pin that feels like a line and is none
+- `FalseLine`: a swing of a pin that feels like a line and is none
 - `Edge`: one end of a printed line, and what became of it
 - `evaluate`: what the finger was shown, line by line
 - `Evaluation`: what the finger was shown in a scan

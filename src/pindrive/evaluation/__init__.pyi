@@ -6,7 +6,7 @@ from .perception import evaluate as evaluate
 from .resolution import SpeedLimit as SpeedLimit
 from .resolution import SpeedLimits as SpeedLimits
 from .resolution import largest_speeds as largest_speeds
-from .line_crossings import Echo as Echo
+from .line_crossings import FalseLine as FalseLine
 from .line_crossings import Edge as Edge
 from .perception import Evaluation as Evaluation
 from .line_crossings import Line as Line

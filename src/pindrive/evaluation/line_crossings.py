@@ -217,7 +217,7 @@ class Line:
 @equal_by_value
 @concise
 @dataclass(frozen=True, slots=True)
-class Echo:
+class FalseLine:
     """A swing of a pin that feels like a line and is none."""
 
     pin: int

@@ -20,10 +20,10 @@ plate passes under the mouse while the line is read.
 - **Skin** moves as far as a compliant finger stretches. A rigid finger has no skin that gives: the
   pin's own way is taken, which is the most that skin could move. A finger that is lifted feels
   nothing: skin moves as far as it does in any one time of touch.
-- **False lines** are swings forward that no magnet made, at least `echo` times as high as the line
-  before (before the first of a stroke of the hand: as that one), which move the skin enough for
-  its direction; in a stroke without lines, enough for a sure direction. The height of a line is
-  that of the highest swing while its magnet pulled, not of a ripple on top of it.
+- **False lines** are forward swings without a magnet that reach `false_line` times the height of
+  the line before (before the first line of a stroke of the hand: of the first line) and move the
+  skin enough for a direction; in a stroke without lines, enough for a sure direction. The height
+  of a line is that of the highest swing while its magnet pulled, without ripple.
 """
 
 from __future__ import annotations
@@ -47,8 +47,8 @@ from pindrive.evaluation.line_crossings import (
     CUES,
     FATES,
     Cue,
-    Echo,
     Edge,
+    FalseLine,
     Fate,
     Line,
     Printed,
@@ -73,14 +73,14 @@ class Evaluation(lazy.NotebookHtml):
     criteria: Criteria
     lines: tuple[Line, ...]
     """Pin after pin, in the order of time. Lines that the way does not cross whole are left out."""
-    echoes: tuple[Echo, ...]
+    false_lines: tuple[FalseLine, ...]
     """False lines."""
 
     def __repr__(self) -> str:
         """Return the counts of the lines in a line."""
         lines, missed = len(self.lines), len(self.lines) - len(self.shown)
         shown = f"{lines - missed} of {counted(lines, 'line')} shown"
-        return f"<Evaluation of {self.scan.scene.title}: {shown}, {len(self.echoes)} false>"
+        return f"<Evaluation of {self.scan.scene.title}: {shown}, {len(self.false_lines)} false>"
 
     @property
     def status(self) -> Status:
@@ -117,25 +117,32 @@ class Evaluation(lazy.NotebookHtml):
         """Each line under each pin, each false line, and the counts, with units.
 
         Returns:
-            Variables over `line`: `columns`; over `echo`: those of `Echo`; a scalar for each of
-            `counts`.
+            Variables over `line`: `columns`; over `false_line`: those of `FalseLine`; a scalar for
+            each number in `counts`.
         """
         from pindrive import __version__
 
-        echoes = self.echoes
+        false_lines = self.false_lines
         stated = {quantity.variable: quantity.attributes for quantity in (*EDGES, *LINE)}
         data: dict[str, Any] = {
             name: ("line", values, stated.get(name)) for name, values in self.columns().items()
         }
-        data["echo_pin"] = ("echo", np.array([echo.pin for echo in echoes], np.int64))
+        data["false_line_pin"] = (
+            "false_line",
+            np.array([line.pin for line in false_lines], np.int64),
+        )
         for name, unit, meaning in (
             ("time", "s", "when it was highest"),
             ("x", "m", "where the spot was then, across the page"),
             ("y", "m", "where the spot was then, down the page"),
             ("stroke", "m", "how high it was"),
         ):
-            values = np.array([getattr(echo, name) for echo in echoes], np.float64)
-            data[f"echo_{name}"] = ("echo", values, {"long_name": meaning, "units": unit})
+            values = np.array([getattr(line, name) for line in false_lines], np.float64)
+            data[f"false_line_{name}"] = (
+                "false_line",
+                values,
+                {"long_name": meaning, "units": unit},
+            )
         for name, count in self.counts.items():
             data[name.replace(".", "_")] = ((), count, QUANTITIES[name].attributes)
         title = f"Lines of {self.scan.scene.title}, as they were shown"
@@ -154,7 +161,7 @@ class Evaluation(lazy.NotebookHtml):
         return {
             "lines.crossed": len(self.lines),
             **{f"lines.{fate}": sum(line.fate == fate for line in self.lines) for fate in FATES},
-            "lines.false": len(self.echoes),
+            "lines.false": len(self.false_lines),
             "lines.unsettled": sum(isnan(line.settled) for line in shown),
             "lines.direction": sum(cue >= CUES.index("direction") for cue in cues),
             "lines.sure": sum(cue >= CUES.index("sure") for cue in cues),
@@ -204,13 +211,15 @@ def evaluate(scan: Scan, criteria: Criteria | None = None) -> Evaluation:
     limits = criteria or Criteria()
     stops, way = turnings(scan.path, scan.device.array.axis), Way(scan.path)
     lines: list[Line] = []
-    echoes: list[Echo] = []
+    false_lines: list[FalseLine] = []
     lines_passed = printed(scan.device, scan.path, scan.scene)
     for pin, passed in zip(scan.pins, lines_passed, strict=True):
         evaluated = EvaluatedPin(scan, pin, passed, stops, way, limits)
         lines += evaluated.lines()
-        echoes += evaluated.echoes()
-    return Evaluation(scan=scan, criteria=limits, lines=tuple(lines), echoes=tuple(echoes))
+        false_lines += evaluated.false_lines()
+    return Evaluation(
+        scan=scan, criteria=limits, lines=tuple(lines), false_lines=tuple(false_lines)
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -446,16 +455,16 @@ class EvaluatedPin:
 
     # ---- false lines -------------------------------------------------------------------------
 
-    def echoes(self) -> list[Echo]:
+    def false_lines(self) -> list[FalseLine]:
         """Swings forward that no magnet made, and that are as high as the criteria ask."""
         found = []
         times = np.unique(np.concatenate([[0.0], self.stops, [self.end]]))
         for begin, end in zip(times[:-1].tolist(), times[1:].tolist(), strict=True):
             if self.plate(0.5 * (begin + end)) != 0.0:
-                found += self._echoes(begin, end)
+                found += self._false_lines(begin, end)
         return found
 
-    def _echoes(self, begin: float, end: float) -> list[Echo]:
+    def _false_lines(self, begin: float, end: float) -> list[FalseLine]:
         """Return the false lines of one stroke of the hand."""
         sign = self._sign(0.5 * (begin + end))
         x, skin = Signal(self.pin.motion.position, sign), self._skin(sign)
@@ -473,11 +482,11 @@ class EvaluatedPin:
             if k is not None:
                 before = heights[k]
                 continue
-            usual = self.criteria.echo * before if before == before else 0.0
+            usual = self.criteria.false_line * before if before == before else 0.0
             least = self.criteria.direction if usual else self.criteria.direction_sure
             if height >= max(usual, least) and self._moved(skin, low, high)[0] >= least:
                 px, py = self._spot(high)
-                found.append(Echo(self.pin.number, self.begin + high, px, py, height))
+                found.append(FalseLine(self.pin.number, self.begin + high, px, py, height))
         return found
 
     def _puller(self, low: float, high: float) -> int | None:

@@ -53,25 +53,25 @@ _NUMBERS: Final[tuple[tuple[str, str, str, str, str], ...]] = (
         "settling_time",
         "t_s",
         "s",
-        "from then on within the settling band about the resting place",
+        "time from which the position stays within the settling band",
         "the time of the transitional period",
     ),
     (
         "rest_time",
         "t_r",
         "s",
-        "from then on it stays at rest; infinite for a motion that never comes to rest",
+        "time from which the pin stays at rest; infinite without rest",
         "",
     ),
     (
         "last_event_time",
         "t_e",
         "s",
-        "last change at a contact; 0 without any, infinite where they go on forever",
+        "time of the last event of a contact; 0 without one, infinite in a cycle",
         "",
     ),
     ("peak_stretch", "s_max", "m", "largest stretch of a compliant finger's skin", ""),
-    ("peak_stretch_rate", "s'_max", "m/s", "largest rate at which that skin stretched", ""),
+    ("peak_stretch_rate", "s'_max", "m/s", "largest stretch rate of a compliant finger's skin", ""),
     (
         "end_time",
         "t*",
@@ -79,7 +79,7 @@ _NUMBERS: Final[tuple[tuple[str, str, str, str, str], ...]] = (
         "end of the transient: rest, steady motion, last event of a decay or end of the duration",
         "",
     ),
-    ("settled", "", "", "whether the motion settled in its duration", ""),
+    ("settled", "", "", "true if the motion settles within its duration", ""),
 )
 """Name, symbol, unit, meaning, and where the paper has it."""
 
@@ -104,18 +104,24 @@ TRANSIENT: Final[tuple[Quantity, ...]] = (
 """The numbers of a transient."""
 
 ENDING: Final[tuple[Quantity, ...]] = (
-    Quantity("ending.position", "x_end", "m", "resting place, or middle of the final oscillation"),
+    Quantity("ending.position", "x_end", "m", "rest position, or centre of the final oscillation"),
     Quantity("ending.steady_since", "t_end", "s", "time from which the motion is steady"),
     Quantity("ending.amplitude", "X_end", "m", "half of the range of the final oscillation"),
     Quantity(
-        "ending.period", "T_end", "s", "period of the final oscillation; mean round if irregular"
+        "ending.period",
+        "T_end",
+        "s",
+        "period of the final oscillation; mean revolution if irregular",
     ),
-    Quantity("ending.least_amplitude", "X_min", "m", "half of the range of its smallest round"),
-    Quantity("ending.peak_velocity", "v_end", "m/s", "largest speed in the final oscillation"),
-    Quantity("ending.rounds", "n_end", "", "rounds about its centre in one period"),
     Quantity(
-        "ending.decay_energy", "W_end", "J", "energy that a final decay has left to dissipate"
+        "ending.least_amplitude",
+        "X_min",
+        "m",
+        "half of the range of the smallest revolution of the final oscillation",
     ),
+    Quantity("ending.peak_velocity", "v_end", "m/s", "largest speed in the final oscillation"),
+    Quantity("ending.rounds", "n_end", "", "revolutions about the centre in one period"),
+    Quantity("ending.decay_energy", "W_end", "J", "energy that the final decay still dissipates"),
     *(
         Quantity(f"ending.{contact}.{name}", symbol.format(contact[0]), unit, meaning.format(where))
         for contact, where in (("plate", "at the plate"), ("finger", "at the finger"))
@@ -139,14 +145,14 @@ ENERGY: Final[tuple[Quantity, ...]] = (
     Quantity("energy.skin_end", "E_f", "J", "energy in a compliant finger at the end"),
     Quantity("energy.stop_start", "E_x,0", "J", "energy in elastic end stops at release"),
     Quantity("energy.stop_end", "E_x", "J", "energy in elastic end stops at the end"),
-    Quantity("energy.plate_work", "W_in", "J", "work that the moving plate puts in"),
+    Quantity("energy.plate_work", "W_in", "J", "work of the moving plate"),
     Quantity("energy.inertia_work", "W_a", "J", "work of the accelerating housing"),
     Quantity("energy.force_work", "W_e", "J", "work of the external force"),
     Quantity("energy.damper_dissipated", "W_b", "J", "energy turned into heat in the damper"),
     Quantity("energy.plate_dissipated", "W_p", "J", "energy turned into heat at the plate"),
     Quantity("energy.finger_dissipated", "W_f", "J", "energy turned into heat at the finger"),
     Quantity("energy.stop_dissipated", "W_x", "J", "energy turned into heat at the end stops"),
-    Quantity("energy.residual", "W_res", "J", "what the terms leave over: rounding alone"),
+    Quantity("energy.residual", "W_res", "J", "residual of the energy balance: rounding alone"),
 )
 """The energy ledger of a motion."""
 
@@ -160,9 +166,9 @@ CERTIFICATE: Final[tuple[Quantity, ...]] = (
     Quantity("certificate.continuity", "r_c", "1", "position and velocity without jumps"),
     Quantity("certificate.transitions", "r_t", "1", "slips from rest only where it cannot stick"),
     Quantity("certificate.energy", "r_E", "1", "the energy ledger closes"),
-    Quantity("certificate.dissipation", "r_D", "1", "friction and damper never feed energy in"),
+    Quantity("certificate.dissipation", "r_D", "1", "friction and damper never add energy"),
     Quantity("certificate.period", "r_T", "1", "a steady motion repeats after its period"),
-    Quantity("certificate.steady_since", "r_S", "1", "and did not repeat a period earlier"),
+    Quantity("certificate.steady_since", "r_S", "1", "the motion did not repeat earlier"),
 )
 """The largest residual of each law, relative to the size of its terms."""
 
@@ -172,7 +178,7 @@ RATE: Final = Quantity(
     "rate",
     "f",
     "Hz",
-    "how many even samples a second a file of a motion has",
+    "sampling rate of a motion in a file",
     between(1e-6, 1e12),
     source="assumed",
     absent=1000.0,
@@ -226,7 +232,7 @@ CRITERIA: Final = optional(
         "felt",
         "d_1",
         "m",
-        "motion that is felt as a pulse",
+        "smallest motion that is felt as a pulse",
         FELT,
         45e-6,
         "9-45 µm at 20-150 Hz on glabrous skin, the upper end "
@@ -236,7 +242,7 @@ CRITERIA: Final = optional(
         "direction",
         "d_2",
         "m",
-        "motion of skin whose direction is perceived",
+        "smallest skin motion with a perceived direction",
         FELT,
         5e-5,
         f"{GLEESON}, from 0.05 mm",
@@ -245,7 +251,7 @@ CRITERIA: Final = optional(
         "direction_sure",
         "d_3",
         "m",
-        "motion of skin whose direction is told right in more than 95 % of cases",
+        "smallest skin motion whose direction is recognised in more than 95 % of cases",
         FELT,
         2e-4,
         f"{GLEESON}, 0.2 mm",
@@ -254,16 +260,16 @@ CRITERIA: Final = optional(
         "direction_speed",
         "v_3",
         "m/s",
-        "speed at which it must be gone for that",
+        "largest speed of that motion",
         between(1e-9, 1e3),
         2e-3,
         f"{GLEESON}, 2 mm/s",
     ),
     Quantity(
-        "echo",
+        "false_line",
         "h_e",
         "1",
-        "a swing this part as high as the line before it is a line that is not there",
+        "least height of a false line over that of the line before",
         between(1e-6, 1.0),
         0.5,
         "assumed",
@@ -272,17 +278,17 @@ CRITERIA: Final = optional(
 """Criteria of the evaluation of a scan: a table of a device file."""
 
 _FOUND: Final = (
-    ("latency_on", "t_l,on", "s", "from a line's first edge until the pin goes along"),
-    ("latency_off", "t_l,off", "s", "from its last edge until the pin comes back"),
-    ("lag_on", "l_on", "m", "what the hand goes until the pin goes along"),
-    ("lag_off", "l_off", "m", "what the hand goes until the pin comes back"),
-    ("stroke", "h", "m", "how far the line moves the pin"),
-    ("skin_on", "d_on", "m", "how far the skin moves as a line begins"),
-    ("skin_off", "d_off", "m", "how far the skin moves as it ends"),
-    ("smear_time", "t_s", "s", "from the pin's release until it has settled"),
-    ("smear", "l_s", "m", "what the hand goes until then: the smear"),
-    ("overshoot", "o", "1", "swing beyond the place of rest, a part of the way"),
-    ("contrast", "C", "1", "crest against trough, (P - T) / (|P| + |T|)"),
+    ("latency_on", "t_l,on", "s", "delay from the first edge of a line to the motion of the pin"),
+    ("latency_off", "t_l,off", "s", "delay from the last edge of a line to the return of the pin"),
+    ("lag_on", "l_on", "m", "path of the hand from the first edge to the motion of the pin"),
+    ("lag_off", "l_off", "m", "path of the hand from the last edge to the return of the pin"),
+    ("stroke", "h", "m", "displacement of the pin by the line"),
+    ("skin_on", "d_on", "m", "skin motion at the begin of the line"),
+    ("skin_off", "d_off", "m", "skin motion at the end of the line"),
+    ("smear_time", "t_s", "s", "settling time of the pin after its release"),
+    ("smear", "l_s", "m", "path of the hand during the settling: the smear"),
+    ("overshoot", "o", "1", "overshoot beyond the rest position, over the displacement"),
+    ("contrast", "C", "1", "contrast of crest P and trough T, (P - T) / (|P| + |T|)"),
 )
 
 LINE: Final[tuple[Quantity, ...]] = tuple(
@@ -316,14 +322,14 @@ LINE_COUNTS: Final[tuple[Quantity, ...]] = tuple(
     Quantity(f"lines.{name}", symbol, "", meaning)
     for name, symbol, meaning in (
         ("crossed", "n", "printed lines that passed whole under a pin, counted under each pin"),
-        ("shown", "n_1", "shown: the pin went along, and the skin moved enough to be felt"),
+        ("shown", "n_1", "shown: the pin moved along, and the skin moved enough to be felt"),
         ("unseen", "n_2", "missed: the control block did not see them"),
-        ("merged", "n_3", "missed: the magnet or the pin was not yet back from the line before"),
-        ("faint", "n_4", "missed: the pin did not go along, or the skin did not move enough"),
-        ("false", "n_5", "false: swings forward that no magnet made, felt like a line"),
-        ("unsettled", "n_6", "shown, yet not settled before the next line or the hand's stop"),
-        ("direction", "n_7", "shown, and the skin moved enough to tell its direction"),
-        ("sure", "n_8", "shown, and it moved enough to tell it right in 95 % of cases"),
+        ("merged", "n_3", "missed: magnet or pin had not returned from the line before"),
+        ("faint", "n_4", "missed: the pin did not move along, or the skin moved too little"),
+        ("false", "n_5", "false: forward swings without a magnet, felt like a line"),
+        ("unsettled", "n_6", "shown, but not settled before the next line or the stop of the hand"),
+        ("direction", "n_7", "shown, with a perceived direction"),
+        ("sure", "n_8", "shown, with a direction recognised in 95 % of cases"),
     )
 )
 """Counts of the evaluation of a scan."""
@@ -335,7 +341,7 @@ SPEED: Final[tuple[Quantity, ...]] = (
         "speed.part",
         "r",
         "1",
-        "part of its way that the pin must be back between",
+        "required return of the pin between two lines, over its displacement",
         between(1e-6, 1.0),
         source="assumed",
         absent=0.5,
@@ -359,7 +365,12 @@ SPEED: Final[tuple[Quantity, ...]] = (
         absent=1.0,
     ),
     Quantity("speed.distinct", "v_d", "m/s", "largest hand speed at which the lines are distinct"),
-    Quantity("speed.settled", "v_s", "m/s", "largest up to which the pin settles in between, too"),
+    Quantity(
+        "speed.settled",
+        "v_s",
+        "m/s",
+        "largest hand speed at which the pin also settles between the lines",
+    ),
 )
 """Quantities of the search for the largest hand speed."""
 
@@ -368,20 +379,20 @@ JUDGE: Final = LINE + LINE_COUNTS + SPEED
 
 DESIGNED: Final[tuple[Quantity, ...]] = (
     Quantity(
-        "design.price", "P", "1", "price of the catalogue parts of a design together", NON_NEGATIVE
+        "design.price", "P", "1", "total price of the catalogue parts of a design", NON_NEGATIVE
     ),
     Quantity(
         "design.yield",
         "Y",
         "1",
-        "part of the devices built within the tolerances that meets all constraints",
+        "part of the devices within tolerances that meets all constraints",
         between(0.0, 1.0),
     ),
     Quantity(
         "design.distinct_speed",
         "v_d",
         "m/s",
-        "largest hand speed at which the lines of a grating stay distinct, least of its pitches",
+        "largest hand speed at which all lines of a grating are distinct",
     ),
 )
 """Numbers of a design beside the numbers of its motions and scans."""

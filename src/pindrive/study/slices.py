@@ -48,7 +48,7 @@ _WORDS: Final = {
     "rise_time": "rise time of the pull",
     "lines_shown_part": "part of the lines shown",
     "lines_shown": "lines shown",
-    "lines_unseen": "lines unseen",
+    "lines_unseen": "lines not seen by the control block",
     "lines_merged": "lines merged",
     "lines_faint": "lines too faint",
     "lines_false": "false lines",
