@@ -432,10 +432,10 @@ def test_random_devices_are_checked_by_feasibility(first: int) -> None:
                     >= evaluation.criteria.felt
                 )
         assert sum(evaluation.counts[f"lines.{fate}"] for fate in FATES) == len(evaluation.lines)
-        for line in evaluation.false_lines:
-            pin = evaluation.scan.pins[line.pin]
-            assert line.stroke >= evaluation.criteria.direction
-            assert not pin.commands.on(line.time)
+        for swing in evaluation.false_lines:
+            pin = evaluation.scan.pins[swing.pin]
+            assert swing.stroke >= evaluation.criteria.direction
+            assert not pin.commands.on(swing.time)
 
 
 def test_criteria_are_checked() -> None:

@@ -473,7 +473,8 @@ def test_maps_show_the_file() -> None:
 
 def test_releases_of_a_whole_device_are_swept_too() -> None:
     """Without a page, what stands around the drive has no part."""
-    data = swept(study('[axes]\nmass = ["5 g", "10 g"]\n', "", DEVICE + "[criteria]\nfalse_line = 0.6\n"))
+    device = DEVICE + "[criteria]\nfalse_line = 0.6\n"
+    data = swept(study('[axes]\nmass = ["5 g", "10 g"]\n', "", device))
     assert (data.status == 0).all()
     assert "false_line" not in data.coords
 
