@@ -1,4 +1,4 @@
-"""The command line. What a command needs is imported when it runs, so that help comes at once."""
+"""The command line. Commands import their modules when they run, so that help is fast."""
 
 from __future__ import annotations
 

@@ -26,8 +26,8 @@ COPPER: Final = 1 / 58e6
 class Coil:
     """An electromagnet with two poles on a steel plate, by how it is made.
 
-    Its iron carries any flux without effort up to the saturation field, and no flux leaks: the two
-    gaps in series hold the whole magnetomotive force, 2 g B / μ0 = N I.
+    The iron has no reluctance up to the saturation field, and no flux leaks: the two gaps in series
+    hold the whole magnetomotive force, 2 g B / μ0 = N I.
 
     Args:
         turns: N, at least 1.

@@ -1,6 +1,6 @@
 """Feasibility of a device: fits, masses, and clearances of the pins.
 
-How close neighbouring pins come along the drive axis is found with a certain bound.
+The smallest gaps of neighbouring pins along the drive axis have a proven bound.
 
 The gap of two pins is their clearance at rest less how far one runs into the other,
 x(ahead) - x(behind): x is counted against the drive axis. Between the events of both pins and the

@@ -1,6 +1,6 @@
 """Heating of a coil: one lump of copper and iron, heated by its current and cooled by air.
 
-Its resistance grows with its temperature. Electrical times are so much shorter than thermal ones
+The resistance grows with the temperature. Electrical times are so much shorter than thermal ones
 that the resistance is taken from one switching to the next as it was at the first of both; the
 temperature is then a closed form. With the current c = A + C exp(-t/τ), a part of the full one,
 

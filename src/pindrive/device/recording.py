@@ -8,7 +8,7 @@ recording is therefore smoothed:
   unchanged while none came, as a mouse that rests reports nothing.
 - A low-pass follows, a Butterworth filter of second order forwards and backwards
   (`scipy.signal.sosfiltfilt`), as is usual for recorded movements: no delay, and at the cut-off
-  1/sqrt(2) of an amplitude (-3 dB) is left. Its gain is 1 / (1 + 0.414 (f / f_c)^4).
+  1/sqrt(2) of an amplitude (-3 dB) is left. The gain is 1 / (1 + 0.414 (f / f_c)^4).
 - It lowers the peak speed of a minimum-jerk stroke of duration T by the part 0.102 / (f_c T)^4: at
   20 Hz, 0.13 % of a stroke of 0.15 s, and 1e-5 of one of half a second.
 """
@@ -62,8 +62,8 @@ def through(
     """A path along recorded places, with a velocity that does not jump.
 
     Half-way in time between two places the hand has their mean velocity and is half-way between
-    them, exactly; at a place its velocity is the mean over both its neighbours. So it follows the
-    record without drift, and rounds its corners.
+    them, exactly; at a place its velocity is the mean over both its neighbours. The path follows
+    the recording without drift, with rounded corners.
 
     Args:
         t: s, shape (n,), n >= 2, increasing.

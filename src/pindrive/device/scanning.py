@@ -121,7 +121,7 @@ class PinScan:
     def position(self, t: ArrayLike) -> NDArray[np.float64]:
         """Deflection of the pin in the housing at times t (s, any shape), m.
 
-        It is positive against the hand's motion along the drive axis.
+        The deflection is positive against the hand's motion along the drive axis.
         """
         return np.asarray(self.motion.position(self.since(t)))
 

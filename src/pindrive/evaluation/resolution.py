@@ -1,16 +1,16 @@
 """Largest hand speed at which two neighbouring lines are distinct.
 
 Two lines, black, stand `pitch` apart; an even hand goes straight over them, at the angle of the
-drive axis (`array.axis`) to the drive. They are **distinct** at its
-speed if, whatever the phase of the control block's samples (`PHASES` of them are tried),
+drive axis (`array.axis`) to the drive. Two lines are **distinct** at a speed if, whatever the phase
+of the control block's samples (`PHASES` of them are tried),
 
 - between them the pin comes back at least `part` of its way from its highest place to where spring
   and dragging plate balance, before the second line takes it along, and
 - each of them moves the skin, forward or back, enough for its direction to be perceived (of a rigid
   finger: the pin).
 
-They are **settled** if, in addition, the transient after the first line alone is over before the
-second line takes the pin along. Every trial is an exact simulation.
+The lines are **settled** if, in addition, the transient after the first line alone is over before
+the second line takes the pin along. Every trial is an exact simulation.
 
 Distinct speeds need not be one interval: a swing may fit by chance, and a slow hand may leave the
 pin where the finger's friction holds it. So all of a geometric grid of speeds is tried first, and

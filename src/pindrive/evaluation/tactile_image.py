@@ -1,8 +1,8 @@
 """The tactile image: what each pin did, painted on the page where its spot was at that time.
 
 Each pin's way is a brush stroke as wide as the pins' tracks are apart, its colour the deflection,
-counted forward: the way the plate goes while the hand reads. Where several pins passed, their mean.
-The way back to the next line is not painted, nor is what passes under a finger that is lifted.
+counted forward: the way the plate goes while the hand reads. Several pins give their mean. The way
+back to the next line is not painted, nor is what passes under a finger that is lifted.
 """
 
 from __future__ import annotations

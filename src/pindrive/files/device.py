@@ -61,9 +61,9 @@ from pindrive.quantities.value import equal_by_value
 class DeviceFile:
     """A device file as `load_device` reads it, in SI units.
 
-    It holds the drive and the start of its motion, which `simulate` takes. `whole` is the table of
-    the whole device and of the hand that reads with it, or `None` where the file has none and none
-    was requested.
+    The file holds the drive and the start of its motion, which `simulate` takes. `whole` is the
+    table of the whole device and of the hand that reads with it, or `None` where the file has
+    none and none was requested.
     """
 
     path: Path
@@ -208,7 +208,7 @@ class DeviceFile:
     def values(self) -> dict[str, float | Rows | None]:
         """The value of every key that holds a quantity, in SI; None where it was left out.
 
-        What changes is its rows: (speed, force) or (time, value).
+        Values over time or speed are rows: (speed, force) or (time, value).
         """
         return self.values_of_drive() | (self.whole.in_si() if self.whole else {})
 

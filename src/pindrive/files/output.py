@@ -1,6 +1,6 @@
 """Files that are written whole or not at all, and replace files of their own kind only; the kinds.
 
-They are written beside their target and renamed when complete. A file that is there is replaced
+Files are written beside their target and renamed when complete. A file that is there is replaced
 only if it is of the kind that is written, or on request, and never if the command reads it.
 """
 

@@ -1,7 +1,6 @@
 """The values of a device file's tables: read in SI, what they describe, what does not fit together.
 
-Which keys there are, their units and bounds, and what holds where one is left out stands in the
-table of quantities.
+The table of quantities has the keys, their units, bounds and defaults.
 """
 
 from __future__ import annotations

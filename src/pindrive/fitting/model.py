@@ -1,7 +1,7 @@
 """Predicted recordings for given parameters, with exact derivatives.
 
-Before the release the pin moves on at its initial velocity: carried by the plate, or at rest. That
-matters where the time of the release is fitted.
+Before the release the pin moves on at its initial velocity: carried by the plate, or at rest. This
+matters for a fitted time of the release.
 """
 
 from __future__ import annotations

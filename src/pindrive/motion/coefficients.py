@@ -1,6 +1,6 @@
 """The coefficient of friction that a plate's friction amounts to, held against handbooks.
 
-Where friction is given as a force and the weight changes, the coefficient does.
+If friction is a force, its coefficient changes with the weight.
 """
 
 from __future__ import annotations

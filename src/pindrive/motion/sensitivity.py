@@ -169,8 +169,8 @@ class Sensitivity(lazy.NotebookHtml):
 class _Derivative:
     """The derivative of a motion along one parameter, and how far it exists.
 
-    It exists while the motions of two close neighbours, simulated in plain numbers, go the same
-    way. Where they take another course, the motion stands on the edge between two.
+    A derivative exists while the motions of two close neighbours, in plain numbers, have the
+    same events. If their events differ, the motion is at the border between two kinds.
     """
 
     def __init__(self, motion: pindrive.Motion, name: str) -> None:

@@ -2,8 +2,9 @@
 
 Kriging of all numbers that have been scanned stands for the scans; the differential evolution of
 `search` finds on it the best device where all numbers are as expected, and where they are worse or
-better by standard deviations. These are scanned, and the model is made anew: efficient global
-optimisation (Jones, Schonlau and Welch 1998) with confidence bounds (Cox and John 1992).
+better by standard deviations. These candidates are scanned, and the model is fitted again:
+efficient global optimisation (Jones, Schonlau and Welch 1998) with confidence bounds (Cox and John
+1992).
 """
 
 from __future__ import annotations

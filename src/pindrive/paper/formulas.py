@@ -353,9 +353,9 @@ def forward_velocity(r: Releases) -> Array:
 def limit_damping_ratio(r: Releases) -> Array:
     """The damping ratio of the limit case: with more, v_p is never reached after this release.
 
-    Where the extreme (26) of the velocity is v_p, by bisection: (26) gives t_1 there, but not when
-    the case occurs. It depends on v_p / (ω_0 d) alone. 0 where no drive with damping reaches v_p
-    (x_0 <= x_d), 1 for v_p = 0. The damping of `r` does not matter.
+    Where the extreme (26) of the velocity is v_p, by bisection: (26) gives t_1 there, but not
+    when the case occurs. The number depends on v_p / (ω_0 d) alone. 0 where no drive with
+    damping reaches v_p (x_0 <= x_d), 1 for v_p = 0. The damping of `r` does not matter.
     """
     each = r.replace(**{f.name: getattr(r, f.name).reshape(-1, 1) for f in fields(r)})
 

@@ -1,7 +1,7 @@
 """Two parameters at a time, in the dimensionless groups that the six make.
 
-Masses, lengths and times are measured in m, x_0 and 1/ω_0. What is left of the drive are four
-numbers, and so every answer is a function of four numbers.
+Masses, lengths and times are measured in m, x_0 and 1/ω_0. Four numbers of the drive remain, so
+every result is a function of four numbers.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Limits on the counts of a run, checked before any allocation.
 
-A device file of a few lines can ask for any amount of work. What it asks for is counted first. The
-limits keep a run on one machine below 4 GB of memory and, with as many cores as a laptop has, in
-the order of a minute; each says what it is that takes the memory or the time.
+A device file of a few lines can ask for any amount of work. The requested work is counted first.
+The limits keep a run on one machine below 4 GB of memory and, with as many cores as a laptop has,
+in the order of a minute; each says what it is that takes the memory or the time.
 """
 
 from __future__ import annotations

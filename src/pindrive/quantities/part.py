@@ -120,8 +120,8 @@ def checked_by(part: Part) -> Callable[[type[T]], type[T]]:
 def checked_class(cls: type[T], part: Part) -> type[T]:
     """A frozen dataclass, made by keywords, whose fields of a part are checked.
 
-    They are kept as floats; one may be None where that is its default. Its own `__post_init__` is
-    called then. Of a field that is refused it raises what `Part.check` raises.
+    Values are kept as floats; one may be None where that is its default. Afterwards the class's
+    own `__post_init__` is called. A refused field raises the error of `Part.check`.
     """
     then = getattr(cls, "__post_init__", None)
     taken: list[tuple[str, bool]] = []

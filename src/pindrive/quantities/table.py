@@ -35,8 +35,8 @@ default: Final = _ALL.default
 def checked(cls: type[T]) -> type[T]:
     """A frozen dataclass, made by keywords, whose fields that are named as quantities are checked.
 
-    They are kept as floats; one may be None where that is its default. Its own `__post_init__` is
-    called then. Of a field that is refused it raises what `check` raises.
+    Values are kept as floats; one may be None where that is its default. Afterwards the class's
+    own `__post_init__` is called. A refused field raises the error of `check`.
     """
     return checked_class(cls, _ALL)
 

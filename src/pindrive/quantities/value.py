@@ -21,8 +21,8 @@ _ROW: Final = 30
 def concise(cls: type[T]) -> type[T]:
     """Give a dataclass a representation of at most `LONGEST` characters.
 
-    It has the fields that differ from their defaults and exist, with six digits; of a long sequence
-    the length. The fields themselves hold everything.
+    The text has the existing fields that differ from their defaults, with six digits; of a long
+    sequence the length. The fields themselves hold everything.
     """
 
     def __repr__(self: T) -> str:

@@ -1,9 +1,9 @@
 """The values of swept keys: steps, lists, distributions, samples, and keys that follow others.
 
 All values SI. None holds an array as long as the study: values are made where they are requested.
-Samples are numbers between 0 and 1, random or Sobol'. They come in blocks of fixed length, each
-from its own seed or its own stretch of the sequence, so that any chunk, on any machine, in any
-order, draws what the study says stands there.
+Samples are numbers between 0 and 1, random or Sobol'. Draws come in blocks of fixed length, each
+with its own seed or part of the sequence, so that any chunk, on any machine, in any order, draws
+what the study says stands there.
 """
 
 from __future__ import annotations

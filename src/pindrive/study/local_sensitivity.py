@@ -109,8 +109,8 @@ def local_sensitivity(study: Study, *, tolerances: bool = False) -> Elasticities
 def elasticities(study: Study, keys: Sequence[str], links: Mapping[str, Linked]) -> Elasticities:
     """The elasticity of every number to each key at the device's own values.
 
-    What follows a key changes with it: damping, where the device file gives its ratio, curves, and
-    keys that are linked. The derivatives are the core's own, on dual numbers.
+    Followers of a key change with the key: damping, where the device file gives its ratio, curves,
+    and keys that are linked. The derivatives are the core's own, on dual numbers.
 
     Args:
         study: Study with the device.

@@ -156,8 +156,9 @@ def robustness(
 ) -> Robustness:
     """Draw designs within the tolerances of a study and hold them against its specification.
 
-    What keeps its ratio to another value varies with it unless it has a tolerance of its own (see
-    `Quantity.follows`). A draw that cannot exist all the same is no design: it is counted apart.
+    A value that keeps its ratio to another value varies with that value, unless it has a tolerance
+    (see `Quantity.follows`). A draw that cannot exist all the same is no design: it is counted
+    apart.
 
     Args:
         study: A study with tolerances.

@@ -238,7 +238,7 @@ class Slice:
     def stated(self) -> dict[str, float]:
         """The device's values that a picture states: without a default, or other than it.
 
-        Of a study of releases all that was not varied.
+        For a study of releases, all values that were not varied.
         """
         standard = {variable(key): quantity.default for key, quantity in WHOLE.items()}
         return {

@@ -1,9 +1,9 @@
 """The NetCDF file of a study: laid out whole at once, then filled piece by piece at fixed places.
 
-HDF5 stores a contiguous array as one run of bytes. So the file's own structure is written first,
-for all points, and closed; the numbers of a chunk are then plain bytes at known offsets. A process
-that dies leaves the structure as it was, chunks may come in any order, and nothing is copied when
-the last one is there.
+HDF5 stores a contiguous array as one run of bytes. Therefore the structure of the file is written
+first, for all points, and closed; the numbers of a chunk are then plain bytes at known offsets. A
+process that dies leaves the structure as it was, chunks may come in any order, and nothing is
+copied when the last one is there.
 
 The journal beside it says which chunks are done, a line for each with a checksum of its bytes. A
 line is written when its chunk is. One that is cut off, or whose bytes are not in the file after a

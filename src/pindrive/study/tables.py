@@ -75,7 +75,7 @@ def device_in(
 ) -> tuple[DeviceFile, str]:
     """The device of a study file, and the text of all that describes it.
 
-    What `page` holds in `tables` becomes a `Page`; what is wrong with it is appended to `problems`.
+    The entry `page` of `tables` becomes a `Page`; what is wrong with it is appended to `problems`.
 
     Raises:
         ConfigError: There is no device, or it cannot be read.
