@@ -214,9 +214,8 @@ class Pulses:
 
         The flux linkage a period later is a growing function of it, so that from none it comes to
         the least value that returns. The gap stays open there, or closes and opens in each period,
-        or stays closed, looked for in this order. Where it closes and opens that function is
-        convex, so that Newton's iteration from below comes to its least value without a step
-        beyond.
+        or stays closed, looked for in this order. At closing and opening that function is convex,
+        so that Newton's iteration from below comes to its least value without a step beyond.
         """
         on, off = self.duty / self.frequency, (1.0 - self.duty) / self.frequency
         edge, q = closing.flux, closing.inductance

@@ -268,7 +268,7 @@ def _slope(
 ) -> NDArray[np.float64]:
     """Return the slope of friction over sliding speed (m/s), N·s/m; constant beyond the last point.
 
-    Where it has fallen to zero it stays there.
+    A bound that has fallen to zero stays zero.
     """
     if curve is None or len(curve) < 2:
         return np.zeros_like(speed)

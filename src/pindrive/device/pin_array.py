@@ -151,8 +151,8 @@ class PinArray:
     def neighbours(self) -> tuple[Neighbours, ...]:
         """Pins that are next to each other along the drive axis, closer across it than a diameter.
 
-        Of each pin and each row of pins across the axis, the nearest that stands ahead of it. Pins
-        that stand exactly abreast never pass each other: see `abreast`.
+        For each pin and each row of pins across the axis, the nearest pin ahead. Pins that stand
+        exactly abreast never pass each other: see `abreast`.
         """
         return self.neighbours_of(self.pin_diameter)
 

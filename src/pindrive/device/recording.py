@@ -178,9 +178,8 @@ class HandRecording:
     def raw(self, acceleration: float = default("hand_acceleration")) -> bool:
         """True for steps so coarse that differences of places are no speed.
 
-        So it is where it is in counts; or where all places are whole numbers of one step, which
-        changes from row to row, and that step within an interval is a fifth of the acceleration of
-        a hand (m/s²) or more.
+        A recording in counts is raw. So is one whose positions are all whole numbers of one step,
+        if that step within an interval is at least a fifth of the acceleration of a hand (m/s²).
         """
         if self.step is not None:
             return True

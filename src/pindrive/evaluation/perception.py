@@ -12,8 +12,7 @@ plate passes under the mouse while the line is read.
   of the way from where it was released to where it comes to stand. Standing means at rest, or in
   that band for half a natural period and one time constant of the slowest decay, before the next
   line moves it or the hand stops. A pin that does not settle has no smear, and is counted.
-- **Overshoot** is the largest swing beyond that place, as a part of the way back to it. Of a pin
-  that does not settle, the place where spring and dragging plate balance stands for it.
+- **Overshoot** is the largest swing beyond that place, as a part of the way back to it. A pin that does not settle has the position at which spring and dragging plate balance.
 - **Contrast** is (P - T) / (|P| + |T|) with the highest deflection P for a line and the lowest T
   after it, before the next line or the hand's stop (Michelson's, of crest and trough): 1 where the
   pin comes all the way back, 0 where it stays.

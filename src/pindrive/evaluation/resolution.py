@@ -13,9 +13,9 @@ The lines are **settled** if, in addition, the transient after the first line al
 the second line takes the pin along. Every trial is an exact simulation.
 
 Distinct speeds need not be one interval: a swing may fit by chance, and a slow hand may leave the
-pin where the finger's friction holds it. So all of a geometric grid of speeds is tried first, and
-the border of each interval it shows is found by bisection; intervals between two speeds of the grid
-may be missed. Within a sampling interval of the control block a border is chance.
+pin where the finger's friction holds it. Therefore a geometric grid of speeds is evaluated first,
+and bisection finds the border of each interval; intervals between two speeds of the grid may be
+missed. Within a sampling interval of the control block a border is chance.
 """
 
 from __future__ import annotations
@@ -108,8 +108,8 @@ class SpeedLimit:
     def speed(self) -> float:
         """The largest hand speed at which the lines are distinct, m/s; NaN: at none they are.
 
-        Of the first interval: a faster one beyond it is chance. Where that interval does not begin
-        with the slowest hand tried, `distinct` says from where on.
+        Of the first interval: a faster one beyond it is chance. If that interval does not begin
+        with the slowest hand, `distinct` has its begin.
         """
         return self.distinct[0][1] if self.distinct else nan
 

@@ -19,8 +19,8 @@ def fitted_file(device: DeviceFile, found: Fit, target: Path) -> str:
     """The text of a device file with the values of a fit.
 
     Every value that was fitted says its standard error, its interval and its recordings; values
-    that keep a ratio to it have changed with it. Where several recordings have a release of their
-    own, that of the first is written.
+    that keep a ratio to it have changed with it. Of several recordings with their own releases, the
+    release of the first is written.
 
     Args:
         device: The file that the fit started from.

@@ -60,8 +60,8 @@ APART: Final = 0.02
 def polished(problem: Problem, best: Optimum, covariance: Array, seed: int) -> Optimum:
     """A better optimum near one, if there is any beyond a kink or a jump of the cost.
 
-    Where other events happen, the cost has a kink, and where the pin just sticks or does not, a
-    jump. A trust region stops there; points drawn around it lie on both sides.
+    The cost has a kink where events change, and a jump where the pin just sticks. A trust region
+    stops there; points drawn around it lie on both sides.
 
     Args:
         problem: Problem of all samples.

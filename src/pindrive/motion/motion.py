@@ -246,7 +246,7 @@ class Motion(lazy.NotebookHtml):
     def extrema(self, which: QuantityName) -> Extrema:
         """Times and values of the extrema of a quantity over [0, duration], exactly.
 
-        They are where the motion begins and ends, where the quantity turns, and both sides of a
+        Extrema are begin and end of the motion, turning points of the quantity, and both sides of a
         jump: between two neighbours it is continuous and does not turn. A quantity that rests
         before it turns back has its extremum where it comes to rest.
 

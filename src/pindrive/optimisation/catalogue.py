@@ -56,7 +56,7 @@ class Catalogue:
 def read_catalogue(name: str, path: Path, place: str, scans: bool) -> Catalogue:
     """The catalogue in a CSV file.
 
-    Its columns are `part`, keys of a device file with their units, in full or by their last part
+    The columns are `part`, keys of a device file with their units, in full or by their last part
     where that is unique, and `price`, a plain number, where the parts have one.
 
     Args:

@@ -1,9 +1,8 @@
 """The largest hand speed at which lines stay distinct, for many devices, with few trials each.
 
 The criterion is that of `largest_speeds`; a trial is a hand that goes over two lines once. Lines
-are taken to be distinct at all speeds below one at which they are: a bracket is then found in a
-few trials. That they are is looked at where a device is to be confirmed, over the whole grid of
-speeds.
+that are distinct at a speed are assumed distinct at all lower speeds, so that a few trials find a
+bracket. A device to be confirmed is evaluated over the whole grid of speeds.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The paper's equations as they are printed, where that differs from the corrected ones.
 
-For the comparison alone: each has the name of its corrected twin in `formulas.py`. What a printed
-equation refers to is taken right, so that each answers for its own slip. (10) is not here: its
+For the comparison alone: each has the name of its corrected twin in `formulas.py`. References of a
+printed equation are corrected, so that each equation has only its own error. (10) is not here: its
 units do not agree, so that it has no value.
 """
 

@@ -18,7 +18,8 @@ _PLACE = "Mathematical analysis"
 def has_closed_form(r: Releases) -> Truth:
     """Return True for releases with a t_1 that an elementary expression of (21) solves.
 
-    They are π + 2φ_0 for ωt_1, which is exact without damping, and (26) of the limit case.
+    The expressions are π + 2φ_0 for ωt_1, which is exact without damping, and (26) of the limit
+    case.
     """
     scale = formulas.natural_frequency(r) * formulas.amplitude(r)
     turned = (np.pi + 2 * formulas.initial_phase(r)) / formulas.damped_frequency(r)

@@ -1,7 +1,7 @@
 """The table of the paper's equations: as printed, as they should be, and how far each is off.
 
 Each is held against exact motions of the stated releases, until the pin first reaches the plate's
-velocity. What a deviation is a part of stands in its row.
+velocity. The row states the reference of a deviation.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """The paper's closed-form analysis, equations (2) to (26), corrected.
 
-Every function takes `Releases` and gives an array of its shape. They describe the pin from its
-release until friction first changes sign, at t_1 (`first_reversal_time`); before they describe it
-at all, three things must hold (`applies`): the drive is underdamped, and the spring and the damper
-together pull harder than the plate's friction, backwards. Elsewhere the answer is NaN.
+Every function takes `Releases` and gives an array of its shape. The formulas describe the pin from
+its release until friction first changes sign, at t_1 (`first_reversal_time`); before they describe
+it at all, three things must hold (`applies`): the drive is underdamped, and the spring and the
+damper together pull harder than the plate's friction, backwards. Elsewhere the answer is NaN.
 
 In the docstrings α = -b / 2m, d = x_0 - x_d, and "printed" is what the paper has where it slips.
 """

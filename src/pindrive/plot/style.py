@@ -127,7 +127,7 @@ def event_name(kind: str, contact: str) -> str:
 def event_marker(kind: str, contact: str) -> dict[str, Any]:
     """The marker of an event: its shape is the kind, how it is filled the contact.
 
-    That of the finger is larger than that of the plate: both are seen in one place.
+    Symbols of the finger are larger than those of the plate: both are seen in one place.
     """
     fill, size = CONTACTS[contact]
     look = {"marker": EVENT_SHAPE[kind], "color": PALETTE[kind], "fillstyle": fill, "ms": size}

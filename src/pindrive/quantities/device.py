@@ -1,7 +1,7 @@
 """The table of quantities, second part: the whole device and how a hand moves it over a page.
 
 Bounds are far outside of what any such device has, and such that nothing computed from values
-within them overflows or vanishes. How much work they ask for together is another matter: budgets.
+within them overflows or vanishes. Budgets limit their joint work: budgets.
 """
 
 from __future__ import annotations

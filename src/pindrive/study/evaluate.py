@@ -310,7 +310,7 @@ def refusals(study: Study, columns: Columns, reasons: NDArray[Any]) -> tuple[Ref
 def why(study: Study, at: Mapping[str, float]) -> str:
     """Return the reason for a missing motion or scan at these values (SI); empty if it exists.
 
-    It is said of the values to six digits, where these are refused too.
+    The reason has the values to six digits, if these are refused, too.
     """
     rounded = {key: float(f"{x:.6g}") for key, x in at.items()}
     return _reason(study, rounded) or _reason(study, at)

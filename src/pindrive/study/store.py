@@ -6,8 +6,8 @@ process that dies leaves the structure as it was, chunks may come in any order, 
 copied when the last one is there.
 
 The journal beside it says which chunks are done, a line for each with a checksum of its bytes. A
-line is written when its chunk is. One that is cut off, or whose bytes are not in the file after a
-power failure, is ignored: its chunk is computed again.
+line is written when its chunk is. An entry that is cut off, or whose bytes are not in the file
+after a power failure, is ignored: its chunk is computed again.
 """
 
 from __future__ import annotations
