@@ -12,13 +12,14 @@ plate passes under the mouse while the line is read.
   of the way from where it was released to where it comes to stand. Standing means at rest, or in
   that band for half a natural period and one time constant of the slowest decay, before the next
   line moves it or the hand stops. A pin that does not settle has no smear, and is counted.
-- **Overshoot** is the largest swing beyond that place, as a part of the way back to it. A pin that does not settle has the position at which spring and dragging plate balance.
+- **Overshoot** is the largest swing beyond that position, as a part of the way back to it. A pin
+  that does not settle has the position at which spring and dragging plate balance.
 - **Contrast** is (P - T) / (|P| + |T|) with the highest deflection P for a line and the lowest T
-  after it, before the next line or the hand's stop (Michelson's, of crest and trough): 1 where the
-  pin comes all the way back, 0 where it stays.
-- **Skin** moves as far as a compliant finger stretches. A rigid finger has no skin that gives: the
-  pin's own way is taken, which is the most that skin could move. A finger that is lifted feels
-  nothing: skin moves as far as it does in any one time of touch.
+  after it, before the next line or the stop of the hand (Michelson's, of crest and trough): 1 if
+  the pin returns completely, 0 if it stays.
+- **Skin** moves as far as a compliant finger stretches. For a rigid finger it moves as far as the
+  pin, the most that skin could move. A lifted finger feels nothing: the motion of the skin is that
+  within one touch.
 - **False lines** are forward swings without a magnet that reach `false_line` times the height of
   the line before (before the first line of a stroke of the hand: of the first line) and move the
   skin enough for a direction; in a stroke without lines, enough for a sure direction. The height

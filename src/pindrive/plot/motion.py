@@ -135,7 +135,7 @@ def _name_time_under(panels: list[Axes]) -> None:
 
 
 def _draw_stop_force(trace: Trace, axes: Axes) -> None:
-    """The force of the end stops on the pin. The force jumps where the pin meets a stop with damping."""
+    """Force of the end stops on the pin, with jumps where the pin meets a stop with damping."""
     axes.axhline(0.0, color="0.8", lw=0.5, zorder=0, gid="zero")
     axes.plot(trace.broken(trace.t), trace.broken(trace.f), color=PALETTE["curve"], gid="curve")
     left, right = trace.f[trace.starts[1:] - 1], trace.f[trace.starts[1:]]

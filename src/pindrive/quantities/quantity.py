@@ -116,8 +116,8 @@ class Quantity:
     rows: Rows = ()
     """Such rows, SI, in a comment of that file; given alone, it must be rows."""
     follows: tuple[str, ...] = ()
-    """Keys to which the value, or the values of rows, keep their ratio when the keys are varied: the
-    first key, or the first over the second."""
+    """Keys to which the value, or the values of rows, keep their ratio when the keys are varied:
+    the first key, or the first over the second."""
     limits: Bounds = FINITE_OR_NOT
     """Bounds of the computable values, far outside of any device; other values are rejected."""
     seen: Bounds | None = None
