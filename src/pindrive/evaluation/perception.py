@@ -1,17 +1,19 @@
 """Evaluation of a scan against the printed page: line by line, edge by edge.
 
-All times are roots of closed forms, never samples. Deflections are counted forward: the way the
-plate passes under the mouse while the line is read.
+All times are roots of closed forms, never samples. Deflections are positive in the direction in
+which the plate passes under the mouse while the line is read.
 
-- **Response.** A pin responds to the begin of a line when it has come forward by the motion that is
-  felt as a pulse, from its lowest place since its magnet was switched on; to the end, when it has
-  gone back by as much from its highest place since the magnet was switched off.
-- **Latency** is the time from the edge under the spot to the response, **lag** what the hand goes
-  meanwhile on the page.
-- **Smear** is what the hand goes from the pin's release until the pin has settled: stays within 5 %
-  of the way from where it was released to where it comes to stand. Standing means at rest, or in
-  that band for half a natural period and one time constant of the slowest decay, before the next
-  line moves it or the hand stops. A pin that does not settle has no smear, and is counted.
+- **Response.** A pin responds to the begin of a line when it has moved forward by the motion that
+  is felt as a pulse, from its lowest position since its magnet was switched on. It responds to the
+  end when it has moved back by as much, from its highest position since the magnet was switched
+  off.
+- **Latency** is the time from the edge under the spot to the response, **lag** the path of the
+  hand on the page during that time.
+- **Smear** is the path of the hand from the release of the pin until the pin has settled: until it
+  stays within 5 % of its way from the release to the final position. A position is final if the
+  pin is at rest, or stays in that band for half a natural period and one time constant of the
+  slowest decay, before the next line moves it or the hand stops. A pin that does not settle has no
+  smear, and is counted.
 - **Overshoot** is the largest swing beyond that position, as a part of the way back to it. A pin
   that does not settle has the position at which spring and dragging plate balance.
 - **Contrast** is (P - T) / (|P| + |T|) with the highest deflection P for a line and the lowest T
