@@ -103,8 +103,8 @@ MUTANTS = (
     Mutant(
         "parting surfaces never throw the pin ahead of both",
         "law/selection.hpp",
-        "if (other.stuck() ? relative_acceleration != 0",
-        "if (other.stuck() ? false",
+        "if (other.stuck() ? relative != 0 :",
+        "if (other.stuck() ? false :",
     ),
     Mutant(
         "a guard at its zero is not asked by its derivatives",

@@ -25,32 +25,28 @@ struct SelectedMotion {
 
 /// Selection of the mode of a pin and of the motion that the mode starts.
 ///
-/// Each contact lists its candidates (contact_point.hpp, skin.hpp), the end stops list theirs
-/// (stops.hpp). The combinations are tested in a fixed order, and the first consistent one is
-/// selected: a stop or a contact holds the pin (`try_stop`, `try_stick`), then the pin slips on both
-/// contacts (`try_slip`), each beside each state of the stops. Three decisions that follow:
+/// Contacts and end stops list their candidates (contact_point.hpp, skin.hpp, stops.hpp). The
+/// combinations are tested in a fixed order, and the first consistent one is selected: a stop or a
+/// contact holds the pin (`try_stop`, `try_stick`), then the pin slips on both contacts (`try_slip`),
+/// each beside each state of the stops. Three decisions that follow:
 ///
 /// - *Static friction above kinetic friction.* A contact sticks while the stick force is within
 ///   `static_limit`; once it slips, its force is the kinetic friction, so that the force jumps. With
 ///   both directions of slip consistent at that jump, the direction opposite to the stick force is
 ///   selected (`prefer_direction`). A contact whose static friction still suffices is not released
 ///   (`could_stick`), unless no other candidate is consistent.
-/// - *Two surfaces part.* A pin that sticks to both cannot follow both as soon as their
-///   accelerations differ: it stays on the one that stuck before, or on the plate, if the static
-///   friction there suffices, else on the other one; if neither suffices, it slips on both.
-/// - *A stop lets go.* A rigid stop holds the pin while its push is positive (`try_stop`); a push
-///   that is zero and falls is inconsistent, and the next candidate, without the stop, is tested.
-///   An elastic stop separates where its push becomes zero, possibly beyond the end of the travel.
+/// - *Two surfaces part.* A pin that sticks to both cannot follow both once their accelerations
+///   differ. It stays on the surface to which it stuck alone before, else on the plate, if the static
+///   friction there suffices; otherwise on the other one; if neither suffices, it slips on both.
+/// - *A stop lets go.* A rigid stop holds the pin while its push is positive (`try_stop`); a push that
+///   is zero and falls is inconsistent. An elastic stop separates where its push becomes zero.
 template <class T>
 class Selection {
  public:
   Selection(Pin<T>& pin, SelectedMotion<T>& selected) : pin_(pin), selected_(selected) {}
 
-  /// Selects the first candidate that is consistent: the first non-zero derivative of each guard
-  /// that is zero is positive.
-  ///
-  /// Stick is preferred. If only one of two contacts can stick, the contact that stuck until now is
-  /// preferred, then the plate. Returns false if no candidate is consistent.
+  /// Selects the first consistent combination: the first non-zero derivative of each guard that is
+  /// zero is positive. Returns false if there is none.
   bool select() {
     pin_.plate.enumerate_candidates(pin_.state);
     pin_.finger.enumerate_candidates(pin_.state);
@@ -131,18 +127,14 @@ class Selection {
     selected_.tangential = false;
     selected_.acceleration = T(0);
     const T end = stop_sign(pin_.stop.state);
-    const auto choose_admissible = [&](ContactPoint& side, T relative_acceleration) {
+    const auto choose = [&](ContactPoint& side, T relative) {  // relative acceleration, m/s²
       for (int k = 0; k < side.candidates.size(); ++k) {
         side.choose(k);
-        if (side.stuck() ? relative_acceleration == 0
-                         : side.is_admissible(pin_.state, relative_acceleration))
-          return true;
+        if (side.stuck() ? relative == 0 : side.is_admissible(pin_.state, relative)) return true;
       }
       return false;
     };
-    if (!choose_admissible(pin_.plate, -pin_.plate.surface.rate) ||
-        !choose_admissible(pin_.finger, T(0)))
-      return false;
+    if (!choose(pin_.plate, -pin_.plate.surface.rate) || !choose(pin_.finger, T(0))) return false;
     const T force = selected_.applied_force - restoring_force_ + pin_.plate.force(pin_.state) +
                     pin_.finger.force(pin_.state);
     const auto rate = pin_.plate.force_rate(T(0), T(0)), skin = pin_.finger.force_rate(T(0), T(0));
@@ -174,18 +166,15 @@ class Selection {
     const T a = on.surface.rate, spring = stiffness() * pin_.state.v, damper = damping() * a;
     const auto rate = other.force_rate(pin_.state.v, a);
     scale = abs(spring) + abs(damper) + rate.scale;
-    T drift = spring + damper - rate.value;
-    drift -= pin_.force.rate;
+    const T drift = spring + damper - rate.value - pin_.force.rate;
     scale += abs(pin_.force.rate);
     return {force, T(0), T(0), drift, stiffness() * a - rate.second};
   }
 
   /// Tests the mode in which a contact, and `other` if it sticks too, keeps the pin on its surface.
   bool try_stick(const ContactPoint& on, const ContactPoint& other) {
-    const T relative_acceleration = on.surface.rate - other.surface.rate;
-    if (other.stuck() ? relative_acceleration != 0
-                      : !other.is_admissible(pin_.state, relative_acceleration))
-      return false;
+    const T relative = on.surface.rate - other.surface.rate;
+    if (other.stuck() ? relative != 0 : !other.is_admissible(pin_.state, relative)) return false;
     if (!pin_.stop.is_consistent(pin_.state.v, on.surface.rate, {})) return false;
     const T own_limit = on.contact.static_limit;
     const T other_limit = other.stuck() ? other.contact.static_limit : T(0);
@@ -219,25 +208,23 @@ class Selection {
     selected_.guards.clear();
     const T finger = pin_.finger.force(pin_.state);
     // On a plate that begins to slide across, all forces may balance within rounding.
-    const bool starts_across = pin_.plate.oblique() && pin_.plate.across.value == 0 &&
-                               pin_.state.v == pin_.plate.surface.value;
-    const T departure = starts_across
+    const bool starts = pin_.plate.oblique() && pin_.plate.across.value == 0 &&
+                        pin_.state.v == pin_.plate.surface.value;
+    const T departure = starts
                             ? oblique_departure(pin_.drive.mass, pin_.plate,
                                                 selected_.applied_force - restoring_force_ + finger)
                             : T(0);
     const T plate = pin_.plate.force(pin_.state);
     selected_.acceleration =
-        starts_across
-            ? pin_.plate.surface.rate + departure
-            : (selected_.applied_force - restoring_force_ + plate + finger) / pin_.drive.mass;
+        starts ? pin_.plate.surface.rate + departure
+               : (selected_.applied_force - restoring_force_ + plate + finger) / pin_.drive.mass;
     // Relative acceleration times the mass.
     const auto relative_force = [&](const ContactPoint& side, T own, T of_other) {
       if (!side.is_decided_by_acceleration(pin_.state.v)) return selected_.acceleration;
-      const T force = starts_across ? pin_.drive.mass * (selected_.acceleration - side.surface.rate)
-                                    : own - holding_force(side, of_other);
+      const T force = starts ? pin_.drive.mass * (selected_.acceleration - side.surface.rate)
+                             : own - holding_force(side, of_other);
       const bool releases = side.before == ContactState::stick && pin_.stays_at_limit();
-      const T error =
-          starts_across ? T(0) : pin_.state.force_error + pin_.plate.force_error(pin_.state.v);
+      const T error = starts ? T(0) : pin_.state.force_error + pin_.plate.force_error(pin_.state.v);
       const bool none = abs(force) <= error;
       if (!selected_.tangential && (none || releases || turns_at_once(side, force))) {
         selected_.tangential = true;
@@ -255,10 +242,10 @@ class Selection {
                                   jerk.value, jerk.rate);
       }
       if (!selected_.tangential) return side.is_admissible(pin_.state, force);
-      const T relative_acceleration = selected_.acceleration - side.surface.rate;
-      if (pin_.drive.mass * abs(relative_acceleration) > pin_.state.force_error ||
+      const T relative = selected_.acceleration - side.surface.rate;
+      if (pin_.drive.mass * abs(relative) > pin_.state.force_error ||
           !side.is_decided_by_acceleration(pin_.state.v))
-        return side.is_admissible(pin_.state, relative_acceleration);
+        return side.is_admissible(pin_.state, relative);
       T scale;
       const Path<T> needed = holding_force_from(T(0), side, other, scale);
       const T own = side.force_rate(pin_.state.v, selected_.acceleration).value,
