@@ -105,8 +105,8 @@ class Criteria:
     Args:
         felt: Motion that is felt as a pulse, m, greater than 0.
         direction: Motion of skin whose direction is perceived, m, greater than 0.
-        direction_sure: Deflection whose direction is recognised in more than 95 % of cases, m.
-        direction_speed: Speed below which a deflection must decay, m/s.
+        direction_sure: Skin motion whose direction is recognised in more than 95 % of cases, m.
+        direction_speed: Least mean speed of the skin over `direction_sure`, m/s.
         false_line: Least height of a false line over that of the line before, in (0, 1].
 
     Raises:

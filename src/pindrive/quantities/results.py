@@ -260,7 +260,7 @@ CRITERIA: Final = optional(
         "direction_speed",
         "v_3",
         "m/s",
-        "largest speed of that motion",
+        "least mean speed of that motion",
         between(1e-9, 1e3),
         2e-3,
         f"{GLEESON}, 2 mm/s",
