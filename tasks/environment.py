@@ -106,7 +106,7 @@ def install(extras: set[str], *, project: bool = True) -> None:
         stamp = {}
     if stamp.get("python") != sys.version or stamp.get("place") != str(VENV):
         stamp = {}
-    extras = {"build", "complete", *extras, *stamp.get("extras", [])}
+    extras = {"build", "paper", *extras, *stamp.get("extras", [])}
 
     if not stamp:
         STAMP.unlink(missing_ok=True)

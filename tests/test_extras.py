@@ -122,6 +122,13 @@ def test_the_extra_has_what_is_imported() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
     extra = project["optional-dependencies"]["complete"]
     assert [re.split(r"[>=]", line)[0] for line in extra] == sorted(lazy.COMPLETE.values())
+    paper = project["optional-dependencies"]["paper"]
+    assert [re.split(r"[>=]", line)[0] for line in paper[1:]] == sorted(lazy.PAPER.values())
+
+
+def test_a_library_of_the_paper_alone_names_its_extra() -> None:
+    advice = lazy.missing(ModuleNotFoundError(name="latex2mathml.converter"))
+    assert advice == ADVICE.replace("complete", "paper").replace("is not", "latex2mathml is not", 1)
 
 
 def test_another_module_that_is_missing_is_a_fault_of_ours() -> None:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 
 __all__ = [
     "COMPLETE",
+    "PAPER",
     "Image",
     "ImageDraw",
     "ImageFont",
@@ -86,21 +87,23 @@ COMPLETE: Final = {
     "PIL": "pillow",
     "h5netcdf": "h5netcdf",
     "h5py": "h5py",
-    "latex2mathml": "latex2mathml",
-    "markdown_it": "markdown-it-py",
     "matplotlib": "matplotlib",
     "scipy": "scipy",
     "xarray": "xarray",
 }
 """Distributions of the extra "complete", by the names of their packages."""
+PAPER: Final = {"latex2mathml": "latex2mathml", "markdown_it": "markdown-it-py"}
+"""Distributions that the extra "paper" adds to "complete", by the names of their packages."""
 
 
 def missing(error: ModuleNotFoundError) -> str:
-    """Return the advice to install a missing import; empty outside of the extra "complete"."""
-    library = COMPLETE.get((error.name or "").partition(".")[0])
-    if library is None:
-        return ""
-    return f'{library} is not installed; python -m pip install "pindrive[complete]" installs it'
+    """Return the advice to install a missing import; empty outside of both extras."""
+    name = (error.name or "").partition(".")[0]
+    for extra, libraries in (("complete", COMPLETE), ("paper", PAPER)):
+        if name in libraries:
+            needed = f'python -m pip install "pindrive[{extra}]"'
+            return f"{libraries[name]} is not installed; {needed} installs it"
+    return ""
 
 
 def require(name: str) -> None:
