@@ -173,11 +173,11 @@ class DeviceFile:
         given = with_set(self.given, changed)
         tables = {name: dict(table) for name, table in self.tables.items()}
         for key in self.given.keys() | given.keys():
-            table, _, name = key.partition(".")
             if key not in given:
+                table, _, name = key.partition(".")
                 del tables[table][name]
             elif key not in self.given or given[key] != self.given[key]:
-                tables[table][name] = written(key, given[key])
+                _write(tables, key, given[key])
         settings = [Setting(key, written(key, value), "") for key, value in changed.items()]
         return _assembled(self, given, tables, settings, whole=whole or self.whole is not None)
 
@@ -201,8 +201,7 @@ class DeviceFile:
         given = {key: v for key, v in values if v is not None and key not in derived}
         tables: dict[str, dict[str, Any]] = {table: {} for table in TABLES}
         for key, value in given.items():
-            table, _, own = key.partition(".")
-            tables[table][own] = written(key, value)
+            _write(tables, key, value)
         return _assembled(_Source(Path("<drive>"), name, ""), given, tables, whole=False)
 
     def values(self) -> dict[str, float | Rows | None]:
@@ -318,8 +317,8 @@ def device_of(
         kept = with_set({k: v for k, v in before.items() if k not in malformed}, changed)
         for key in kept.keys() - changed.keys():
             if key in values and kept[key] != before[key]:
-                table, _, name = key.partition(".")
-                values[key], tables[table][name] = kept[key], written(key, kept[key])
+                values[key] = kept[key]
+                _write(tables, key, kept[key])
     unknown = _unknown_keys(tables)
     meant = {name for key in unknown for name in names_in_file(key).nearest(key)[:1]}
     said = [
@@ -345,6 +344,12 @@ def device_of(
         place=place,
         problems=said,
     )
+
+
+def _write(tables: Mapping[str, dict[str, Any]], key: str, value: float | Rows) -> None:
+    """Write a value, SI, into the tables of a device file."""
+    table, _, name = key.partition(".")
+    tables[table][name] = written(key, value)
 
 
 def _read(
