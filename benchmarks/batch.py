@@ -86,8 +86,8 @@ def core_alone(program: Path, count: int) -> Callable[[], float]:
     """Seconds that the core takes to the last states, as its own benchmark prints them."""
 
     def run() -> float:
-        told = subprocess.run([program, str(count)], capture_output=True, text=True, check=True)
-        return float(told.stdout.split()[0]) * 1e-6 * count
+        reported = subprocess.run([program, str(count)], capture_output=True, text=True, check=True)
+        return float(reported.stdout.split()[0]) * 1e-6 * count
 
     return run
 

@@ -134,17 +134,17 @@ def measure(cases: Sequence[Case], rounds: int, least: float) -> list[Cost]:
     """Each release in each way, by turns; `least` is how long one timing takes, s."""
     racers = []
     for case in cases:
-        ways: list[Callable[[int], object]]
-        ways = [partial(repeat, case.run), partial(repeat, case.with_numbers)]
+        runs: list[Callable[[int], object]]
+        runs = [partial(repeat, case.run), partial(repeat, case.with_numbers)]
         if not isinstance(case.release.plate_load, Profile):
-            ways.append(case.batch)
-        racers.append([Racer.warm(way, least) for way in ways])
+            runs.append(case.batch)
+        racers.append([Racer.warm(run, least) for run in runs])
     for _ in range(rounds):
         for racer in chain.from_iterable(racers):
             racer.run()
     return [
-        Cost(len(case.run().events), tuple(median(racer.times) for racer in ways))
-        for case, ways in zip(cases, racers, strict=True)
+        Cost(len(case.run().events), tuple(median(racer.times) for racer in runs))
+        for case, runs in zip(cases, racers, strict=True)
     ]
 
 
@@ -194,7 +194,7 @@ def draw(durations: list[Cost], reversals: list[Cost], skins: list[Cost], path: 
             skins,
         ),
     )
-    looks = (
+    styles = (
         ("simulate", "o", PALETTE["curve"]),
         ("simulate, with all numbers", "s", PALETTE["resting"]),
         ("core alone, with all numbers", "^", PALETTE["slip"]),
@@ -202,7 +202,7 @@ def draw(durations: list[Cost], reversals: list[Cost], skins: list[Cost], path: 
     figure = Figure(figsize=(7.1, 2.5), layout="constrained")
     every = figure.subplots(1, 3, sharey=True)
     for axes, (title, name, given, costs) in zip(every, panels, strict=True):
-        for way, (label, marker, colour) in enumerate(looks):
+        for way, (label, marker, colour) in enumerate(styles):
             times = [1e6 * cost.times[way] for cost in costs]
             axes.loglog(given, times, marker, ls="-", lw=1.0, ms=3.5, c=colour, label=label)
         axes.set_title(title, fontsize=8, loc="left")

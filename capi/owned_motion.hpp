@@ -1,5 +1,5 @@
-/// A motion that owns what the core only refers to: the rows of its inputs, the branches of its friction
-/// curves, its segments. What the faces of the core in Python and C stand on.
+/// A motion that owns the arrays to which the core only refers: rows of inputs, branches of friction curves,
+/// segments. The interfaces in Python and C use it.
 #pragma once
 
 #include <cstddef>

@@ -17,8 +17,8 @@ inline pindrive_error given_up(pd::Status status) {
   return fail(PINDRIVE_GIVEN_UP, "%s", pindrive_status_text(static_cast<int>(status)));
 }
 
-/// A pin that is followed. What a library does not make is not linked into it, so that one without derivatives
-/// carries the core but once.
+/// Stepper of one pin, with or without derivatives. A library that never constructs the second kind links a single
+/// instance of the core.
 class Following {
  public:
   virtual ~Following() = default;

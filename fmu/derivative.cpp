@@ -1,5 +1,5 @@
-// Directional derivatives of a unit: those of its outputs at the time, in the mode that holds there. What the inputs
-// do later is not in them, as FMI asks.
+// Directional derivatives of the outputs of a unit at the current time and in the current mode. As FMI requires,
+// they do not include later changes of the inputs.
 #include <cmath>
 #include <vector>
 

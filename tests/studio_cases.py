@@ -22,13 +22,13 @@ def questions(count: int, seed: int) -> tuple[list[Any], list[dict[str, Any]]]:
     """Random cases (drive, release, duration), with the questions to the page."""
     random = np.random.default_rng(seed)
     cases = [drawn(random) for _ in range(count)]
-    asked = []
+    requested = []
     for drive, release, duration in cases:
         given = as_input(drive, release)
         if duration is not None:
             given["release"]["duration"] = duration
-        asked.append({"simulate": given, "duration": duration})
-    return cases, asked
+        requested.append({"simulate": given, "duration": duration})
+    return cases, requested
 
 
 def drawn(random: np.random.Generator) -> tuple[Drive, Release, float | None]:

@@ -9,6 +9,7 @@ from importlib import import_module
 from importlib.util import module_from_spec, spec_from_file_location
 from itertools import pairwise
 from pathlib import Path
+from subprocess import check_call
 from types import ModuleType
 
 import pytest
@@ -199,6 +200,19 @@ def test_a_notebook_shows_a_result_and_can_be_downloaded(page: Path) -> None:
     assert f"{{nb-download}}`{page.stem}.ipynb`" in text
 
 
+@pytest.mark.parametrize("page", NOTEBOOKS, ids=lambda page: page.stem)
+def test_the_cells_of_a_notebook_run(
+    page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Without Jupyter: a renamed function fails here, in a second or two."""
+    monkeypatch.chdir(tmp_path)
+    cells = re.findall(r"^```\{code-cell\}\n(.*?)^```$", page.read_text("utf-8"), re.M | re.S)
+    names = {"shell": lambda line: check_call([sys.executable, "-m", *line.split()])}
+    for number, cell in enumerate(cells):
+        code = re.sub(r"^!(.*)$", r"shell('\1')", cell, flags=re.M)
+        exec(compile(code, f"{page.name}, cell {number}", "exec"), names)
+
+
 # ---- reference -----------------------------------------------------------------------------------
 
 
@@ -273,13 +287,13 @@ def keys(page: str) -> list[str]:
 
 def test_the_keys_of_study_and_problem_files_are_in_the_reference() -> None:
     from pindrive.optimisation.problem import _KEYS
-    from pindrive.study.axes import _WAYS
+    from pindrive.study.axes import _KINDS
     from pindrive.study.spec import _OWN
 
     assert sorted(keys("study-file.md")) == sorted(_OWN)
     assert sorted(keys("problem-file.md")) == sorted(_KEYS)
     text = (DOCS / "reference" / "study-file.md").read_text("utf-8")
-    assert [way for way in _WAYS if f"{{ {way} = " not in text] == []
+    assert [way for way in _KINDS if f"{{ {way} = " not in text] == []
 
 
 def test_calls_of_julia_are_those_of_the_header() -> None:

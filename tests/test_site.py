@@ -69,12 +69,12 @@ def telephone(address: str) -> Iterator[Any]:
             viewport={"width": WIDTH, "height": 844}, is_mobile=True, has_touch=True
         )
         page = context.new_page()
-        asked: list[str] = []
-        page.on("request", lambda request: asked.append(request.url))
-        page.on("pageerror", lambda error: asked.append(str(error)))
+        requested: list[str] = []
+        page.on("request", lambda request: requested.append(request.url))
+        page.on("pageerror", lambda error: requested.append(str(error)))
         yield page
         browser.close()
-        assert [url for url in asked if not url.startswith((address, "data:"))] == []
+        assert [url for url in requested if not url.startswith((address, "data:"))] == []
 
 
 def test_no_page_is_wider_than_a_telephone(address: str, telephone: Any) -> None:

@@ -108,8 +108,8 @@ def test_recipe_has_the_dependencies_of_the_project() -> None:
 
 def test_wrong_result_form_requests_device_and_certificate() -> None:
     form = (ROOT / ".github" / "ISSUE_TEMPLATE" / "wrong-result.yml").read_text("utf-8")
-    asked = re.findall(r"id: (\w+)\n(?:.*\n)*?    validations:\n      required: true", form)
-    assert {"device", "certificate", "command", "version"} <= set(asked)
+    requested = re.findall(r"id: (\w+)\n(?:.*\n)*?    validations:\n      required: true", form)
+    assert {"device", "certificate", "command", "version"} <= set(requested)
 
 
 @pytest.mark.parametrize("arguments", [["--whole"], ["--complete", "no-python"]])
@@ -128,12 +128,15 @@ def test_a_release_names_the_address_that_its_workflow_runs_in(tmp_path: Path) -
         target.parent.mkdir(exist_ok=True)
         shutil.copyfile(ROOT / name, target)
     script = [sys.executable, str(tmp_path / "wheels" / "address.py")]
-    told = {"GITHUB_SERVER_URL": "https://forge.example", "GITHUB_REPOSITORY": "someone/pindrive"}
-    left = {k: v for k, v in os.environ.items() if k not in told}
+    reported = {
+        "GITHUB_SERVER_URL": "https://forge.example",
+        "GITHUB_REPOSITORY": "someone/pindrive",
+    }
+    left = {k: v for k, v in os.environ.items() if k not in reported}
     refused = subprocess.run(script, env=left, capture_output=True, text=True, check=False)
     assert refused.returncode == 2 and len(refused.stderr.splitlines()) == 1
     for _ in range(2):  # once more changes nothing
-        subprocess.run(script, env=left | told, check=True, capture_output=True)
+        subprocess.run(script, env=left | reported, check=True, capture_output=True)
     make = "from scikit_build_core.build import prepare_metadata_for_build_wheel as make; make('.')"
     subprocess.run([sys.executable, "-c", make], cwd=tmp_path, check=True, capture_output=True)
     (metadata,) = tmp_path.glob("*.dist-info/METADATA")

@@ -98,7 +98,7 @@ class Slide:
     v: float
     friction: float  # N
     sides: tuple[float, float]
-    asked: Floats  # times at which positions are wanted, s
+    requested: Floats  # times at which positions are wanted, s
 
     def acceleration(self, x: float, v: float) -> float:
         pin = self.pin

@@ -63,9 +63,9 @@ ON_PLATE = """
 def racers(everything: bool) -> Iterator[Racer]:
     """Hard friction with the recommended integrator and MuJoCo's own values, or all tried."""
     hard = Way()
-    ways = {"hard friction": hard, "soft, as it comes": Way(hard=False, integrator="EULER")}
+    paths = {"hard friction": hard, "soft, as it comes": Way(hard=False, integrator="EULER")}
     if everything:
-        ways |= {
+        paths |= {
             "hard, pin on the plate": replace(hard, on_plate=True),
             "hard, Euler": replace(hard, integrator="EULER"),
             "hard, RK4": replace(hard, integrator="RK4"),
@@ -74,7 +74,7 @@ def racers(everything: bool) -> Iterator[Racer]:
             "hard, tolerance 1e-8": replace(hard, tolerance=1e-8),
             "hard, no slip": replace(hard, noslip=10),
         }
-    for name, way in ways.items():
+    for name, way in paths.items():
         for step in STEPS if way.hard else STEPS[:3]:
             yield Racer("MuJoCo", name, f"step {step:g} s", one_by_one(Stepping(way, step)))
 

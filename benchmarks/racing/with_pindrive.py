@@ -42,8 +42,8 @@ def batch(drives: Floats) -> Lap:
         path = exact(*drive)
         for name in ("peak", "trough"):
             time = float(numbers[f"transient_{name}_time"][i])
-            told = float(numbers[f"transient_{name}_displacement"][i])
+            reported = float(numbers[f"transient_{name}_displacement"][i])
             if np.isfinite(time):
-                off = abs(float(path.state(time)[0] - told)) / drive[-1]
+                off = abs(float(path.state(time)[0] - reported)) / drive[-1]
                 errors[i] = max(errors[i], off)
     return Lap(np.empty(0), {}, seconds, errors)

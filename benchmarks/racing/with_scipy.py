@@ -98,7 +98,7 @@ def slider(method: str, rtol: float, part: int) -> Slider:
             (slide.begin, slide.end),
             (slide.x, slide.v),
             method=method,
-            t_eval=slide.asked,
+            t_eval=slide.requested,
             rtol=rtol,
             atol=(rtol * abs(pin.displacement), rtol * abs(pin.levels[0])),
             max_step=pin.longest_step(part),

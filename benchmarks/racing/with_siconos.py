@@ -27,21 +27,21 @@ def python(given: str | None) -> str | None:
     """A Python that has Siconos: the one given, this one, or the system's."""
     for program in [given] if given else [sys.executable, "/usr/bin/python3"]:
         try:
-            told = subprocess.run([program, "-c", "import siconos.kernel"], capture_output=True)
+            reported = subprocess.run([program, "-c", "import siconos.kernel"], capture_output=True)
         except OSError:
             continue
-        if told.returncode == 0:
+        if reported.returncode == 0:
             return program
     return None
 
 
 def racers(program: str, everything: bool) -> Iterator[Racer]:
     """One way, or all that were tried."""
-    ways = [("first order", "LEMKE")]
+    paths = [("first order", "LEMKE")]
     if everything:
-        ways += [("first order", name) for name in ("PGS", "ENUM", "AVI_CAOFERRIS")]
-        ways += [("lagrangian", "LEMKE")]
-    for way, solver in ways:
+        paths += [("first order", name) for name in ("PGS", "ENUM", "AVI_CAOFERRIS")]
+        paths += [("lagrangian", "LEMKE")]
+    for way, solver in paths:
         name = f"{way}, {solver}" if everything else "time stepping"
         for step in STEPS:
             lap: Callable[[Floats], Lap] = partial(run, program, way, solver, step)
@@ -55,5 +55,5 @@ def run(program: str, way: str, solver: str, step: float, drives: Floats) -> Lap
         given, answer = Path(folder, "in.npz"), Path(folder, "out.npz")
         np.savez(given, drives=drives, step=step, every=every, count=count, way=way, solver=solver)
         subprocess.run([program, WORKER, given, answer], check=True, stdout=subprocess.DEVNULL)
-        with np.load(answer) as told:
-            return Lap(told["positions"], {}, float(told["seconds"]) / drives.shape[1])
+        with np.load(answer) as reported:
+            return Lap(reported["positions"], {}, float(reported["seconds"]) / drives.shape[1])

@@ -79,7 +79,7 @@ def slider(method: str, rtol: float) -> Slider:
             "max_step": longest,
             "max_num_steps": MOST_STEPS,
         }
-        t, state, asked = slide.begin, np.array([slide.x, slide.v]), slide.asked
+        t, state, asked = slide.begin, np.array([slide.x, slide.v]), slide.requested
         away = [i for i, level in enumerate(pin.levels) if slide.v != level]
         middle = min(t + FIRST_WAY * longest, (t + slide.end) / 2)
         first = asked[asked < middle]

@@ -329,8 +329,8 @@ class Batch {
     return block.unsure[i] ? Left::settling_time : Left::nothing;
   }
 
-  /// All points of a share, their numbers straight into the rows; what the kernel leaves to the general
-  /// core is overwritten. Whether there is nothing.
+  /// Computes all points of a share and writes their numbers into the rows. True if the kernel leaves no point to
+  /// the general core, which overwrites those left.
   bool by_kernel(std::size_t first, std::size_t count, Space& space) {
     Block& block = space.block;
     std::fill_n(block.output, Block::columns, nullptr);

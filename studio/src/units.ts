@@ -2,7 +2,7 @@
 import { quoted } from "./python";
 import { TABLES } from "./table";
 
-/** Text that is no number with a unit of the expected kind; says what is expected. */
+/** Text that is not a number with a unit of the expected kind; says what is expected. */
 export class UnitError extends Error {}
 
 /** A rational number, exact. */

@@ -167,7 +167,7 @@ def test_c_has_the_functions_of_python() -> None:
     header = (ROOT / "capi" / "pindrive.h").read_text("utf-8")
     functions = set(re.findall(r"pindrive_(\w+)\(", header))
     stub = ast.parse((ROOT / "src" / "pindrive" / "_core.pyi").read_text("utf-8"))
-    asked = 0
+    requested = 0
     for node in stub.body:
         if isinstance(node, ast.ClassDef):
             names = [each.name for each in node.body if isinstance(each, ast.FunctionDef)]
@@ -181,8 +181,8 @@ def test_c_has_the_functions_of_python() -> None:
         for name in names:
             if name not in OF_THE_EXTENSION:
                 assert of.get(name, name) in functions, name
-                asked += 1
-    assert asked > 25
+                requested += 1
+    assert requested > 25
 
 
 def same(found: Any, expected: Any, case: int) -> None:

@@ -151,8 +151,8 @@ def test_fates_of_the_lines(evaluated: Evaluation) -> None:
     first = verdict_words(evaluated)[0]
     unsure = counts["lines.shown"] - counts["lines.sure"]
     doubts = [count for count in (counts["lines.unsettled"], unsure) if count]
-    told = [counts["lines.crossed"], counts["lines.shown"], *doubts, missed]
-    assert numbers(first)[: len(told)] == told
+    reported = [counts["lines.crossed"], counts["lines.shown"], *doubts, missed]
+    assert numbers(first)[: len(reported)] == reported
     assert numbers(first)[-1] == counts["lines.false"]
 
 
@@ -214,6 +214,6 @@ def test_speeds() -> None:
     assert heads == ["pitch", "width", "distinct up to", "settled up to", "a faster hand"]
     assert units[:4] == ["mm", "mm", "mm/s", "mm/s"]
     assert one[:4] == ["2.000", "1.000", "200.0", "100.0"]
-    assert one[4] == "has the pin back by 25%, is distinct again at 300.0-400.0 mm/s"
+    assert one[4] == "lets the pin return by 25%, is distinct again at 300.0-400.0 mm/s"
     assert other[:4] == ["4.000", "1.500", "10.00 to > 1000", "-"]
     assert "Tried: 5.000 mm/s to 1000 mm/s" in printed(speed_report(limits, 0.5, Criteria()))

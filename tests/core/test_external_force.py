@@ -90,7 +90,7 @@ def against_thirty_digits(of: Case, times: int) -> tuple[Motion, int]:
     ]
     rows = np.array([[float(y) for y in path.state(t)] for t in at]).T
     states = dict(zip(("x", "v", "a", "finger_force"), rows, strict=False))
-    told = {
+    reported = {
         "x": motion.position(at),
         "v": motion.velocity(at),
         "a": motion.acceleration(at),
@@ -99,7 +99,7 @@ def against_thirty_digits(of: Case, times: int) -> tuple[Motion, int]:
     piecewise.NUMBERS[id(of)] = 0
     true: Case = {**of, "events": events, "times": at.tolist(), **states}
     found = piecewise.deviations(
-        true, piecewise.told_events(motion), told, TIME_TOLERANCE, STATE_TOLERANCE
+        true, piecewise.told_events(motion), reported, TIME_TOLERANCE, STATE_TOLERANCE
     )
     assert not found, "\n".join(found)
     return motion, len(events)

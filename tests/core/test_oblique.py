@@ -69,10 +69,10 @@ def test_oblique_motions_are_those_of_explicit_modes(name: str) -> None:
     answer: Any = {**of, "events": run.events, "times": times.tolist(), "family": "", **rows}
     piecewise.NUMBERS[id(answer)] = 0
     motion = piecewise.release(of)
-    told = [e for e in piecewise.told_events(motion) if e[1] != "plate"]
+    reported = [e for e in piecewise.told_events(motion) if e[1] != "plate"]
     found = piecewise.deviations(
         answer,
-        told,
+        reported,
         {
             "x": motion.position(times),
             "v": motion.velocity(times),

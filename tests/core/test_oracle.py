@@ -87,9 +87,9 @@ def deviations(
 ) -> list[str]:
     """Return the deviations from the stored answer; `states` are x, v and a at its times."""
     name = f"case {NUMBERS[id(case)]} ({case['family']})"
-    told, stored = ([f"{e[1]} {e[2]}" for e in es] for es in (events, case["events"]))
-    if told != stored:
-        return [f"{name}: events {told}, the oracle has {stored}; inputs {case['inputs']}"]
+    reported, stored = ([f"{e[1]} {e[2]}" for e in es] for es in (events, case["events"]))
+    if reported != stored:
+        return [f"{name}: events {reported}, the oracle has {stored}; inputs {case['inputs']}"]
     found = []
     length, speed, push = scales(case)
     for event, true in zip(events, case["events"], strict=True):

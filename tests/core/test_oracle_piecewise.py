@@ -116,7 +116,7 @@ def carried(case: Case, events: list[Told]) -> list[Told]:
     return [event for event in of if event[1] not in absent]
 
 
-def alike(told: list[Told], true: list[Told]) -> bool:
+def alike(reported: list[Told], true: list[Told]) -> bool:
     """Return True if each contact changes alike at one instant."""
 
     def kinds(events: list[Told]) -> set[tuple[str, str]]:
@@ -125,7 +125,7 @@ def alike(told: list[Told], true: list[Told]) -> bool:
             (c, kind) for _, contact, kind, _, _ in events for c in each.get(contact, (contact,))
         }
 
-    return kinds(told) == kinds(true)
+    return kinds(reported) == kinds(true)
 
 
 def told_events(motion: Motion) -> list[Told]:
@@ -150,12 +150,14 @@ def deviations(
     state_tolerance: float,
 ) -> list[str]:
     """Return the deviations from the stored answer; `states` are at its times."""
-    told, stored = (instants(carried(case, these)) for these in (events, case["events"]))
-    if len(told) != len(stored) or not all(map(alike, told, stored)):
+    reported, stored = (instants(carried(case, these)) for these in (events, case["events"]))
+    if len(reported) != len(stored) or not all(map(alike, reported, stored)):
         lists = ([f"{e[1]} {e[2]}" for e in es] for es in (events, case["events"]))
         return ["{}: events {}, the oracle has {}; {}".format(name(case), *lists, case["inputs"])]
     found, scale = [], scales(case)
-    for event, true in ((ours[0], theirs[0]) for ours, theirs in zip(told, stored, strict=True)):
+    for event, true in (
+        (ours[0], theirs[0]) for ours, theirs in zip(reported, stored, strict=True)
+    ):
         for what, column, allowed in (
             ("time", 0, time_tolerance),
             ("position", 3, state_tolerance * scale["x"]),

@@ -49,8 +49,8 @@ def test_core_gives_the_oracle_answers(family: str) -> None:
         }
         if "stretch" in case:
             states["stretch"] = motion.stretch(times)
-        told = piecewise.told_events(motion)
-        found += piecewise.deviations(case, told, states, TIME_TOLERANCE, STATE_TOLERANCE)
+        reported = piecewise.told_events(motion)
+        found += piecewise.deviations(case, reported, states, TIME_TOLERANCE, STATE_TOLERANCE)
     assert not found, "\n".join(found)
 
 

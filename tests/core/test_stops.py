@@ -28,7 +28,7 @@ ELASTIC = replace(FREE, damping=0.2, stop_stiffness=1e4, stop_damping=3.0)
 RUBBED = replace(ELASTIC, plate=Contact(0.03, 0.05), finger=Contact(0.02, 0.03))
 
 
-def told(motion: Motion) -> list[tuple[str, str]]:
+def reported(motion: Motion) -> list[tuple[str, str]]:
     return [(event.contact, event.kind) for event in motion.events]
 
 
@@ -45,7 +45,7 @@ def test_a_rigid_stop_takes_the_velocity_and_a_free_pin_sets_out_again() -> None
     motion = simulate(FREE, Release(0.0, 0.0, velocity=0.3), duration=0.1)
     w, v = 100.0, 0.3
     time = np.arcsin(1e-3 * w / v) / w
-    assert told(motion)[0] == ("stop", "stop")
+    assert reported(motion)[0] == ("stop", "stop")
     first = motion.events[0]
     assert first.time == pytest.approx(time, rel=1e-14)
     assert (first.position, first.velocity) == (1e-3, 0.0)
@@ -64,7 +64,7 @@ def test_a_pin_is_held_until_what_presses_it_changes_sides() -> None:
     push = Profile([0.0, 0.02, 0.1], [0.3, 0.3, -0.1])
     drive = replace(FREE, damping=0.5)
     motion = simulate(drive, Release(0.0, 0.0, velocity=0.0, force=push), duration=0.15)
-    assert told(motion)[:2] == [("stop", "stop"), ("stop", "leave")]
+    assert reported(motion)[:2] == [("stop", "stop"), ("stop", "leave")]
     leaves = motion.events[1].time
     assert float(push(leaves)) == pytest.approx(0.1, rel=1e-12), "the spring's force"
     t = np.linspace(motion.events[0].time, leaves, 40)
@@ -100,7 +100,7 @@ def test_an_elastic_stop_against_an_integration_with_events(damping: float) -> N
         t, y = [*t, *done.t[1:]], np.hstack([y, done.y[:, 1:]])
     assert np.abs(motion.position(np.array(t)) - y[0]).max() < 1e-11
     assert np.abs(motion.velocity(np.array(t), side="left") - y[1]).max() < 1e-8
-    assert set(told(motion)) == {("stop", "stop"), ("stop", "leave")}
+    assert set(reported(motion)) == {("stop", "stop"), ("stop", "leave")}
     of_stop = motion.force("stop", np.array(t))
     assert (of_stop[np.array(t) > 0] * y[0, np.array(t) > 0] <= 1e-12).all(), "it never pulls"
     laws(motion)
@@ -117,7 +117,7 @@ def test_the_plate_carries_a_pin_to_the_stop_and_slides_on(stiffness: float | No
     motion = simulate(drive, Release(0.06, 0.0))
     assert motion.ending.kind == "resting"
     assert motion.ending.position == pytest.approx(1e-3, rel=1e-12 if stiffness is None else 0.05)
-    assert ("stop", "stop") in told(motion) and motion.segments[0].mode == "carried"
+    assert ("stop", "stop") in reported(motion) and motion.segments[0].mode == "carried"
     assert motion.events[0].time == pytest.approx(1e-3 / 0.06, rel=1e-12)
     laws(motion)
 
@@ -140,7 +140,7 @@ def test_every_mode_meets_a_stop(oblique: float) -> None:
             motion = simulate(
                 drive, Release(hand, 0.0, plate_load=load, across_velocity=oblique), duration=0.12
             )
-            kinds = told(motion)
+            kinds = reported(motion)
             assert kinds.count(("stop", "stop")) >= 2, "on both sides"
             laws(motion)
 

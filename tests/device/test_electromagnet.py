@@ -30,15 +30,15 @@ def commands(*times: float) -> Commands:
 
 def test_current_obeys_its_differential_equation() -> None:
     magnet = Electromagnet(rise_constant=0.001, fall_constant=0.004)
-    told = commands(0.01, 0.013, 0.0135, 0.03)
-    current = magnet.current(told, CoilState())
+    reported = commands(0.01, 0.013, 0.0135, 0.03)
+    current = magnet.current(reported, CoilState())
 
     def slope(t: float, c: float, on: bool) -> float:
         return (1.0 - c) / magnet.rise_constant if on else -c / magnet.fall_constant
 
     value, begin = 0.0, 0.0
-    for end in (*told.times.tolist(), 0.05):
-        on = bool(told.on(0.5 * (begin + end)))
+    for end in (*reported.times.tolist(), 0.05):
+        on = bool(reported.on(0.5 * (begin + end)))
         out = solve_ivp(slope, (begin, end), [value], args=(on,), rtol=1e-11, atol=1e-13)
         value, begin = float(out.y[0, -1]), end
         assert current(end) == pytest.approx(value, abs=1e-9)

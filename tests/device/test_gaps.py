@@ -151,17 +151,17 @@ def test_acceleration_of_series_steps_is_not_evaluated(
     pair = [simulate(body, Release(0.3, x, plate_load=load), duration=0.2) for x in (2e-3, 1e-3)]
     series = [~np.isnan(motion.acceleration_bounds) for motion in pair]
     assert all(steps.all() and steps.sum() > 3 for steps in series)
-    asked: list[int] = []
+    requested: list[int] = []
 
     def counted(motion: Motion, t: NDArray[np.float64], side: str = "right") -> NDArray[np.float64]:
-        asked.append(np.size(t))
+        requested.append(np.size(t))
         return np.zeros(np.shape(t))
 
     expected = closest(*pair)
     monkeypatch.setattr(Motion, "acceleration", counted)
     monkeypatch.setattr(Motion, "velocity", counted)
     assert closest(*pair) == expected
-    assert sum(asked) == 0
+    assert sum(requested) == 0
 
 
 # ---- laws ----------------------------------------------------------------------------------------

@@ -45,8 +45,8 @@ def test_place_is_the_integral_of_velocity() -> None:
     t = np.linspace(0.0, path.end, 200_001)
     vx, _ = path.velocity(t)
     x, _ = path.position(t)
-    ways = np.concatenate([[0.0], np.cumsum(0.5 * (vx[1:] + vx[:-1]) * np.diff(t))])
-    assert_allclose(x, ways, atol=1e-9)
+    paths = np.concatenate([[0.0], np.cumsum(0.5 * (vx[1:] + vx[:-1]) * np.diff(t))])
+    assert_allclose(x, paths, atol=1e-9)
 
 
 def test_line_by_line() -> None:

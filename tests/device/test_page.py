@@ -67,7 +67,7 @@ def test_resolution_from_the_file(tmp_path: Path) -> None:
     Image.fromarray(GREY).save(tmp_path / "page.png", dpi=(254, 254))
     assert Scene.from_image(tmp_path / "page.png").pixel == pytest.approx(1e-4, rel=1e-4)
     Image.fromarray(GREY).save(tmp_path / "bare.png")
-    with pytest.raises(ValueError, match=r"bare.png: says nothing of its resolution; give scan."):
+    with pytest.raises(ValueError, match=r"bare.png: does not state its resolution; give scan."):
         Scene.from_image(tmp_path / "bare.png")
     Image.fromarray(GREY).save(tmp_path / "fax.png", dpi=(204, 98))
     with pytest.raises(ValueError, match=r"must be the same across and down, got 203.98"):
@@ -144,7 +144,7 @@ def test_text_that_cannot_be_shown() -> None:
         ValueError, match=r'the font DejaVuSans.ttf lacks "漢" \(U\+6F22 CJK UN.*\); give another'
     ):
         Scene.from_text("a漢")
-    with pytest.raises(ValueError, match=r"none.ttf: is no font that can be read"):
+    with pytest.raises(ValueError, match=r"none.ttf: is not a font that can be read"):
         Scene.from_text("a", font="none.ttf")
     with pytest.raises(
         ValueError,

@@ -156,8 +156,8 @@ HELD = Electromagnet.from_coil(
 def test_a_given_voltage_holds_from_each_switching_on() -> None:
     coil = Coil(**{n: getattr(COIL, n) for n in Coil.__dataclass_fields__ if n != "heat_capacity"})
     made = Electromagnet.from_coil(coil, voltage=[(0.0, 3.0), (0.004, 0.6), (0.03, 1.5)])
-    told = Commands(np.array([0.010, 0.050, 0.055, 0.057]))
-    current = made.current(told, CoilState(), 0.0, 0.08)
+    reported = Commands(np.array([0.010, 0.050, 0.055, 0.057]))
+    current = made.current(reported, CoilState(), 0.0, 0.08)
     rise, fall = made.rise_constant, made.fall_constant
     value = 0.0
     for lasts, target, constant, end in (

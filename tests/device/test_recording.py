@@ -33,9 +33,9 @@ def mouse(path: HandPath, rate: float = 1000.0, jitter: float = 1e-4) -> tuple[V
     rng = np.random.default_rng(7)
     t = np.arange(path.begin, path.end, 1.0 / rate)
     counts = np.floor(path.position(t)[0] / STEP + 0.5)
-    ways = np.diff(counts, prepend=counts[0])
-    moved = (ways != 0.0) | (np.arange(len(t)) % len(t) == 0) | (t == t[-1])
-    return (t + rng.uniform(-jitter, jitter, len(t)))[moved], ways[moved]
+    paths = np.diff(counts, prepend=counts[0])
+    moved = (paths != 0.0) | (np.arange(len(t)) % len(t) == 0) | (t == t[-1])
+    return (t + rng.uniform(-jitter, jitter, len(t)))[moved], paths[moved]
 
 
 def write(file: Path, header: str, *columns: Any) -> Path:
@@ -49,8 +49,8 @@ def write(file: Path, header: str, *columns: Any) -> Path:
 
 def test_a_raw_recording_of_a_mouse_is_the_hand_that_made_it(tmp_path: Path) -> None:
     """Speeds within 2 % of the peak, which is within 0.3 %; from row to row they are 70 % off."""
-    t, ways = mouse(truth())
-    file = write(tmp_path / "raw.csv", "time [s], dx [count], dy [count]", t, ways, 0.0 * ways)
+    t, paths = mouse(truth())
+    file = write(tmp_path / "raw.csv", "time [s], dx [count], dy [count]", t, paths, 0.0 * paths)
     recording = HandRecording.read(file)
     assert recording.raw()
     assert recording.resolved == pytest.approx(STEP)
@@ -67,14 +67,14 @@ def test_a_raw_recording_of_a_mouse_is_the_hand_that_made_it(tmp_path: Path) -> 
 
 def test_a_mouse_that_rests_reports_nothing_and_stays(tmp_path: Path) -> None:
     """In the pause after the first stroke the hand stands, though no row says so."""
-    t, ways = mouse(truth())
+    t, paths = mouse(truth())
     gap = int(np.argmax(np.diff(t)))
     assert t[gap + 1] - t[gap] > 0.25
-    file = write(tmp_path / "raw.csv", "time [s], dx [count], dy [count]", t, ways, 0.0 * ways)
+    file = write(tmp_path / "raw.csv", "time [s], dx [count], dy [count]", t, paths, 0.0 * paths)
     path = read_csv(file)
     x, _ = path.position(np.linspace(t[gap] + 0.05, t[gap + 1] - 0.05, 100))
     assert np.ptp(x) < 0.1 * STEP
-    assert x[0] == pytest.approx(ways[: gap + 1].sum() * STEP, abs=0.1 * STEP)
+    assert x[0] == pytest.approx(paths[: gap + 1].sum() * STEP, abs=0.1 * STEP)
 
 
 FORMS = {
@@ -87,18 +87,18 @@ FORMS = {
 @pytest.mark.parametrize("form", FORMS)
 def test_one_hand_in_all_notations(tmp_path: Path, form: str) -> None:
     header, scale, relative = FORMS[form]
-    t, ways = mouse(truth())
-    x = scale * (ways if relative else np.cumsum(ways))
+    t, paths = mouse(truth())
+    x = scale * (paths if relative else np.cumsum(paths))
     file = write(tmp_path / "a.csv", header, (1e3 if "[ms]" in header else 1.0) * t, x, 0.0 * x)
-    usual = write(tmp_path / "b.csv", "time [s], x [m], y [m]", t, STEP * np.cumsum(ways), 0.0 * x)
+    usual = write(tmp_path / "b.csv", "time [s], x [m], y [m]", t, STEP * np.cumsum(paths), 0.0 * x)
     one, other = read_csv(file), read_csv(usual)
     at = np.linspace(one.begin, one.end, 777)
     assert_allclose(one.position(at), other.position(at), atol=1e-3 * STEP)
 
 
 def test_the_resolution_is_that_of_the_mouse(tmp_path: Path) -> None:
-    t, ways = mouse(truth())
-    file = write(tmp_path / "raw.csv", "time [s], dx [count], dy [count]", t, ways, 0.0 * ways)
+    t, paths = mouse(truth())
+    file = write(tmp_path / "raw.csv", "time [s], dx [count], dy [count]", t, paths, 0.0 * paths)
     one, other = read_csv(file), read_csv(file, resolution=400.0 / 0.0254)
     assert other.peak_speed == pytest.approx(2.5 * one.peak_speed, rel=1e-9)
 
@@ -155,15 +155,15 @@ def test_a_smooth_recording_is_followed_as_it_is() -> None:
     middles = 0.5 * (t[1:] + t[:-1])
     x = recording.x
     assert_allclose(path.position(middles)[0], 0.5 * (x[1:] + x[:-1]), atol=1e-15)
-    assert path.about.endswith("It is followed as it is.")
+    assert path.about.endswith("It is used without smoothing.")
 
 
 # ---- refusals ------------------------------------------------------------------------------------
 
 
 def test_refusals(tmp_path: Path) -> None:
-    t, ways = mouse(truth())
-    file = write(tmp_path / "raw.csv", "time [s], dx [count], dy [count]", t, ways, 0.0 * ways)
+    t, paths = mouse(truth())
+    file = write(tmp_path / "raw.csv", "time [s], dx [count], dy [count]", t, paths, 0.0 * paths)
     with pytest.raises(ValueError) as error:
         read_csv(file, cutoff=300.0)
     assert str(error.value).startswith(
@@ -171,11 +171,11 @@ def test_refusals(tmp_path: Path) -> None:
     )
     with pytest.raises(ValueError, match="resolution must be finite and at least 100 1/m"):
         read_csv(file, resolution=0.0)
-    ways[len(ways) // 4] = 2000.0  # the mouse was lifted, or a report is wrong
-    file = write(tmp_path / "jump.csv", "time [s], dx [count], dy [count]", t, ways, 0.0 * ways)
+    paths[len(paths) // 4] = 2000.0  # the mouse was lifted, or a report is wrong
+    file = write(tmp_path / "jump.csv", "time [s], dx [count], dy [count]", t, paths, 0.0 * paths)
     with pytest.raises(ValueError, match=r"jump\.csv, smoothed: t\[\d+\] must be without a jump"):
         read_csv(file)
-    file = write(tmp_path / "lone.csv", "time [s], dx [count]", t, ways)
+    file = write(tmp_path / "lone.csv", "time [s], dx [count]", t, paths)
     with pytest.raises(
         ValueError, match=r'lone\.csv: the header must be like "time \[s\], x \[m\]'
     ):
@@ -191,8 +191,8 @@ def test_a_scan_along_a_raw_recording_shows_what_the_hand_itself_does(tmp_path: 
     page = np.ones((80, 320))
     page[:, 150:170] = page[:, 240:260] = 0.0
     scene = Scene(page, 1e-4)
-    t, ways = mouse(truth())
-    x = 0.01 / STEP + np.cumsum(ways)
+    t, paths = mouse(truth())
+    x = 0.01 / STEP + np.cumsum(paths)
     y = np.full_like(x, 0.004 / STEP)
     file = write(tmp_path / "raw.csv", "time [s], x [count], y [count]", t, x, y)
     one, other = pd.scan(device, scene, file).evaluate(), pd.scan(device, scene, truth()).evaluate()
@@ -208,8 +208,8 @@ def test_a_scan_along_a_raw_recording_shows_what_the_hand_itself_does(tmp_path: 
 
 @pytest.mark.usefixtures("in_empty_folder")
 def test_check_reports_a_recording(tmp_path: Path) -> None:
-    t, ways = mouse(truth())
-    file = write(tmp_path / "raw.csv", "time [s], dx [count], dy [count]", t, ways, 0.0 * ways)
+    t, paths = mouse(truth())
+    file = write(tmp_path / "raw.csv", "time [s], dx [count], dy [count]", t, paths, 0.0 * paths)
     result = run("check", str(file))
     assert result.exit_code == 0
     recording, path = result.output.splitlines()

@@ -296,8 +296,8 @@ def test_a_hand_that_leaves_the_page_reads_blank_paper() -> None:
         assert_allclose(pin.luminance, like.luminance, atol=1e-12)
         assert pin.events == like.events
     assert one.evaluate().counts == other.evaluate().counts
-    looks = one.pins[0].sample_times
-    off = ~small.contains(*one.spot(0, looks).T)
+    instants = one.pins[0].sample_times
+    off = ~small.contains(*one.spot(0, instants).T)
     assert one.warnings[0] == (
         "the spot of pin 0 is beyond the page, 0 to 20 mm across and 0 to 10 mm down, for "
         f"{off.mean():.0%} of the time: it sees blank paper there"
@@ -387,10 +387,10 @@ def test_control_blocks() -> None:
         ControlBlock(threshold=0.9, hysteresis=0.3)
     assert str(refused.value).startswith("hysteresis must be at most 0.2 about a threshold of 0.9")
     control = ControlBlock(sample_rate=100.0, latency=0.015, hysteresis=0.2)
-    looks = control.sample_times(0.0, 0.1)
-    assert_allclose(looks, np.arange(10) / 100)
+    instants = control.sample_times(0.0, 0.1)
+    assert_allclose(instants, np.arange(10) / 100)
     seen = np.array([1.0, 0.45, 0.39, 0.45, 0.55, 0.61, 0.5, 0.3, 0.3, 1.0])
-    commands, after = control.decide(seen, looks, 0.1)
+    commands, after = control.decide(seen, instants, 0.1)
     assert_allclose(commands.times, [0.035, 0.065, 0.085])
     assert (after.on, after.switched) == (False, True)
     assert after.pending == pytest.approx((0.105,))

@@ -12,13 +12,13 @@ READER = EXAMPLES / "tactile-reader.toml"
 
 
 def test_the_limits_are_the_last_speeds_at_which_all_is_well() -> None:
-    file, told = pd.load_device(READER), list[tuple[int, int]]()
+    file, reported = pd.load_device(READER), list[tuple[int, int]]()
     found = speeds_over_page(
         file.device,
         file.reading,
         pd.Page(text="I"),
         slowest=0.05,
-        progress=lambda done, of: told.append((done, of)),
+        progress=lambda done, of: reported.append((done, of)),
     )
     for limit, holds in ((found.shown_speed, all_shown), (found.settled_speed, all_settled)):
         at = [*found.counts]
@@ -27,8 +27,8 @@ def test_the_limits_are_the_last_speeds_at_which_all_is_well() -> None:
         assert not holds(found.counts[after])
         assert after <= 1.011 * limit
     assert found.settled_speed < found.shown_speed
-    assert told == sorted(told)
-    assert told[-1][0] == told[-1][1]
+    assert reported == sorted(reported)
+    assert reported[-1][0] == reported[-1][1]
     assert list(found.to_dataset().hand_speed) == list(found.counts)
 
 

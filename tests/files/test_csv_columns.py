@@ -97,4 +97,4 @@ def test_a_recording_of_a_bench_is_not_replaced_by_a_motion() -> None:
     Path("bench.csv").write_text(f"time [s],position [m]\n{rows}")
     said = run("simulate", EXAMPLE, "-o", "bench.csv")
     assert said.exit_code == 2
-    assert "bench.csv: is there and is no CSV file of a motion" in said.stderr
+    assert "bench.csv: exists and is no CSV file of a motion" in said.stderr

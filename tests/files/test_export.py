@@ -42,8 +42,8 @@ def test_a_motion_at_a_rate(rate: float | str) -> None:
         assert [float(row[column]) for row in rows] == getattr(motion, name)(t).tolist()
     assert [float(r["plate_force [N]"]) for r in rows] == motion.force("plate", t).tolist()
     assert [float(r["finger_force [N]"]) for r in rows] == motion.force("finger", t).tolist()
-    told = [(float(r["time [s]"]), r["contact"], r["kind"]) for r in table(events)]
-    assert told == [(e.time, e.contact, e.kind) for e in motion.events]
+    reported = [(float(r["time [s]"]), r["contact"], r["kind"]) for r in table(events)]
+    assert reported == [(e.time, e.contact, e.kind) for e in motion.events]
 
 
 def test_the_last_sample_of_a_whole_count_is_there() -> None:
@@ -79,9 +79,9 @@ def test_a_scan_at_a_rate() -> None:
 
 def test_too_many_samples_are_refused_before_a_file_is_begun() -> None:
     hour = pd.simulate(DRIVE, pd.Release(0.1, 1.5e-3), duration=3600.0)
-    with pytest.raises(ValueError) as told:
+    with pytest.raises(ValueError) as reported:
         hour.to_csv("m.csv", rate="1000 kHz")
-    assert str(told.value) == (
+    assert str(reported.value) == (
         "the samples of the motion must be at most 10000000, got 3600000001 (3600 s at 1e+06 Hz)"
     )
     assert list(Path().iterdir()) == []

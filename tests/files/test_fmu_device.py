@@ -107,8 +107,8 @@ def test_commands_lead_to_what_a_scan_has(
     times = np.array(hand.times)
     switchings = pin.commands.times - pin.begin
     stops = np.unique([*times, *switchings, pin.end - pin.begin])
-    looks = np.linspace(pin.begin, pin.end, 500)
-    size, fastest = (np.abs(f(looks)).max() for f in (pin.position, pin.velocity))
+    sample_times = np.linspace(pin.begin, pin.end, 500)
+    size, fastest = (np.abs(f(sample_times)).max() for f in (pin.position, pin.velocity))
     worst, astray, on = 0.0, 0, False
     for begin, end in zip([0.0, *stops], stops, strict=False):
         if end <= begin:

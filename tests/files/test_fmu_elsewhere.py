@@ -38,13 +38,13 @@ def driven(folder: Path, target: str, runs: list[str], resources: str, library: 
     device = load_device(MOUSE)
     description = fmpy.read_model_description(str(folder))
     numbers = {v.name: v.valueReference for v in description.modelVariables}
-    asked = [f"i{numbers[name]}" for name in inputs_of(device)]
-    asked += [f"o{numbers[name]}" for name in OUTPUTS]
+    requested = [f"i{numbers[name]}" for name in inputs_of(device)]
+    requested += [f"o{numbers[name]}" for name in OUTPUTS]
     token = description.instantiationToken
     environment = {**os.environ, "WINEPREFIX": str(folder / "wine"), "WINEDEBUG": "-all"}
     environment["WINEDLLOVERRIDES"] = "mscoree=;mshtml="  # no offer to install Mono and Gecko
     done = subprocess.run(
-        [*runs, str(program), str(library), resources, token, *asked],
+        [*runs, str(program), str(library), resources, token, *requested],
         env=environment,
         capture_output=True,
         text=True,

@@ -98,7 +98,7 @@ def test_a_file_is_replaced_by_its_own_kind_alone(command: str) -> None:
     arguments, name = COMMANDS[command]
     before = foreign(name)
     said = refused(*arguments, name)
-    assert f" {name}: is there and is no " in said
+    assert f" {name}: exists and is no " in said
     assert said.endswith("; give another name, or --force")
     assert Path(name).read_bytes() == before
     Path(name).unlink()
@@ -201,7 +201,7 @@ def test_a_sweep_replaces_nothing_but_a_study(name: str, options: tuple[str, ...
     before = Path(name).read_bytes()
     said = refused("sweep", "study.toml", "-o", name, *options)
     assert said == (
-        f"{name}: is there and is no NetCDF file of a study; give another name, or --force"
+        f"{name}: exists and is no NetCDF file of a study; give another name, or --force"
     )
     assert Path(name).read_bytes() == before
 
@@ -219,7 +219,7 @@ def test_init_replaces_nothing_unless_forced() -> None:
     assert said == "device.toml: exists already; --force replaces it"
     for name in ("study.toml", "page.png", "swept.nc", "hand.csv"):
         said = refused("init", name)
-        assert said == f"{name}: is there and is no device file; give another name, or --force"
+        assert said == f"{name}: exists and is no device file; give another name, or --force"
     for name in ("device.toml", "page.png"):
         assert run("init", name, "--force").exit_code == 0
         assert run("check", name).exit_code == 0
@@ -251,7 +251,7 @@ def test_a_report_replaces_a_report_alone(tmp_path: Path) -> None:
         ("data/x.csv", b"t,x\n1,2\n"),
     ):
         (folder / name).write_bytes(other)
-        with pytest.raises(OutputError, match=f"{Path(name).name}: is there and is no "):
+        with pytest.raises(OutputError, match=f"{Path(name).name}: exists and is no "):
             write_files(folder, {"new.html": page, "page.html": page, "data/x.csv": b"a,b\n"})
         assert (folder / name).read_bytes() == other
         (folder / name).write_bytes(page if name == "page.html" else b"a,b\n")
@@ -263,7 +263,7 @@ def test_paper_keeps_a_page_of_another() -> None:
     Path("out/paper.html").write_text("<!DOCTYPE html>\n<title>Mine</title>\n")
     said = refused("paper", "-o", "out")
     assert said == (
-        "-o out/paper.html: is there and is no report of the paper; give another name, or --force"
+        "-o out/paper.html: exists and is no report of the paper; give another name, or --force"
     )
     Path("docs").mkdir()
     Path("docs/paper.md").write_text("# Mine\n")
@@ -276,5 +276,5 @@ def test_a_file_that_cannot_be_read_is_not_replaced(monkeypatch: pytest.MonkeyPa
 
     Path("a.csv").write_text(",".join(quantity.heading for quantity in MOTION))
     monkeypatch.setattr("pindrive.files.output._head", unreadable)
-    with pytest.raises(OutputError, match=r"a\.csv: is there, and cannot be read: Permission"):
+    with pytest.raises(OutputError, match=r"a\.csv: exists, and cannot be read: Permission"):
         check_outputs([Output(Path("a.csv"), MOTION_CSV, "-o")])

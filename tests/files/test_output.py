@@ -84,7 +84,7 @@ def test_an_interrupt_leaves_no_file_and_no_folder(tmp_path: Path) -> None:
 def test_a_folder_that_is_none_is_refused_and_nothing_made(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("mine")
     for folder in (tmp_path / "file", tmp_path / "file" / "below"):
-        with pytest.raises(OutputError, match="is no folder"):
+        with pytest.raises(OutputError, match="is not a folder"):
             check_folder(folder)
     check_folder(tmp_path / "new" / "deep")
     assert [p.name for p in tmp_path.iterdir()] == ["file"]

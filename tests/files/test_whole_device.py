@@ -108,9 +108,9 @@ def test_template_of_a_whole_device_has_the_defaults(write: Write) -> None:
     new, plain = load_device("new.toml").whole, load_device(write(""), whole=True).whole
     assert new
     assert plain
-    told = {key for key, value in new.in_si().items() if value != plain.in_si()[key]}
+    reported = {key for key, value in new.in_si().items() if value != plain.in_si()[key]}
     sizes = {"magnet.outer_diameter", "magnet.height", "array.slot_length"}
-    assert told == {"array.columns", "array.rows", "array.spot_scale", *sizes}
+    assert reported == {"array.columns", "array.rows", "array.spot_scale", *sizes}
 
 
 CLOSING = {"lift": "0.05 mm", "closing_force": "20 mN"}
@@ -231,30 +231,30 @@ def test_scan_of_a_letter(device: Path) -> None:
     assert result.stderr == ""
     assert "Wrote a.nc" in result.stdout
     assert "The hand's path takes " in result.stdout
-    told = xr.load_dataset("a.nc", engine="h5netcdf")
-    assert dict(told.sizes)["pin"] == 16
+    reported = xr.load_dataset("a.nc", engine="h5netcdf")
+    assert dict(reported.sizes)["pin"] == 16
     file = load_device(device)
     assert file.whole
     whole, reading = file.device, file.reading
     scene = reading.text("A", whole.array)
     done = scan(whole, scene, reading.strokes(scene, whole.array))
-    xr.testing.assert_identical(told, done.to_dataset())
+    xr.testing.assert_identical(reported, done.to_dataset())
     for name in ("position", "velocity", "finger_force", "luminance", "current", "pull", "hand_x"):
-        assert told[name].attrs["units"]
-        assert told[name].attrs["long_name"]
-    assert set(told.event_kind.values) == {e.kind for pin in done.pins for e in pin.events}
+        assert reported[name].attrs["units"]
+        assert reported[name].attrs["long_name"]
+    assert set(reported.event_kind.values) == {e.kind for pin in done.pins for e in pin.events}
     for pin in done.pins:
-        rows = told.event_pin == pin.number
-        assert told.event_time[rows].values.tolist() == [e.time for e in pin.events]
-        rows = told.switching_pin == pin.number
-        assert (told.switching_time[rows] == pin.commands.times).all()
-        assert told.switching_on[rows].values.tolist() == [True, False] * (int(rows.sum()) // 2)
+        rows = reported.event_pin == pin.number
+        assert reported.event_time[rows].values.tolist() == [e.time for e in pin.events]
+        rows = reported.switching_pin == pin.number
+        assert (reported.switching_time[rows] == pin.commands.times).all()
+        assert reported.switching_on[rows].values.tolist() == [True, False] * (int(rows.sum()) // 2)
 
 
 def test_numbers_are_exact(device: Path) -> None:
     """Against the densest samples: never below, and above by no more than they miss."""
     assert run("scan", device, "--text", "VA", "-o", "a.nc", "--set", "columns=2").exit_code == 0
-    told = xr.load_dataset("a.nc", engine="h5netcdf")
+    reported = xr.load_dataset("a.nc", engine="h5netcdf")
     file = load_device(device, ["columns=2"])
     assert file.whole
     whole, reading = file.device, file.reading
@@ -262,7 +262,7 @@ def test_numbers_are_exact(device: Path) -> None:
     done = scan(whole, scene, reading.strokes(scene, whole.array))
     t = np.linspace(done.path.begin, done.path.end, 100_001)
     for pin in done.pins:
-        numbers = told.isel(pin=pin.number)
+        numbers = reported.isel(pin=pin.number)
         x, force = np.abs(pin.position(t)).max(), np.abs(pin.skin_force(t)).max()
         assert x <= float(numbers.pin_peak_displacement) <= x + 1e-9
         assert force <= float(numbers.pin_peak_skin_force) * (1 + 1e-12)
@@ -304,7 +304,7 @@ REFUSALS = {
     ),
     ("--text", " "): 'text must be at least one character that is drawn, got " "',
     ("--image", "none.png"): "none.png: cannot be read: No such file or directory",
-    ("--image", "device.toml"): "device.toml: cannot be read: it is no image, or a damaged one",
+    ("--image", "device.toml"): "device.toml: cannot be read: it is not an image, or it is damaged",
     (
         "--grating",
         "4",

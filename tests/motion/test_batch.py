@@ -105,11 +105,11 @@ def assert_same(point: xr.Dataset, motion: Motion) -> None:
         {k: numbers[k] for k in NUMBERS}, rel=1e-9, abs=1e-12, nan_ok=True
     )
     assert point.status == motion.status == Status.ok
-    told = meaning(point.ending)
+    reported = meaning(point.ending)
     if motion.ending.kind == "steady":
-        assert told == str(motion.ending.cycle).replace("-", "_").replace(" ", "_")
+        assert reported == str(motion.ending.cycle).replace("-", "_").replace(" ", "_")
     else:
-        assert told == motion.ending.kind
+        assert reported == motion.ending.kind
     assert point.events.item() == len(motion.events)
     assert point.duration.item() == pytest.approx(motion.duration, rel=1e-13)
 
@@ -250,14 +250,14 @@ BAD = [
 
 @pytest.mark.filterwarnings("ignore::pindrive.ImplausibleValueWarning")
 @pytest.mark.parametrize(("name", "value", "told"), BAD)
-def test_a_bad_point_is_marked_and_the_others_go_on(name: str, value: float, told: str) -> None:
+def test_a_bad_point_is_marked_and_the_others_go_on(name: str, value: float, reported: str) -> None:
     good = {**PIN, "plate_static": 0.03, "finger_static": 0.03, "finger_stiffness": 1e3}
     good |= {"velocity": 0.0, "duration": 0.2}
     point = good | {name: value}
     columns: dict[str, Any] = {k: [good[k], point[k], good[k]] for k in good}
     batch = simulate_batch(DRIVE, RELEASE, **columns)
     marked = batch.isel(dim_0=1)
-    assert meaning(marked.status) == told
+    assert meaning(marked.status) == reported
     assert meaning(marked.ending) == "unknown"
     assert marked.events == 0
     for variable in NUMBERS.values():

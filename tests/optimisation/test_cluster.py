@@ -53,10 +53,10 @@ def test_whole_devices_go_to_workers_and_come_back_in_order(address: str) -> Non
     plan = read_problem(
         EXAMPLES / "tactile-reader-problem.toml", ["control.sample_rate=250 Hz"]
     ).study
-    asked = [SpeedRequest({"drive.stiffness": k}, 0.2, 1.0) for k in (150.0, 600.0)]
+    requested = [SpeedRequest({"drive.stiffness": k}, 0.2, 1.0) for k in (150.0, 600.0)]
     with crew(address) as workers:
-        found = [*workers.spread(speeds, plan, [asked[:1], asked[1:]])]
-    assert found == [speeds(plan, asked[:1]), speeds(plan, asked[1:])]
+        found = [*workers.spread(speeds, plan, [requested[:1], requested[1:]])]
+    assert found == [speeds(plan, requested[:1]), speeds(plan, requested[1:])]
     assert found[0] != found[1]
 
 

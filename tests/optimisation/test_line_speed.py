@@ -46,9 +46,11 @@ def test_a_bracket_takes_few_trials(plan: Study, limit: SpeedLimit) -> None:
         SpeedRequest({}, near=1.02 * limit.speed, beat=2.0 * limit.speed),
     ]
     most = (11, 7, 7, 3)
-    for (speed, trials), asked, budget in zip(speeds(plan, guesses), guesses, most, strict=True):
+    for (speed, trials), requested, budget in zip(
+        speeds(plan, guesses), guesses, most, strict=True
+    ):
         assert trials <= budget
-        precision = 0.06 if asked.beat > 0.0 else 0.012
+        precision = 0.06 if requested.beat > 0.0 else 0.012
         assert (1.0 - precision) * limit.speed <= speed <= 1.012 * limit.speed
 
 

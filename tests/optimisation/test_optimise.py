@@ -277,16 +277,16 @@ def test_progress_is_reported_and_ctrl_c_ends_it() -> None:
     class Stop(Exception):
         pass
 
-    told: list[tuple[int, int]] = []
+    reports: list[tuple[int, int]] = []
 
     def tell(done: int, total: int) -> None:
-        told.append((done, total))
+        reports.append((done, total))
         if done >= 5:
             raise Stop
 
     with pytest.raises(Stop):
         optimise(pd.load_device(MOUSE), PAPER, effort=SMALL, progress=tell)
-    assert told == [(i, told[0][1]) for i in range(1, 6)]
+    assert reports == [(i, reports[0][1]) for i in range(1, 6)]
 
 
 def test_a_demand_whose_worst_condition_lies_inside_is_met_there() -> None:

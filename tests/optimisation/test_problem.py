@@ -88,16 +88,17 @@ def changed(**tables: Any) -> dict[str, Any]:
         ),
         (
             changed(goals={"maximise": "distinct_speed"}),
-            "problem: distinct_speed is of lines a pitch apart; write which, "
+            "problem: distinct_speed depends on the pitch of the lines; write it, as with "
             'grating = ["3 mm"] in [page]',
         ),
         (
             changed(specification={"yield": ">= 95 %"}),
-            "problem: specification.yield: is of the other constraints; there are none",
+            "problem: specification.yield: needs another constraint; the yield is the part of "
+            "devices that meets all others",
         ),
         (
             changed(specification={"yield": ">= 95 %", "swing": ">= 1 mm"}, tolerances={}),
-            "problem: specification.yield: is within tolerances; write them in [tolerances]",
+            "problem: specification.yield: needs tolerances; write them in [tolerances]",
         ),
         (
             changed(specification={"yield": "<= 95 %"}),
@@ -105,7 +106,7 @@ def changed(**tables: Any) -> dict[str, Any]:
         ),
         (
             changed(goals={"maximise": "yield"}),
-            'problem: goals: yield is no goal; constraint it, yield = ">= 95 %"',
+            'problem: goals: yield cannot be a goal; constrain it, yield = ">= 95 %"',
         ),
         (changed(condition={}), "problem: unknown key condition; did you mean conditions?"),
         (

@@ -52,7 +52,7 @@ def test_a_design_problem_replaces_a_study_only_when_forced() -> None:
     )
     assert run("init", "study.toml", "--study").exit_code == 0
     assert refused("init", "study.toml", "--problem") == (
-        "study.toml: is there and is no problem file; give another name, or --force"
+        "study.toml: exists and is no problem file; give another name, or --force"
     )
     assert run("init", "problem.toml", "--problem").exit_code == 0
     assert run("init", "problem.toml", "--problem", "--force").exit_code == 0

@@ -95,8 +95,8 @@ def sensitivity(case: dict[str, Any], rng: random.Random) -> float:
         return given and given * factors.setdefault(given, 1 + OFFSET * rng.choice([-1, 1]))
 
     path = mp_piecewise.solve(off(case["inputs"]), case["duration"])
-    told = [(e.contact, e.kind) for e in path.events]
-    if told != [(contact, kind) for _, contact, kind, _, _ in case["events"]]:
+    reported = [(e.contact, e.kind) for e in path.events]
+    if reported != [(contact, kind) for _, contact, kind, _, _ in case["events"]]:
         return math.inf
     rate = frequency(case["inputs"])
     moved = [rate * abs(e.time - s[0]) for e, s in zip(path.events, case["events"], strict=True)]

@@ -273,17 +273,17 @@ class _Oblique:
     def event(self, kind: str) -> None:
         self.v = mpf(0)
         if kind != "level":
-            self.finger, self.rests, told = int(kind), False, "slip"
+            self.finger, self.rests, reported = int(kind), False, "slip"
         else:
             self.rests = True
             needed = self.series()[2][0]
             if abs(abs(needed) - self.static) < mpf("1e-6") * self.static:
                 raise DoubtError("at its limit")
             self.rests = abs(needed) < self.static
-            told = "stick" if self.rests else "reverse"
+            reported = "stick" if self.rests else "reverse"
             if not self.rests:
                 self.finger = 1 if needed > 0 else -1
-        self.path.events.append(Event(self.t, "finger", told, self.x, self.v))
+        self.path.events.append(Event(self.t, "finger", reported, self.x, self.v))
 
 
 def solve(inputs: Mapping[str, Any], duration: float) -> Path:

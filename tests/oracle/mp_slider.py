@@ -246,11 +246,11 @@ class _Skin:
             self.gone = False
             self.event("finger", "stick")
             return
-        asked, drops = abs(self.q) / load, False
+        requested, drops = abs(self.q) / load, False
         if self.side == 0:
-            if not apart(asked, self.static):
+            if not apart(requested, self.static):
                 raise DoubtError("at its limit")
-            if asked > self.static:
+            if requested > self.static:
                 self.side = int(sign(self.q))
                 drops = self.faster(0)
         else:
@@ -258,13 +258,13 @@ class _Skin:
             low, high = (self.branch.at(u) if u < inf else inf for u in self.ends())
             if self.branch.slope == 0:
                 low = high = self.branch.base
-                if same(asked, low):
+                if same(requested, low):
                     if self.side * self.v - self.follows(low) < self.branch.low:
                         self.slower(number)
-                    asked = low
-            if asked > high and not same(asked, high):
+                    requested = low
+            if requested > high and not same(requested, high):
                 drops = self.faster(number if self.branch.slope == 0 else number + 1)
-            elif asked < low and not same(asked, low):
+            elif requested < low and not same(requested, low):
                 self.slower(number)
         if drops or self.side != was:
             self.event("finger", "slip" if drops or self.side else "stick")
@@ -296,14 +296,18 @@ class _Skin:
         Without one the skin becomes shorter at once, until the last plateau carries it; whether it
         did.
         """
-        asked = abs(self.q) / self.touch(self.t)
+        requested = abs(self.q) / self.touch(self.t)
         for branch in self.curve[first:]:
             begin = branch.at(branch.low)
-            if branch.slope > 0 and reaches(asked, begin) and below(asked, branch.at(branch.high)):
+            if (
+                branch.slope > 0
+                and reaches(requested, begin)
+                and below(requested, branch.at(branch.high))
+            ):
                 self.branch = branch
                 return False
             if branch.slope == 0:
-                if not reaches(asked, begin):
+                if not reaches(requested, begin):
                     raise DoubtError("below its plateau")
                 speed = self.side * self.v - self.follows(branch.base)
                 if not apart(speed, branch.low):
@@ -313,14 +317,14 @@ class _Skin:
                     self.branch = branch
                 else:
                     self.slower(len(self.curve) - 1)
-                return not same(asked, begin)
+                return not same(requested, begin)
         raise DoubtError("no speed carries it")
 
     def slower(self, number: int) -> None:
         """To the first speed below a branch that carries what the skin asks; else it grips."""
-        asked = abs(self.q) / self.touch(self.t)
+        requested = abs(self.q) / self.touch(self.t)
         for branch in reversed(self.curve[:number]):
-            if branch.slope > 0 and reaches(asked, branch.at(branch.low)):
+            if branch.slope > 0 and reaches(requested, branch.at(branch.low)):
                 self.branch = branch
                 return
         self.side = 0
@@ -339,12 +343,12 @@ def same(one: mpf, other: mpf) -> bool:
     return False
 
 
-def reaches(asked: mpf, force: mpf) -> bool:
-    return same(asked, force) or bool(asked > force)
+def reaches(requested: mpf, force: mpf) -> bool:
+    return same(requested, force) or bool(requested > force)
 
 
-def below(asked: mpf, force: mpf) -> bool:
-    return force == inf or (not same(asked, force) and bool(asked < force))
+def below(requested: mpf, force: mpf) -> bool:
+    return force == inf or (not same(requested, force) and bool(requested < force))
 
 
 def doubt(reason: str, _: mpf) -> None:

@@ -56,24 +56,24 @@ KINDS: dict[str, Callable[[int], tuple[Case, Path]]] = {
 }
 
 
-def events(case: Case, told: list[piecewise.Told]) -> list[list[piecewise.Told]]:
+def events(case: Case, reported: list[piecewise.Told]) -> list[list[piecewise.Told]]:
     """Return the events that both report: none of an oblique plate or of an unloaded contact."""
     if "across" in case["inputs"]:
-        told = [event for event in told if event[1] != "plate"]
-    told = piecewise.carried(case, told)
-    return piecewise.instants([event for event in told if event[0] < case["duration"]])
+        reported = [event for event in reported if event[1] != "plate"]
+    reported = piecewise.carried(case, reported)
+    return piecewise.instants([event for event in reported if event[0] < case["duration"]])
 
 
 def deviation(case: Case, path: Path) -> float:
     """Return the deviation of the core relative to the scales; infinity: other events."""
     motion = piecewise.release(case)
-    told = events(case, piecewise.told_events(motion))
+    reported = events(case, piecewise.told_events(motion))
     answer: list[piecewise.Told] = [
         (float(e.time), e.contact, e.kind, float(e.position), float(e.velocity))
         for e in path.events
     ]
     true = events(case, answer)
-    if len(told) != len(true) or not all(map(piecewise.alike, told, true)):
+    if len(reported) != len(true) or not all(map(piecewise.alike, reported, true)):
         return math.inf
     times = np.linspace(0.0, case["duration"], 41)
     states = np.array([path.state(float(t)) for t in times], float).T
@@ -84,7 +84,7 @@ def deviation(case: Case, path: Path) -> float:
     off = [
         np.abs(motion.position(times) - x).max() * frequency / speed,
         np.abs(motion.velocity(times) - v).max() / speed,
-        *(frequency * abs(a[0][0] - b[0][0]) for a, b in zip(told, true, strict=True)),
+        *(frequency * abs(a[0][0] - b[0][0]) for a, b in zip(reported, true, strict=True)),
     ]
     if isinstance(path, mp_slider.Path):
         force = states[2]

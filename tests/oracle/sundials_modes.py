@@ -44,8 +44,10 @@ def _integrate(
         if begin > t:  # a skin held at its limit stays there
             watched = [w for w in watched if abs(w.value(begin, y)) > HELD * w.scale]
         last = stop == end
-        asked = [u for u in samples if begin <= u < stop or (last and u == stop)]
-        reached, y, which, found = _part(method, rhs, watched, begin, y, stop, longest, atol, asked)
+        requested = [u for u in samples if begin <= u < stop or (last and u == stop)]
+        reached, y, which, found = _part(
+            method, rhs, watched, begin, y, stop, longest, atol, requested
+        )
         rows += found
         if which is not None:
             return reached, y, which, rows
@@ -66,7 +68,7 @@ def _part(
     end: float,
     longest: float,
     atol: State,
-    asked: list[float],
+    requested: list[float],
 ) -> Answer:
     def right(u: float, z: State, slope: State) -> None:
         slope[:] = rhs(u, z)
@@ -88,7 +90,7 @@ def _part(
         max_num_steps=10**6,
         **rooted,
     )
-    times = np.array(sorted({t, *asked, end}))
+    times = np.array(sorted({t, *requested, end}))
     out = solver.solve(times, y)
     assert out.success, out.message
     which = None
@@ -96,7 +98,7 @@ def _part(
         which = watches[int(np.flatnonzero(out.i_events[-1])[0])]
     stop = float(out.t[-1])
     states = {float(u): z for u, z in zip(out.t, out.y, strict=True)}
-    rows = [states[u] for u in asked if u in states and (which is None or u < stop)]
+    rows = [states[u] for u in requested if u in states and (which is None or u < stop)]
     return stop, np.array(out.y[-1]), which, rows
 
 

@@ -20,10 +20,10 @@ def constant() -> str:
     count, late, displaced = 0, [], []
     for case in test_oracle.CASES:
         motion, stored = test_oracle.release(case), case["events"]
-        told = test_oracle.told_events(motion)
-        assert [event[1:3] for event in told] == [tuple(event[1:3]) for event in stored]
+        reported = test_oracle.told_events(motion)
+        assert [event[1:3] for event in reported] == [tuple(event[1:3]) for event in stored]
         count += len(stored)
-        late += [abs(ours[0] - true[0]) for ours, true in zip(told, stored, strict=True)]
+        late += [abs(ours[0] - true[0]) for ours, true in zip(reported, stored, strict=True)]
         off = np.abs(motion.position(np.array(case["times"])) - case["x"])
         displaced.append(float(off.max()) / test_oracle.scales(case)[0])
     return (
@@ -36,11 +36,11 @@ def changing(cases: list[piecewise.Case], what: str) -> str:
     count, late, displaced = 0, [], []
     for case in cases:
         motion = piecewise.release(case)
-        told = piecewise.instants(piecewise.told_events(motion))
+        reported = piecewise.instants(piecewise.told_events(motion))
         stored = piecewise.instants(case["events"])
-        assert all(piecewise.alike(*pair) for pair in zip(told, stored, strict=True))
+        assert all(piecewise.alike(*pair) for pair in zip(reported, stored, strict=True))
         count += len(stored)
-        late += [abs(ours[0][0] - true[0][0]) for ours, true in zip(told, stored, strict=True)]
+        late += [abs(ours[0][0] - true[0][0]) for ours, true in zip(reported, stored, strict=True)]
         off = np.abs(motion.position(np.array(case["times"])) - case["x"])
         displaced.append(float(off.max()) / piecewise.scales(case)["x"])
     return (

@@ -96,11 +96,11 @@ def test_the_device_is_labelled() -> None:
     assert list(named) == [*wanted, "damper", "fingertip", "control block"]
     same(list(named.values()), np.column_stack([found.across, found.up]))
     arrows = {p.get_gid(): p for p in axes.patches if isinstance(p, FancyArrowPatch)}
-    ways = {}
+    paths = {}
     for words, arrow in arrows.items():
-        ways[words] = tuple(np.sign(np.subtract(*arrow._posA_posB[::-1])))  # type: ignore[attr-defined]
+        paths[words] = tuple(np.sign(np.subtract(*arrow._posA_posB[::-1])))  # type: ignore[attr-defined]
     right = ("$x$", "$v_p$", "$F_p$ on 1", "$F_f$ on 5")  # the pin returns, ẋ < 0
-    assert ways == {
+    assert paths == {
         **dict.fromkeys(right, (1, 0)),
         "the hand's motion": (-1, 0),
         "$N_p$ on 1": (0, 1),
@@ -166,7 +166,7 @@ def test_tints_are_explained(name: str) -> None:
 def test_the_curves_of_one_parameter(name: str) -> None:
     found, figure = drawn(name)
     panels = [axes for axes in figure.axes if axes.get_xlabel()]
-    asked = [
+    requested = [
         ("mN", "F_p"),
         ("mN", "N_f"),
         ("N·s/m", "b"),
@@ -177,7 +177,7 @@ def test_the_curves_of_one_parameter(name: str) -> None:
         ("ms", "t_f"),
     ]
     base = [22.0, 10.0, 0.32, 100.0, 10.0, 60.0, 2.0, 0.0]
-    for i, (axes, (unit, symbol)) in enumerate(zip(panels, asked, strict=True)):
+    for i, (axes, (unit, symbol)) in enumerate(zip(panels, requested, strict=True)):
         assert axes.get_xlabel().endswith(f" ${symbol}$ ({unit})")
         of = found.isel(parameter=i)
         x = of.value.values / to_si(f"1 {unit.replace('·', '*')}", SI[unit], "")

@@ -1,248 +1,20 @@
-"""The report on the paper: what it says is computed, its page needs nothing, docs agree with it."""
+"""The report on the paper: each number, verdict and curve in it is computed."""
 
 from __future__ import annotations
 
-import json
 import re
-from collections.abc import Iterator
-from html import escape
-from html.parser import HTMLParser
-from io import BytesIO
-from pathlib import Path
-from urllib.parse import unquote
 
 import numpy as np
 import pytest
-import xarray as xr
-from PIL import Image
-from typer.testing import CliRunner
 
 from pindrive import Contact, Drive, Profile, Release, simulate
-from pindrive.cli.app import app
-from pindrive.paper import as_printed, formulas, maps, population, report
+from pindrive.paper import as_printed, formulas, maps, population
 from pindrive.paper.claims_of_analysis import has_closed_form
 from pindrive.paper.equations import damping_ratio, where_good
-from pindrive.paper.exhibit import Exhibit, at_most, by_case, listed, share, summary, trend
-from pindrive.paper.exhibit import markdown as as_markdown
-from pindrive.paper.page import anchor
-from pindrive.paper.page import page as as_page
+from pindrive.paper.exhibit import at_most, by_case, listed, share, trend
 from pindrive.paper.population import Claim
 from pindrive.paper.report import Report
 from pindrive.paper.sensitivity import PARAMETERS
-
-DOCS = Path(__file__).resolve().parents[2] / "docs"
-REMAKE = "make them anew: pindrive paper --docs docs"
-
-
-@pytest.fixture(scope="module")
-def steps() -> list[str]:
-    return []
-
-
-@pytest.fixture(scope="module")
-def made(steps: list[str]) -> Report:
-    return report.make(steps.append)
-
-
-@pytest.fixture(scope="module")
-def files(made: Report, steps: list[str]) -> dict[str, bytes]:
-    """Return the files of `pindrive paper -o`."""
-    return made.files(steps.append)
-
-
-@pytest.fixture(scope="module")
-def page(files: dict[str, bytes]) -> str:
-    return files[report.PAGE].decode()
-
-
-def exhibit(made: Report, name: str) -> Exhibit:
-    return next(e for e in made.exhibits if e.name == name)
-
-
-# ---- the docs agree with the command -------------------------------------------------------------
-
-
-def test_docs_equal_the_output_of_the_command(made: Report) -> None:
-    assert (DOCS / report.NAME).read_text("utf-8") == report.text(made), REMAKE
-
-
-def test_the_docs_pictures_show_the_same_data(made: Report) -> None:
-    """Each picture carries the summary of the data that it was drawn from; pixels may differ."""
-    folder = DOCS / report.IMAGES
-    assert {p.name for p in folder.iterdir()} == {f"{e.name}.png" for e in made.exhibits}, REMAKE
-    for e in made.exhibits:
-        with Image.open(folder / f"{e.name}.png") as picture:
-            shown = json.loads(picture.info["Data"])
-        now = summary(e.data)
-        assert shown.keys() == now.keys(), REMAKE
-        for name, numbers in now.items():
-            assert shown[name] == pytest.approx(numbers, rel=1e-5, abs=1e-12), (e.name, REMAKE)
-
-
-def test_a_change_of_data_shows_in_the_summary(made: Report) -> None:
-    data = exhibit(made, "first-reversal").data
-    assert summary(data) != summary(data.assign(limit=1.001 * data.limit))
-    assert summary(data) != summary(data.assign(limit=data.limit.where(data.limit > 0.5)))
-
-
-def test_the_docs_tables_are_whole() -> None:
-    """Each row of a table has the number of cells of its heading."""
-    text = (DOCS / report.NAME).read_text("utf-8")
-    tables = re.findall(r"(?:^\|.*\n)+", text, re.MULTILINE)
-    assert len(tables) == 7
-    for table in tables:
-        assert len({row.count("|") for row in table.splitlines()}) == 1, table[:200]
-
-
-def test_links_of_the_docs_exist() -> None:
-    text = (DOCS / report.NAME).read_text("utf-8")
-    headings = re.findall(r"^#+ (.*)$", text, re.MULTILINE)
-    plain = (re.sub(r"</?sub>", "", heading).lower() for heading in headings)
-    anchors = {re.sub(r"[^\w\- ]", "", heading).replace(" ", "-") for heading in plain}
-    links = re.findall(r"\]\(([^)]+)\)", text)
-    assert len(links) > 20
-    for link in links:
-        assert link.removeprefix("#") in anchors or (DOCS / link).is_file(), link
-
-
-# ---- the page ------------------------------------------------------------------------------------
-
-
-class Reader(HTMLParser):
-    """Links and ids of a page, and its requests to other places."""
-
-    def __init__(self, text: str) -> None:
-        super().__init__()
-        self.foreign: list[str] = []
-        self.ids: list[str] = []
-        self.links: list[str] = []
-        self.tags: list[str] = []
-        self.feed(text)
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.tags.append(tag)
-        for name, value in attrs:
-            value = value or ""
-            if name == "id":
-                self.ids.append(value)
-            elif name in ("src", "href", "xlink:href", "data", "action"):
-                if value.startswith("#"):
-                    self.links.append(unquote(value[1:]))
-                elif not value.startswith("data:"):
-                    self.foreign.append(value)
-
-
-def test_the_page_needs_nothing_else(page: str) -> None:
-    found = Reader(page)
-    assert found.foreign == []
-    assert not {"script", "link", "iframe", "object"} & set(found.tags)
-    assert "@import" not in page
-    assert set(re.findall(r"url\((?!#)", page)) == set()
-
-
-def test_the_page_holds_every_figure_and_its_own_links(page: str, made: Report) -> None:
-    found = Reader(page)
-    assert found.tags.count("svg") == report.FIGURES
-    assert len(found.ids) == len(set(found.ids))
-    assert set(found.links) <= set(found.ids)
-    assert set(re.findall(r"url\(#([^)]+)\)", page)) <= set(found.ids)
-    assert {anchor(as_markdown(e.title)) for e in made.exhibits} <= set(found.ids)
-    assert all(f'aria-label="{escape(e.title)}"' in page for e in made.exhibits)
-    assert found.tags.count("math") > 40
-
-
-def test_the_page_has_every_equation_and_every_sentence(page: str, made: Report) -> None:
-    numbers = {int(n) for row in made.rows for n in re.findall(r"\d+", row.number)}
-    assert numbers == set(range(1, 27))
-    for claim in made.claims:
-        assert f"“{as_html(claim.sentence)}” <em>{claim.place}</em>" in page
-        assert as_html(claim.verdict) in page
-    assert len(set(re.findall(r'<strong class="(\w+)">', page))) == 5
-    for e in made.exhibits:
-        assert all(as_html(sentence) in page for sentence in (*e.readings, e.caption))
-
-
-def test_the_velocity_is_labelled_as_computed(files: dict[str, bytes], made: Report) -> None:
-    """The measurement of the paper's Figure 2 is not printed in it."""
-    assert "computed, not measured" in files["figures/figure-2-velocity.svg"].decode()
-    caption = exhibit(made, "figure-2-velocity").caption
-    assert caption.startswith("Computed. The paper's Figure 2 is a measurement")
-
-
-def test_the_diagram_names_its_outputs_and_ties_its_blocks(
-    files: dict[str, bytes], made: Report
-) -> None:
-    drawn = files["figures/figure-3-model.svg"].decode()
-    for word in ("displacement", "velocity", "acceleration"):
-        assert word in drawn
-    blocks = [row[0] for row in exhibit(made, "figure-3-model").table]
-    assert blocks == ["block", *"12345678", "output", "output", "output"]
-
-
-def test_the_page_explains_before_it_judges(page: str) -> None:
-    headings = re.findall(r"<h2 [^>]*>(.*)</h2>", page)
-    assert headings == [
-        "The device, its frame and the symbols",
-        "Problem of the paper",
-        "Figures of the paper",
-        "Statements, evaluated",
-        "Equations, corrected",
-        "Figures of the analysis",
-        "Assumptions",
-    ]
-
-
-def test_every_symbol_stands_once(made: Report) -> None:
-    _, *rows = exhibit(made, "figure-1-device").table
-    symbols = [symbol for row in rows for symbol in row[0].strip("$").split(r",\ ")]
-    assert len(symbols) == len(set(symbols))
-    of_the_paper = {row[0]: row[3] for row in rows}
-    assert of_the_paper["$F_p$"] == "$F_1$ in (1), $F_2$ from (2) on"
-    assert of_the_paper["$F_f$"] == "$F_2$ in (1), $F_1 = 0$ from (2) on"
-    for p in PARAMETERS:
-        assert p.symbol in symbols
-
-
-def test_print_lets_nothing_scroll(page: str) -> None:
-    """Parts that scroll on the screen are complete on paper."""
-    screen, _, print_rules = page.partition("@media print")
-    scrolling = re.findall(r"([^{}\n]+) \{[^}]*overflow-x: auto", screen)
-    assert scrolling == ["figure > div"], "tables are stacked where they find no room"
-    assert "figure > div { overflow: visible }" in print_rules.replace("; }", " }")
-    assert "figure svg { min-width: 0" in print_rules
-    assert "white-space: normal" in print_rules
-    assert "td:first-child { overflow-wrap: normal; }" in print_rules, "numbers of equations"
-
-
-# ---- files ---------------------------------------------------------------------------------------
-
-
-def test_each_figure_comes_as_svg_png_and_data(files: dict[str, bytes], made: Report) -> None:
-    assert len(made.exhibits) == report.FIGURES
-    for e in made.exhibits:
-        assert files[f"figures/{e.name}.svg"].startswith(b"<?xml")
-        with Image.open(BytesIO(files[f"figures/{e.name}.png"])) as picture:
-            assert picture.width > 1000
-        with xr.open_dataset(BytesIO(files[f"data/{e.name}.nc"]), engine="h5netcdf") as data:
-            xr.testing.assert_equal(data.load(), e.data)
-            assert data.attrs["title"] == e.title
-
-
-def test_the_data_have_units(files: dict[str, bytes]) -> None:
-    of_their_own = {"value", "factor"}  # in units of each parameter; of unknown unit
-    for name, content in files.items():
-        if name.endswith(".nc"):
-            with xr.open_dataset(BytesIO(content), engine="h5netcdf") as data:
-                for key, variable in data.variables.items():
-                    if variable.dtype.kind == "f" and key not in of_their_own:
-                        assert variable.attrs.get("units"), (name, key)
-
-
-def test_progress_is_reported_as_often_as_announced(
-    made: Report, files: dict[str, bytes], steps: list[str]
-) -> None:
-    assert len(steps) == report.STEPS + report.FIGURES
-
 
 # ---- what it says --------------------------------------------------------------------------------
 
@@ -300,7 +72,7 @@ VERDICTS = {
 
 def test_every_sentence_has_the_verdict_that_was_derived(made: Report) -> None:
     assert len(made.claims) == len(VERDICTS)
-    shown = {e.name for e in made.exhibits} | {"equations", ""}
+    shown = {*made.exhibits} | {"equations", ""}
     for claim, (start, verdict) in zip(made.claims, VERDICTS.items(), strict=True):
         assert claim.sentence.startswith(start)
         if " when " in verdict:
@@ -399,18 +171,18 @@ def test_the_ranges_of_the_printed_forms(made: Report) -> None:
 
 def test_the_ranges_of_the_figure_are_those_of_its_curves(made: Report) -> None:
     """A printed form may be good again beyond a range where it is not, as (16) is."""
-    shown = exhibit(made, "printed-forms")
-    told = dict(
+    shown = made.exhibits["printed-forms"]
+    reported = dict(
         re.findall(
             r"\((\d+)\) ((?:(?: and )?(?:up to|from) ζ = \d\.\d+(?: on)?)+)", shown.readings[1]
         )
     )
     numbers = {"14": "peak_displacement", "16": "trough_displacement", "17": "swing"}
     numbers["20"] = "return_velocity"
-    assert told.keys() == numbers.keys()
+    assert reported.keys() == numbers.keys()
     ratio = shown.data.ratio.to_numpy()
     for number, name in numbers.items():
-        spans = re.findall(r"(up to|from) ζ = (\d\.\d+)", told[number])
+        spans = re.findall(r"(up to|from) ζ = (\d\.\d+)", reported[number])
         near, inside = np.zeros(ratio.shape, dtype=bool), np.zeros(ratio.shape, dtype=bool)
         for word, edge in spans:
             inside |= ratio <= float(edge) if word == "up to" else ratio >= float(edge)
@@ -418,8 +190,8 @@ def test_the_ranges_of_the_figure_are_those_of_its_curves(made: Report) -> None:
         good = shown.data[name].to_numpy() <= 0.01
         assert (good == inside)[~near].all()
         assert good[inside].all()
-    assert told["16"].startswith("up to ζ = 0.1")
-    assert told["16"].endswith(" on")
+    assert reported["16"].startswith("up to ζ = 0.1")
+    assert reported["16"].endswith(" on")
 
 
 def test_the_releases_are_those_stated() -> None:
@@ -441,7 +213,7 @@ def test_the_releases_are_those_stated() -> None:
 def test_the_curves_are_the_simulations(made: Report) -> None:
     """Curves at random places of all eight parameters equal `simulate`."""
     draw = np.random.default_rng(4)
-    time, way = (exhibit(made, f"influence-on-{name}").data for name in ("time", "displacement"))
+    time, way = (made.exhibits[f"influence-on-{name}"].data for name in ("time", "displacement"))
     base = {"mass": 0.01, "stiffness": 100.0, "damping": 0.32, "plate_kinetic": 0.022,
             "finger_kinetic": 0.005, "mouse_velocity": 0.06, "displacement": 2e-3}  # fmt: skip
     for parameter in PARAMETERS:
@@ -484,7 +256,7 @@ def test_the_curves_are_the_simulations(made: Report) -> None:
 
 def test_load_and_fall_of_the_pull(made: Report) -> None:
     """A heavier finger ends it sooner; a slower fall releases later and farther out."""
-    time, way = (exhibit(made, f"influence-on-{name}").data for name in ("time", "displacement"))
+    time, way = (made.exhibits[f"influence-on-{name}"].data for name in ("time", "displacement"))
     touch, fall = ({"parameter": name} for name in ("touch_force", "fall_time"))
     assert trend(time.settling_time.sel(touch)).startswith("falls on the whole")
     assert trend(way.peak_displacement.sel(touch)) == "falls throughout"
@@ -493,14 +265,14 @@ def test_load_and_fall_of_the_pull(made: Report) -> None:
     carried = 0.06 * 0.03  # how far the plate moves while the pull falls
     assert 0.0 < float(late[-1] - late[0]) < carried
     for e in ("time", "displacement"):
-        rows = [row[0] for row in exhibit(made, f"influence-on-{e}").table]
+        rows = [row[0] for row in made.exhibits[f"influence-on-{e}"].table]
         assert "mass, friction follows the weight" in rows
 
 
 def test_the_maps_are_the_simulations(made: Report) -> None:
     """At random places, in units of another mass, length and time."""
     draw = np.random.default_rng(5)
-    data = exhibit(made, "maps-of-time").data
+    data = made.exhibits["maps-of-time"].data
     m, k, x0 = 0.007, 130.0, 1.3e-3
     w0 = (k / m) ** 0.5
     for across, up in maps.TIME_MAPS:
@@ -542,85 +314,3 @@ def test_words_of_numbers() -> None:
     assert listed(["a", "b", "c"]) == "a, b and c"
     assert listed(["a"]) == "a"
     assert by_case({"1": "rises", "3": "falls", "2": "rises"}) == "rises at 1 and 2, falls at 3"
-
-
-def as_html(text: str) -> str:
-    """A sentence as the page has it."""
-    body = as_page(f"# title\n\n{as_markdown(text)}\n", {}).partition("<p>")[2]
-    return body.partition("</p>")[0]
-
-
-def test_a_page_is_made_from_markdown() -> None:
-    text = r"φ′_0 < x_m,a: $\mathrm{sign}\,\dot x$, `first_time` & more"
-    assert as_markdown(text) == (
-        r"φ′<sub>0</sub> < x<sub>m,a</sub>: $\mathrm{sign} \dot x$, `first_time` & more"
-    )
-    shown = as_html(text)
-    assert shown.startswith("φ′<sub>0</sub> &lt; x<sub>m,a</sub>: <math")
-    assert "<mtext>sign</mtext>" in shown
-    assert shown.endswith("<code>first_time</code> &amp; more")
-    for verdict, kind in (
-        ("holds", "holds"),
-        ("holds when x", "part"),
-        ("does not hold", "not"),
-        ("not proved", "part"),
-        ("done here", "done"),
-        ("not evaluated", "open"),
-    ):
-        assert as_html(f"**{verdict}**") == f'<strong class="{kind}">{verdict}</strong>'
-    table = as_page("# t\n\n| a | b<br>c |\n|---|---|\n| 1 | 2 |\n", {})
-    assert re.findall(r'<td data-of="(\w)">(\d)</td>', table) == [("a", "1"), ("b", "2")]
-    svg = b'<?xml?><svg id="a"><use href="#a"/></svg>'
-    page = as_page("# Title\n\n## A _part_, (1)\n\n![what](folder/name.png)\n", {"name": svg})
-    assert '<nav><a href="#a-part-1">A <em>part</em>, (1)</a></nav>\n<h2 id="a-part-1">' in page
-    assert 'aria-label="what"><svg id="name-a"><use href="#name-a"/></svg>' in page
-
-
-# ---- the command ---------------------------------------------------------------------------------
-
-
-@pytest.fixture
-def quick(made: Report, files: dict[str, bytes], monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """The command with what it computes already there."""
-    monkeypatch.setattr(report, "make", lambda step: made)
-    monkeypatch.setattr(Report, "files", lambda self, step: files)
-    pictures = {"images/paper/a.png": b"picture"}
-    monkeypatch.setattr(report, "files", lambda *_: {report.NAME: b"text", **pictures})
-    yield
-
-
-@pytest.mark.usefixtures("quick")
-def test_the_command_writes_the_report(tmp_path: Path, files: dict[str, bytes]) -> None:
-    out, docs = tmp_path / "new" / "report", tmp_path / "docs"
-    result = CliRunner().invoke(app, ["paper", "-o", str(out), "--docs", str(docs)])
-    assert result.exit_code == 0, result.output
-    assert "3 hold, 9 hold under an additional condition" in result.stdout
-    written = {str(p.relative_to(out)) for p in out.rglob("*") if p.is_file()}
-    assert written == {str(Path(name)) for name in files}
-    assert (out / report.PAGE).read_bytes() == files[report.PAGE]
-    assert (docs / report.NAME).read_bytes() == b"text"
-    assert (docs / "images/paper/a.png").is_file()
-
-
-def test_the_command_refuses_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(report, "make", lambda step: pytest.fail("computed all the same"))
-    (tmp_path / "file").write_text("mine")
-    for arguments, words in (
-        (["-o", str(tmp_path / "file")], f"{tmp_path / 'file'}: cannot be written"),
-        (["--docs", str(tmp_path / "file/deep")], "cannot be written: file is no folder"),
-    ):
-        result = CliRunner().invoke(app, ["paper", *arguments])
-        assert result.exit_code == 2
-        (line,) = result.stderr.splitlines()
-        assert words in line
-    assert [p.name for p in tmp_path.iterdir()] == ["file"]
-
-
-def test_an_interrupt_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def interrupted(step: object) -> Report:
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(report, "make", interrupted)
-    result = CliRunner().invoke(app, ["paper", "-o", str(tmp_path / "new")])
-    assert result.exit_code == 130
-    assert list(tmp_path.iterdir()) == []

@@ -46,10 +46,12 @@ def test_frames_are_even_in_time_and_end_with_the_scan(evaluated: Evaluation) ->
 
 
 def test_a_gif_shows_each_frame(evaluated: Evaluation, tmp_path: Path) -> None:
-    target, told = tmp_path / "film.gif", list[tuple[int, int]]()
-    animate(evaluated, target, "gif", slow=2.0, progress=lambda done, of: told.append((done, of)))
+    target, reported = tmp_path / "film.gif", list[tuple[int, int]]()
+    animate(
+        evaluated, target, "gif", slow=2.0, progress=lambda done, of: reported.append((done, of))
+    )
     times = frame_times(evaluated.scan.path, 2.0)
-    assert told == [(i + 1, len(times)) for i in range(len(times))]
+    assert reported == [(i + 1, len(times)) for i in range(len(times))]
     with Image.open(target) as image:
         assert image.size == SIZE
         count = getattr(image, "n_frames", 1)

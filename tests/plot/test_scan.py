@@ -203,16 +203,16 @@ def test_the_way_and_the_spots_are_those_of_the_hand(evaluated: Evaluation, figu
     scan, axes = evaluated.scan, panel(figure, "print")
     begin = 1e3 * scan.spots([scan.path.begin])[:, 0]
     np.testing.assert_allclose(np.transpose(data(axes, "spots")), begin)
-    ways = [points(line) for line in lines(axes, "way")]
+    paths = [points(line) for line in lines(axes, "way")]
     returns = [points(line) for line in lines(axes, "return")]
-    assert all(x[-1] > x[0] for x, _ in ways), "reading goes to the right"
+    assert all(x[-1] > x[0] for x, _ in paths), "reading goes to the right"
     assert all(x[-1] < x[0] for x, _ in returns)
-    assert len(ways) == 2 and len(returns) == 1
-    assert [y[0] for _, y in ways] == pytest.approx([9.0, 13.0])
+    assert len(paths) == 2 and len(returns) == 1
+    assert [y[0] for _, y in paths] == pytest.approx([9.0, 13.0])
     signs = legend_of(figure)
     assert signs["way of the hand, reading"].get_linestyle() == "-"
     assert signs["and back"].get_linestyle() != "-"
-    assert signs["what a pin's sensor sees at first"].get_marker() == "o"
+    assert signs["initial sensing spot of a pin"].get_marker() == "o"
     assert "threshold of the control block" in signs and "outline of the print" in signs
     chosen = moment(evaluated)
     green = lines(panel(figure, "felt"), "moment")[0]
@@ -302,7 +302,7 @@ def test_a_blank_page_is_drawn() -> None:
     page = Scene(np.ones((60, 500)), 1e-4)
     path = lines_of([0.003], 0.002, 0.045, speed=0.08, return_speed=0.1)
     figure = plot_scan(evaluate(scan(Device(drive=DRIVE), page, path)))
-    assert "no line passed whole under a pin" in figure.get_suptitle()
+    assert "no line passed completely under a pin" in figure.get_suptitle()
     save(figure, io.BytesIO(), "png")
 
 

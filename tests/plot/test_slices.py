@@ -311,8 +311,8 @@ def test_titles_of_any_text_stay_on_the_page(folder: Path) -> None:
 def test_curves_differ_without_colour(grid: Slice) -> None:
     figure = draw(grid, ["swing"], "mouse_velocity", None, stiffness=100.0)
     curves = [line for line in figure.axes[0].get_lines() if line.get_gid() == "settled"]
-    looks = {(str(c._dash_pattern), c.get_linewidth()) for c in curves}  # type: ignore[attr-defined]
-    assert len(looks) == len(curves) == 5
+    sample_times = {(str(c._dash_pattern), c.get_linewidth()) for c in curves}  # type: ignore[attr-defined]
+    assert len(sample_times) == len(curves) == 5
 
 
 # ---- draws ---------------------------------------------------------------------------------------
@@ -409,7 +409,7 @@ REFUSED = {
     "continues it",
     "none.nc --plot a.png": "none.nc: cannot be read: No such file or directory",
     "grid.toml --plot a.png": "grid.toml: cannot be read: ",
-    "alien.nc --plot a.png": "alien.nc: is no study; `pindrive sweep` writes one",
+    "alien.nc --plot a.png": "alien.nc: is not a study; `pindrive sweep` writes one",
     "one.nc --plot a.png": "one.nc: holds a single point, there is nothing to draw over",
     "grid.nc --plot a.png --x mass": "--x mass: grid.nc does not vary it; there are ",
     "grid.nc --plot a.png --x stifness": "--x stifness: grid.nc does not vary it; did you mean "

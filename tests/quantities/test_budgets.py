@@ -164,10 +164,10 @@ def test_samples_for_turning_points_are_not_kept() -> None:
     drive = device(stiffness=1e9).drive
     ramp = Profile((0.0, 0.5, 1.0), (0.05, 0.06, 0.05))
     motion = simulate(drive, Release(ramp), duration=1.0)
-    looks = 30.0 * np.sqrt(1e9 / 0.01) / (2.0 * np.pi)
+    sample_times = 30.0 * np.sqrt(1e9 / 0.01) / (2.0 * np.pi)
     knots, peak = traced(lambda: Trajectory(motion).knots)
-    assert looks > 1.5e6
-    assert peak < 8 * looks + 64 * len(knots)  # not even one array of them
+    assert sample_times > 1.5e6
+    assert peak < 8 * sample_times + 64 * len(knots)  # not even one array of them
 
 
 def test_samples_of_the_page_are_not_kept() -> None:
@@ -175,11 +175,13 @@ def test_samples_of_the_page_are_not_kept() -> None:
     page[:, 1000:2000] = page[:, 3000:4000] = 0.0
     path = strokes([(1e-5, 1.5e-5), (0.00599, 1.5e-5)] * 40, 1.0)
     done = scan(device(), Scene(page, 1e-6), path, threads=1)
-    looks = 4.0 * 79 * 5980
+    sample_times = 4.0 * 79 * 5980
     found, peak = traced(lambda: evaluate(done))
     assert len(found.lines) == 79 * 2
-    assert looks > 1.8e6
-    assert peak < 4 * 8 * looks  # a few hundred thousand at once, and a dozen numbers of each
+    assert sample_times > 1.8e6
+    assert (
+        peak < 4 * 8 * sample_times
+    )  # a few hundred thousand at once, and a dozen numbers of each
 
 
 def test_a_picture_is_turned_into_luminance_strip_by_strip(tmp_path: Path) -> None:

@@ -129,11 +129,11 @@ def test_numbers_that_are_not_computed_are_refused_in_a_line(
 )
 def test_implausible_value_is_warned_of_at_its_place(given: dict[str, Any], words: str) -> None:
     release, duration = parts(given)
-    with pytest.warns(ImplausibleValueWarning) as told:
+    with pytest.warns(ImplausibleValueWarning) as reported:
         simulate(PIN, release, duration=duration)
-    assert len(told) == 1
-    assert str(told[0].message).startswith(words)
-    assert told[0].filename == __file__
+    assert len(reported) == 1
+    assert str(reported[0].message).startswith(words)
+    assert reported[0].filename == __file__
 
 
 def test_a_drive_in_grams_is_warned_of() -> None:
@@ -143,9 +143,9 @@ def test_a_drive_in_grams_is_warned_of() -> None:
 
 
 def test_a_batch_warns_once_of_an_argument_and_not_of_bad_points() -> None:
-    with pytest.warns(ImplausibleValueWarning) as told:
+    with pytest.warns(ImplausibleValueWarning) as reported:
         simulate_batch(PIN, Release(0.1), mass=[0.01, 0.0, 0.01], mouse_velocity=[60.0, 70.0, inf])
-    (warning,) = told
+    (warning,) = reported
     assert str(warning.message).startswith("mouse_velocity is 70 m/s; ")
     assert warning.filename == __file__
 
@@ -180,10 +180,10 @@ def test_a_load_may_step_in_a_device_file_and_on_the_command_line() -> None:
     rows = '[["0 ms", 5], ["5 ms", 5], ["5 ms", 1]]'
     Path("device.toml").write_text(f"{GOOD}plate_load = {rows}\n", encoding="utf-8")
     Path("plain.toml").write_text(GOOD, encoding="utf-8")
-    told = run("simulate", "device.toml")
-    assert told.exit_code == 0, told.output
-    assert "5.000" in told.stdout
-    assert run("simulate", "plain.toml", "--set", f"plate_load={rows}").stdout == told.stdout
+    reported = run("simulate", "device.toml")
+    assert reported.exit_code == 0, reported.output
+    assert "5.000" in reported.stdout
+    assert run("simulate", "plain.toml", "--set", f"plate_load={rows}").stdout == reported.stdout
     steps = '[["0 ms", "60 mm/s"], ["5 ms", "60 mm/s"], ["5 ms", "0 mm/s"]]'
     refused = run("simulate", "plain.toml", "--set", f"mouse_velocity={steps}")
     assert refused.exit_code == 2

@@ -85,10 +85,10 @@ def test_an_error_keeps_its_code_between_processes() -> None:
 
 def test_no_code_parses_a_message_of_an_error() -> None:
     """Code uses the type and the attributes of an error, never its message."""
-    looks = []
+    times = []
     for path in SOURCES:
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            told = (
+            reported = (
                 node.comparators
                 if isinstance(node, ast.Compare) and isinstance(node.ops[0], (ast.In, ast.NotIn))
                 else [node.func.value]
@@ -98,10 +98,10 @@ def test_no_code_parses_a_message_of_an_error() -> None:
                 else []
             )
             if any(
-                ast.unparse(text) in ("str(error)", "message", "error.args[0]") for text in told
+                ast.unparse(text) in ("str(error)", "message", "error.args[0]") for text in reported
             ):
-                looks.append(path.name)
-    assert looks == ["device.py"]  # of tomllib's text
+                times.append(path.name)
+    assert times == ["device.py"]  # of tomllib's text
 
 
 def test_json_names_the_code(tmp_path: Path) -> None:

@@ -19,9 +19,9 @@ from studio_cases import Ask, compare, doubles, questions
 
 
 def test_a_thousand_random_drives_have_the_bits_of_python(node: Ask) -> None:
-    cases, asked = questions(1000, 16)
+    cases, requested = questions(1000, 16)
     differ = []
-    for found, (drive, release, duration) in zip(node(asked), cases, strict=True):
+    for found, (drive, release, duration) in zip(node(requested), cases, strict=True):
         try:
             compare(found, simulate(drive, release, duration=duration))
         except AssertionError as error:

@@ -183,9 +183,9 @@ def said_by_python(text: str, path: Path) -> list[str]:
 
 def test_device_file_error_has_the_words_of_the_command(node: Ask, tmp_path: Path) -> None:
     texts = spoiled()
-    asked = [asked_of(text) for text in texts]
+    requested = [asked_of(text) for text in texts]
     differ = []
-    for text, found in zip(texts, node(asked), strict=True):
+    for text, found in zip(texts, node(requested), strict=True):
         expected = said_by_python(text, tmp_path / "device.toml")
         said = found.get("problem", "nothing").split("\n")
         if [line.removeprefix("FILE: ") for line in said] != expected:

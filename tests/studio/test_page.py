@@ -38,11 +38,12 @@ READER = EXAMPLES / "tactile-reader.toml"
 
 def test_a_thousand_random_drives_give_the_bits_of_node(page: Any, node: Ask) -> None:
     """The bits of Node equal Python's: test_core.py."""
-    _, asked = questions(1000, 16)
+    _, requested = questions(1000, 16)
     answers = page.evaluate(
-        "asked => asked.map(q => pindrive.answerOf(pindrive.core, q.simulate, q.duration))", asked
+        "asked => asked.map(q => pindrive.answerOf(pindrive.core, q.simulate, q.duration))",
+        requested,
     )
-    assert answers == node(asked)
+    assert answers == node(requested)
 
 
 def test_sliders_fields_keys_and_undo_change_the_motion(page: Any) -> None:

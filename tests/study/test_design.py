@@ -221,9 +221,9 @@ def test_end_stops_are_followed_by_the_batch(tmp_path: Path) -> None:
     columns["drive.travel"] = np.where(np.arange(count) < 2, -1e-3, columns["drive.travel"])
     table = evaluate(plan, columns, count, ("status", "reason"))
     assert list(table["status"][:3]) == [Status.bad_travel, Status.bad_travel, Status.ok]
-    (told,) = refusals(plan, columns, table["reason"])
-    assert told.count == 2
-    assert "travel must be" in told.reason
+    (reported,) = refusals(plan, columns, table["reason"])
+    assert reported.count == 2
+    assert "travel must be" in reported.reason
 
 
 def test_load_stretch_and_curves_are_followed(tmp_path: Path) -> None:

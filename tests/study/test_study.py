@@ -95,9 +95,9 @@ def test_each_point_equals_its_release(mouse: DeviceFile) -> None:
 
 def test_a_file_of_points_is_kept_and_gone_on_with(mouse: DeviceFile, tmp_path: Path) -> None:
     study, target = python(mouse), tmp_path / "study.nc"
-    told: list[tuple[int, int]] = []
-    with study.run(target, progress=lambda done, total: told.append((done, total))) as data:
-        assert told[-1] == (42, 42)
+    reported: list[tuple[int, int]] = []
+    with study.run(target, progress=lambda done, total: reported.append((done, total))) as data:
+        assert reported[-1] == (42, 42)
         again = study.run()
         assert_array_equal(data.transient_swing, again.transient_swing)
     with pytest.raises(ValueError, match=r"study\.nc"):
@@ -115,9 +115,9 @@ def test_a_study_of_scans_is_the_scans(tmp_path: Path) -> None:
     page = pd.Page(grating=[0.003])
     data = pd.Study(reader, {"hand_speed": [0.04]}, ["shown_part", "lag_on"], page=page).run()
     slow = pd.load_device(READER, ["array.columns=1", "array.rows=2", "hand_speed=40 mm/s"])
-    told = pd.scan(slow, page).evaluate()
-    assert float(data.lines_shown_part[0]) == len(told.shown) / len(told.lines) == 1.0
-    assert float(data.median_lag_on[0]) == told.spread("line.lag_on")[1]
+    reported = pd.scan(slow, page).evaluate()
+    assert float(data.lines_shown_part[0]) == len(reported.shown) / len(reported.lines) == 1.0
+    assert float(data.median_lag_on[0]) == reported.spread("line.lag_on")[1]
 
 
 def test_results_are_data_in_the_order_of_their_labels(mouse: DeviceFile) -> None:
@@ -136,8 +136,8 @@ def test_results_are_data_in_the_order_of_their_labels(mouse: DeviceFile) -> Non
     near = pd.local_sensitivity(study, tolerances=True)
     elasticity = near.to_dataset().elasticity
     for key in near.keys:
-        told = float(elasticity.sel(number="transient_swing", key=key))
-        assert told == near.table["transient_swing"][key]
+        reported = float(elasticity.sel(number="transient_swing", key=key))
+        assert reported == near.table["transient_swing"][key]
     assert near.plot().axes[0].get_xticks().tolist() == [0.0, 1.0]
 
 
@@ -213,12 +213,12 @@ def test_a_study_of_a_drive_and_its_release_equals_that_of_their_file(mouse: Dev
 
 
 def test_a_device_that_is_none_is_refused(mouse: DeviceFile) -> None:
-    required = "device must be what load_device reads, or a Drive with its release"
+    required = "device must be a DeviceFile, or a Drive with its release"
     with pytest.raises(ValueError, match=required):
         pd.Study(mouse.drive, {"mass": [0.01]})
     with pytest.raises(ValueError, match=required):
         pd.Study(mouse, {"mass": [0.01]}, release=mouse.release)
-    with pytest.raises(ValueError, match="device must be a Device, or what load_device reads"):
+    with pytest.raises(ValueError, match="device must be a Device or a DeviceFile"):
         pd.scan(mouse.drive, "A")  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="has no axes"):
         pd.Study(mouse, tolerances={"mass": "5 %"}).run()
@@ -249,16 +249,16 @@ def test_a_device_file_without_a_magnet_has_the_usual_one(mouse: DeviceFile) -> 
 
 def test_an_evaluation_is_data() -> None:
     reader = pd.load_device(READER, ["array.columns=1", "array.rows=2"])
-    told = pd.scan(reader, "Hi").evaluate()
-    data = told.to_dataset()
-    assert data.sizes["line"] == len(told.lines) > 2
-    for i, line in enumerate(told.lines):
+    reported = pd.scan(reader, "Hi").evaluate()
+    data = reported.to_dataset()
+    assert data.sizes["line"] == len(reported.lines) > 2
+    for i, line in enumerate(reported.lines):
         assert int(data.pin[i]) == line.pin
         assert str(data.fate[i].item()) == line.fate
         assert float(data.end_time[i]) == line.end.time
         for name, value in line.numbers.items():
             assert_array_equal(data[name.replace(".", "_")][i], value)
-    assert int(data.lines_shown) == len(told.shown)
+    assert int(data.lines_shown) == len(reported.shown)
     assert data.line_smear.attrs["units"] == "m"
 
 

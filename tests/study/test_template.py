@@ -75,11 +75,11 @@ def test_init_replaces_a_study_only_when_forced() -> None:
         "study.toml: exists already; --force replaces it"
     )
     assert refused("init", "study.toml") == (
-        "study.toml: is there and is no device file; give another name, or --force"
+        "study.toml: exists and is no device file; give another name, or --force"
     )
     Path("device.toml").write_text(GOOD)
     assert refused("init", "device.toml", "--study") == (
-        "device.toml: is there and is no study file; give another name, or --force"
+        "device.toml: exists and is no study file; give another name, or --force"
     )
     assert run("init", "study.toml", "--study", "--force").exit_code == 0
 

@@ -140,11 +140,11 @@ def verdict_words(evaluation: Evaluation) -> list[str]:
     """Return the counts of the lines in words."""
     counts = {name.removeprefix("lines."): n for name, n in evaluation.counts.items()}
     if not counts["crossed"]:
-        return [f"No line passed whole under a pin; {_number(counts['false'], 'false line')}."]
+        return [f"No line passed completely under a pin; {_number(counts['false'], 'false line')}."]
     missed = counts["unseen"] + counts["merged"] + counts["faint"]
     why = _brackets(
         (counts["unseen"], "not seen by the control block"),
-        (counts["merged"], "run into the one before"),
+        (counts["merged"], "merged with the line before"),
         (counts["faint"], "too faint"),
     )
     doubts = _brackets(
@@ -158,7 +158,7 @@ def verdict_words(evaluation: Evaluation) -> list[str]:
         f"Motion of the skin is felt from {limits.felt * _MM:g} mm on, its direction from "
         f"{limits.direction * _MM:g} mm, and right in 95 % of cases from "
         f"{limits.direction_sure * _MM:g} mm at {limits.direction_speed * _MM:g} mm/s; a false "
-        f"line is {limits.false_line:.0%} as high as the line before, or more.",
+        f"line reaches at least {limits.false_line:.0%} of the height of the line before.",
     ]
     if evaluation.scan.device.drive.finger.rigid:
         words.append(
@@ -210,7 +210,7 @@ def speed_report(limits: Sequence[SpeedLimit], part: float, criteria: Criteria) 
     tried = limits[0].tried
     words = [
         criterion(part, criteria.direction),
-        "Settled: besides, what the first line alone leaves swinging is over before the second.",
+        "Settled: the vibration after the first line also ends before the second line.",
         hands_words([limit.speed for limit in limits]),
         f"Tried: {speed.text(tried[0])} to {speed.text(tried[1])}, each speed an exact simulation.",
     ]
@@ -276,16 +276,16 @@ def _band(bands: tuple[Band, ...], limit: SpeedLimit) -> str:
 def beyond(limit: SpeedLimit, part: float, direction: float) -> str:
     """Return the failure of a hand that is faster than the limit, in words."""
     if not limit.distinct:
-        return "at no speed tried are they distinct"
+        return "the lines are distinct at no speed tried"
     trial = limit.beyond
     words = []
     if trial is not None:
         if trial.back == 0.0:
-            words.append("runs them into one")
+            words.append("merges the lines")
         elif trial.back < part:
-            words.append(f"has the pin back by {trial.back:.0%}")
+            words.append(f"lets the pin return by {trial.back:.0%}")
         if trial.skin < direction:
-            words.append(f"moves the skin {QUANTITIES['direction'].text(trial.skin)}")
+            words.append(f"moves the skin by {QUANTITIES['direction'].text(trial.skin)}")
     speed = QUANTITIES["hand_speed"]
     words += [
         f"is distinct again at {speed.digits(a)}-{speed.text(b)}" for a, b in limit.distinct[1:]

@@ -270,7 +270,7 @@ def ending(motion: Motion) -> str:
         )
     if end.kind == "irregular":
         return (
-            f"Irregular oscillation about x = {place}: it has not repeated when it was followed to "
+            f"Irregular oscillation about x = {place}: no repetition up to "
             f"{duration(motion.segments[-1].end)}; amplitude {_POSITION.text(end.least_amplitude)} "
             f"to {_POSITION.text(end.amplitude)}, mean period {duration(end.period)}, "
             f"peak velocity {_VELOCITY.text(end.peak_velocity)}."
@@ -361,7 +361,7 @@ def meeting_words(device: Device, speed: float) -> list[str]:
     """
     array, length, reach = device.array, QUANTITIES["pin_gap"], device.excursion(speed)
     words = [
-        f"Pins {one} and {other} stand abreast, closer than their diameter: they overlap."
+        f"Pins {one} and {other} stand side by side, closer than their diameter: they overlap."
         for one, other in array.abreast[:1]
     ]
     at = f"at {QUANTITIES['hand_speed'].text(speed)} of the hand a pin goes up to"

@@ -47,7 +47,7 @@ class Coil:
         closing_force: The pull beyond which the gap is closed, N, greater than 0, with `lift`.
 
     Raises:
-        ValueError: A value is no number or out of its range, or one of the last two without the
+        ValueError: A value is not a number or out of its range, or one of the last two without the
             other.
 
     The formulas are those of magnetic circuits, as in Fitzgerald, Kingsley and Umans, "Electric

@@ -41,7 +41,7 @@ class ControlBlock:
         hysteresis: Width of the band about it, in [0, 1]; the band lies within [0, 1].
 
     Raises:
-        ValueError: A value is no number or out of its range.
+        ValueError: A value is not a number or out of its range.
     """
 
     sample_rate: Number = default("sample_rate")

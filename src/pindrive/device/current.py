@@ -235,9 +235,9 @@ class Pulses:
             closed = fall_constant * log(high / edge)
             if closed >= off:
                 break
-            ways = (on - opened) / rise_constant + opened / (q * rise_constant)
-            ways += closed / fall_constant + (off - closed) / (q * fall_constant)
-            slope = exp(-ways) * (1.0 - edge) / (q - edge)
+            exponent = (on - opened) / rise_constant + opened / (q * rise_constant)
+            exponent += closed / fall_constant + (off - closed) / (q * fall_constant)
+            slope = exp(-exponent) * (1.0 - edge) / (q - edge)
             short = edge * exp(-(off - closed) / (q * fall_constant)) - low
             if slope >= 1.0 and short > 0.0:
                 break

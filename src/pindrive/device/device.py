@@ -110,7 +110,7 @@ class Criteria:
         false_line: Least height of a false line over that of the line before, in (0, 1].
 
     Raises:
-        ValueError: A value is no number or out of its range.
+        ValueError: A value is not a number or out of its range.
     """
 
     felt: Number = default("felt")

@@ -81,7 +81,7 @@ class Electromagnet:
         steps: The coil's voltage since it was switched on; None: full. Not with pulses.
 
     Raises:
-        ValueError: A value is no number or out of its range.
+        ValueError: A value is not a number or out of its range.
     """
 
     hold_force: Number = default("hold_force")

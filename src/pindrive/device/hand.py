@@ -70,8 +70,8 @@ class HandPath:
         x0, y0 = (check("hand.place", place, label="start") for place in start)
         lasts = np.diff(t)
         for name, v, at in (("x", columns["vx"], x0), ("y", columns["vy"], y0)):
-            ways = np.concatenate([[at], 0.5 * (v[1:] + v[:-1]) * lasts])
-            columns[name] = np.cumsum(ways)
+            paths = np.concatenate([[at], 0.5 * (v[1:] + v[:-1]) * lasts])
+            columns[name] = np.cumsum(paths)
         for name, column in columns.items():
             column.flags.writeable = False
             object.__setattr__(self, name, column)
@@ -196,7 +196,7 @@ def strokes(
             its peak, in (0, 0.1].
 
     Raises:
-        ValueError: A value is no number or out of its range, or there are too many rows.
+        ValueError: A value is not a number or out of its range, or there are too many rows.
 
     A stroke of length D in time T has the speed (D/T) 30 s² (1 − s)² at t = s T (Flash & Hogan
     1985). Its curvature is at most 60 D/T³, so that n even rows are within 60/(8 n²) D/T of it,
@@ -216,8 +216,8 @@ def strokes(
     shape *= count / shape[1:-1].sum()  # the trapezoids under it have an area of 1
     times, vx, vy = [np.zeros(1)], [np.zeros(1)], [np.zeros(1)]
     places = [tuple(check("hand.place", at, label="stops") for at in stop) for stop in stops]
-    ways = zip(places[:-1], places[1:], peaks, strict=True)
-    for i, ((x0, y0), (x1, y1), speed) in enumerate(ways):
+    paths = zip(places[:-1], places[1:], peaks, strict=True)
+    for i, ((x0, y0), (x1, y1), speed) in enumerate(paths):
         dx, dy = (check("hand.place", way, label="stroke") for way in (x1 - x0, y1 - y0))
         label = f"the way from stops[{i}] to stops[{i + 1}]"
         length = check("stroke.length", hypot(dx, dy), label=label)
@@ -257,7 +257,7 @@ def lines(
         deviation: Largest deviation of the piecewise-linear speed, as for `strokes`.
 
     Raises:
-        ValueError: A value is no number or out of its range; no way between left and right.
+        ValueError: A value is not a number or out of its range; no way between left and right.
     """
     if not rows:
         raise ValueError(refusal("rows", "at least one line", "none"))

@@ -143,7 +143,7 @@ class Scene:
         except Image.DecompressionBombError as error:
             raise ValueError(f"{file}: is too large: {error}") from None
         except OSError as error:
-            reason = error.strerror or "it is no image, or a damaged one"
+            reason = error.strerror or "it is not an image, or it is damaged"
             raise ValueError(f"{file}: cannot be read: {reason}") from None
         except (SyntaxError, EOFError, IndexError, OverflowError) as error:  # damaged PNG, GIF ...
             raise ValueError(f"{file}: cannot be read: {error}") from None
@@ -306,7 +306,7 @@ def _pixel_of(resolution: Any, file: str) -> float:
         across = down = 0.0
     if not across > 1.0:
         raise ValueError(
-            f'{file}: says nothing of its resolution; give scan.pixel, like pixel = "0.1 mm"'
+            f'{file}: does not state its resolution; give scan.pixel, like pixel = "0.1 mm"'
         )
     if abs(across - down) > 0.01 * across:
         given = f"{across:g} by {down:g}"
@@ -362,7 +362,7 @@ def draw(
     try:
         measured = ImageFont.truetype(file, MEASURED, layout_engine=engine)
     except OSError as error:
-        raise ValueError(f"{file}: is no font that can be read: {error}") from None
+        raise ValueError(f"{file}: is not a font that can be read: {error}") from None
     _check_known("".join(lines), file)
     capital = -measured.getbbox("H", anchor="ls")[1]
     if not capital > 0:

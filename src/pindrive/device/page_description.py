@@ -40,7 +40,7 @@ class Page:
         path: A CSV of the hand's path; None: strokes.
 
     Raises:
-        ValueError: A pitch is no number or out of its range.
+        ValueError: A pitch is not a number or out of its range.
     """
 
     text: str | None

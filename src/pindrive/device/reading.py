@@ -42,7 +42,7 @@ class Reading:
             peak, in (0, 0.1].
 
     Raises:
-        ValueError: A value is no number or out of its range.
+        ValueError: A value is not a number or out of its range.
     """
 
     hand_speed: Number = default("hand_speed")

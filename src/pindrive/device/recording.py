@@ -164,16 +164,16 @@ class HandRecording:
         """The step of which all places are whole numbers, m; None where there is none."""
         if self.step is not None:
             return self.step
-        ways = np.abs(np.concatenate([np.diff(self.x), np.diff(self.y)]))
-        ways = ways[ways > 1e-9]
-        if len(ways) < 3:
+        steps = np.abs(np.concatenate([np.diff(self.x), np.diff(self.y)]))
+        steps = steps[steps > 1e-9]
+        if len(steps) < 3:
             return None
-        step = float(ways.min())
-        few = ways[ways < 4.5 * step]
+        step = float(steps.min())
+        few = steps[steps < 4.5 * step]
         step = float(few.sum() / np.round(few / step).sum())  # the mean, of rounded text
-        counts = ways[ways < SMALL_STEPS * step] / step
+        counts = steps[steps < SMALL_STEPS * step] / step
         whole = np.abs(counts - np.round(counts)) < GRID
-        return step if whole.all() and len(counts) > 0.5 * len(ways) else None
+        return step if whole.all() and len(counts) > 0.5 * len(steps) else None
 
     def raw(self, acceleration: float = default("hand_acceleration")) -> bool:
         """True for steps so coarse that differences of places are no speed.
@@ -286,7 +286,7 @@ class HandRecording:
             said += f", in steps of {1e3 * step:.4g} mm ({INCH / step:.4g} dpi)"
         said += f"; peak speed {speed.text(self.peak_speed())} from row to row"
         if not self.raw(acceleration):
-            return f"{said}. It is followed as it is."
+            return f"{said}. It is used without smoothing."
         left = self.smoothed(cutoff).peak_speed()
         shortest = (PEAK_LOSS / LOST) ** 0.25 / cutoff
         return (

@@ -406,7 +406,7 @@ def scan(
     """
     described = None if isinstance(device, Device) else device
     if described is not None and not isinstance(described, pindrive.DeviceFile):
-        required = "a Device, or what load_device reads"
+        required = "a Device or a DeviceFile"
         raise ValueError(refusal("device", required, repr(device)))
     whole = device if isinstance(device, Device) else device.device
     reading = Reading() if described is None else described.reading

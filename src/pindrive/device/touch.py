@@ -19,7 +19,7 @@ def finger_load(drive: Drive, touch: float | str | Profile | None, begin: float)
         begin: Begin of the scan, s.
 
     Raises:
-        ValueError: A value is no number or out of its range, or friction does not follow it.
+        ValueError: A value is not a number or out of its range, or friction does not follow it.
     """
     if touch is None:
         return 1.0

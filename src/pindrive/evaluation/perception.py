@@ -134,10 +134,10 @@ class Evaluation(lazy.NotebookHtml):
             np.array([line.pin for line in false_lines], np.int64),
         )
         for name, unit, meaning in (
-            ("time", "s", "when it was highest"),
-            ("x", "m", "where the spot was then, across the page"),
-            ("y", "m", "where the spot was then, down the page"),
-            ("stroke", "m", "how high it was"),
+            ("time", "s", "time of its peak"),
+            ("x", "m", "place of the spot at the peak, across the page"),
+            ("y", "m", "place of the spot at the peak, down the page"),
+            ("stroke", "m", "height of the peak"),
         ):
             values = np.array([getattr(line, name) for line in false_lines], np.float64)
             data[f"false_line_{name}"] = (

@@ -439,7 +439,7 @@ def read_tables(file: Path, template: str = "`pindrive init FILE` writes a devic
     """Read a TOML file as a dictionary; for an empty one `template` tells the remedy.
 
     Raises:
-        ConfigError: The file cannot be read, is empty, or is no TOML.
+        ConfigError: The file cannot be read, is empty, or is not TOML.
     """
     try:
         text = file.read_text(encoding="utf-8-sig")

@@ -79,9 +79,9 @@ ELSEWHERE: Final = {
     "magnet.outer_diameter": "says whether the device can be built",
     "magnet.height": "says whether the device can be built",
     "magnet.temperature_rise": "limit of the warming: the motion does not depend on it",
-    "control": "what commands the magnet is the importer's",
+    "control": "the importer commands the magnet",
     "array": "the unit is one pin of it",
-    "scan": "how a hand reads: the importer moves the plate",
+    "scan": "the importer moves the plate",
     "criteria": "criterion of the evaluation: the motion does not depend on it",
 }
 """The keys and tables of a device file that are no variables of its unit, and why."""
@@ -184,12 +184,13 @@ def _outputs(magnet: Iterable[FmuVariable]) -> Iterator[FmuVariable]:
     for name in _OUTPUTS:
         yield FmuVariable(name, "output", SERIES[name].meaning, SERIES[name].unit)
     meaning = (
-        "no contact changes before, if the inputs continue as they do; 1.8e308 if none ever does"
+        "time before which no contact changes while the inputs keep their rates; "
+        "1.8e308 if none ever does"
     )
     yield FmuVariable("next_event_time", "output", meaning, "s")
     yield from magnet
     for contact in ("plate", "finger"):
-        meaning = f"what the contact with the {contact} does: {_STATES}"
+        meaning = f"state of the contact with the {contact}: {_STATES}"
         yield FmuVariable(f"{contact}_state", "output", meaning, "", None, -1, 3, whole=True)
 
 

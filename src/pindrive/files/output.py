@@ -87,11 +87,10 @@ def check_outputs(
         try:
             alike = output.kind.holds(output.path)
         except OSError as error:
-            raise OutputError(f"{output}: is there, and cannot be read: {error.strerror}") from None
+            raise OutputError(f"{output}: exists, and cannot be read: {error.strerror}") from None
         if not alike:
             raise OutputError(
-                f"{output}: is there and is no {output.kind.name}; "
-                "give another name, or `force=True`"
+                f"{output}: exists and is no {output.kind.name}; give another name, or `force=True`"
             )
         if output.kind.costly:
             raise OutputError(f"{output}: exists already; `force=True` replaces it")
@@ -179,14 +178,14 @@ def check_folder(folder: str | os.PathLike[str]) -> None:
     """Refuse at once what `write_files` would refuse of a folder; nothing is made.
 
     Raises:
-        OutputError: The file or its folder is no folder or cannot be written.
+        OutputError: The file or its folder is not a folder or cannot be written.
     """
     path = Path(os.path.realpath(folder))
     while not path.exists():
         path = path.parent
     with naming(folder):
         if not path.is_dir():
-            raise NotADirectoryError(f"{path.name} is no folder")
+            raise NotADirectoryError(f"{path.name} is not a folder")
         if not os.access(path, os.W_OK | os.X_OK):
             raise PermissionError(f"{path} is read-only")
 

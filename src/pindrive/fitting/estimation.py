@@ -29,9 +29,9 @@ Array = NDArray[np.float64]
 __all__ = ["fit"]
 
 ROUNDS: Final = 12
-"""Refinements with the noise that the one before left."""
+"""Largest number of refinements, each with the noise estimated by the one before."""
 RESTARTS: Final = 20
-"""Better optima that profiles may meet."""
+"""Largest number of restarts from a better optimum found by a profile."""
 SWING: Final = 0.25
 """The least part of a period that a recording must last."""
 LEAST_NOISE: Final = 1e-9
@@ -67,8 +67,8 @@ def fit(
             each recording `time_offset`, its time of the release, and `position_offset` or that of
             another channel. Keys of device files are names too. With several recordings, what each
             has of its own is named with its place, such as `displacement@0`.
-        bounds: (least, largest) by name, SI or text with a unit; unless given, a tenth to ten
-            times what the drive has, from 0 for damping and friction.
+        bounds: (least, largest) by name, SI or text with a unit. Default: a tenth to ten times the
+            value of the drive; from 0 for damping and friction.
         seed: Seed of the candidates, from 0 on.
         confidence: Confidence of the intervals, between 0 and 1.
         profiles: True to compute profile likelihoods; otherwise intervals follow from the
@@ -77,8 +77,8 @@ def fit(
             most of the time.
 
     Returns:
-        Values with standard errors, intervals, correlations and whether the recordings tell them;
-        the noise; the fitted drive and releases.
+        Values with standard errors, intervals, correlations and identifiability; the noise; the
+        fitted drive and releases.
 
     Raises:
         ValueError: A recording that is shorter than a quarter of a period, a name or bounds that

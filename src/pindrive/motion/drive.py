@@ -47,7 +47,7 @@ class Contact:
         coefficient_curve: Rows (speed in m/s, coefficient), in place of `curve`.
 
     Raises:
-        ValueError: A value is no number or out of its range, static friction is below kinetic,
+        ValueError: A value is not a number or out of its range, static friction is below kinetic,
             neither kinetic friction nor a curve is given, they disagree, or there are both forces
             and coefficients.
     """

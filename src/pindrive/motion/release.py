@@ -50,7 +50,7 @@ class Release:
             `Profile`, which may have steps.
 
     Raises:
-        ValueError: A value is no number or out of its range, or the mouse velocity has a step.
+        ValueError: A value is not a number or out of its range, or the mouse velocity has a step.
     """
 
     mouse_velocity: float | Profile

@@ -191,12 +191,12 @@ class _Derivative:
         self._neighbours.append((step, neighbour))
         parting = _parting(self._own, neighbour)
         self.course_until = min(self.course_until, parting)
-        way = f"when it is {'greater' if step > 0 else 'smaller'} by {abs(step):.1e}"
+        way = f"for a value {'greater' if step > 0 else 'smaller'} by {abs(step):.1e}"
         if parting <= self._motion.duration:
             self.gap = f"from {self.course_until:.6g} s on: other events {way}"
         elif self._own.end != neighbour.end:
             self._same_ending = False
-            self.gap = self.gap or f"in what depends on the ending: it is another {way}"
+            self.gap = self.gap or f"in numbers of the ending: another ending {way}"
 
     def numbers(self) -> dict[str, float]:
         """The derivatives of the numbers, NaN where one does not exist."""

@@ -45,9 +45,9 @@ __all__ = ["optimise"]
 
 Array = NDArray[np.float64]
 GAIN: Final = 0.05
-"""Part by which the first goal gets better where a constraint is relaxed."""
+"""Relative improvement of the first goal for which a constraint is relaxed."""
 ROUNDS: Final = 6
-"""Searches, each with the worst conditions of the design that the one before found."""
+"""Largest number of searches, each with the worst conditions of the design found before."""
 WORSE: Final = 1e-3
 """Smallest relative change of a goal or a limit that makes a condition worse."""
 
@@ -109,7 +109,7 @@ def optimise(
         wanted = problem
     else:
         if device is None:
-            raise ValueError("device must be what load_device reads, got None")
+            raise ValueError("device must be a DeviceFile, got None")
         wanted = problem_of(device, problem)
     if threads is not None and cluster is not None:
         raise ValueError("give threads or cluster, not both: workers have their own")
@@ -150,7 +150,7 @@ class _Optimisation:
         self.warnings: list[str] = []
 
     def step(self) -> None:
-        """Tell that a part of the work is done."""
+        """Report that a part of the work is done."""
         self.done = min(self.done + 1, self.total)
         self.progress(self.done, self.total)
 

@@ -71,7 +71,7 @@ def read_problem(
     file = Path(path)
     tables: dict[str, Any] = read_tables(file, _TEMPLATE)
     if not tables.keys() & {*STUDY_KEYS, *_BESIDE}:
-        what = "is a device file" if tables.keys() & {*TABLES} else "is no design problem"
+        what = "is a device file" if tables.keys() & {*TABLES} else "is not a design problem"
         raise ConfigError([f"{file}: {what}; {_TEMPLATE}"])
     problems = [*_unknown(tables, file)]
     own, text = device_in(tables, file, overrides, problems)
@@ -251,7 +251,7 @@ def _goals(
                 problems.append(str(error))
                 continue
             if not is_measured(name):
-                problems.append(f"{place}: goals.{direction}: {one} is no number")
+                problems.append(f"{place}: goals.{direction}: {one} is not a number")
             elif any(goal.name == name for goal in found):
                 problems.append(f"{place}: goals: {label(name)} is named twice; leave one out")
             else:
@@ -274,16 +274,19 @@ def _least_yield(
     own = [constraint for constraint in required if constraint.name == YIELD]
     where = f"{place}: specification.yield"
     if any(goal.name == YIELD for goal in goals):
-        problems.append(f'{place}: goals: yield is no goal; constraint it, yield = ">= 95 %"')
+        problems.append(f'{place}: goals: yield cannot be a goal; constrain it, yield = ">= 95 %"')
     if not own:
         return None
     if len(own) > 1 or own[0].at_most or not 0.0 < own[0].limit < 1.0:
         given = quoted(tables["specification"].get("yield"))
         problems.append(f'{where}: must be one limit like ">= 95 %", got {given}')
     elif not tables.get("tolerances"):
-        problems.append(f"{where}: is within tolerances; write them in [tolerances]")
+        problems.append(f"{where}: needs tolerances; write them in [tolerances]")
     elif len(required) == 1:
-        problems.append(f"{where}: is of the other constraints; there are none")
+        problems.append(
+            f"{where}: needs another constraint; the yield is the part of devices that "
+            "meets all others"
+        )
     return own[0].limit
 
 
@@ -307,7 +310,7 @@ def _contradictions(
         yield f"{place}: no part has a price; give a catalogue with a column price in [catalogues]"
     if SPEED in names and not (study.page and study.page.page.grating):
         yield (
-            f"{place}: {label(SPEED)} is of lines a pitch apart; write which, "
+            f"{place}: {label(SPEED)} depends on the pitch of the lines; write it, as with "
             'grating = ["3 mm"] in [page]'
         )
 

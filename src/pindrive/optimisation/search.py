@@ -140,16 +140,16 @@ def _volume(goals: Array, reference: Array) -> float:
     low, high = reference.min(axis=0), reference.max(axis=0)
     span = np.where(high > low, high - low, 1.0)
     scaled = np.clip((high - goals) / span, 0.0, None)
-    ways = _directions(goals.shape[1], 16)
-    return float((scaled[None] / ways[:, None]).min(axis=2).max(axis=1).mean())
+    directions = _directions(goals.shape[1], 16)
+    return float((scaled[None] / directions[:, None]).min(axis=2).max(axis=1).mean())
 
 
 def _directions(goals: int, count: int) -> Array:
     """Return positive weights spread over the simplex."""
     rng = np.random.default_rng(0)
-    ways = np.maximum(rng.dirichlet(np.ones(goals), count), 1e-3)
-    ways[:goals] = np.maximum(np.eye(goals), 1e-3)
-    found: Array = ways / ways.sum(axis=1, keepdims=True)
+    directions = np.maximum(rng.dirichlet(np.ones(goals), count), 1e-3)
+    directions[:goals] = np.maximum(np.eye(goals), 1e-3)
+    found: Array = directions / directions.sum(axis=1, keepdims=True)
     return found
 
 
@@ -186,10 +186,10 @@ def _spread(goals: Array, count: int) -> NDArray[np.int64]:
     span = np.maximum(np.quantile(goals, 0.9, axis=0) - low, 1e-300)
     scaled = ((goals - low) / span).astype(np.float32)
     found: list[NDArray[np.int64]] = []
-    ways = _directions(goals.shape[1], 32)
-    each = max(1, count // len(ways))
-    for way in ways:
-        worst = (scaled / way.astype(np.float32)).max(axis=1)
+    directions = _directions(goals.shape[1], 32)
+    each = max(1, count // len(directions))
+    for direction in directions:
+        worst = (scaled / direction.astype(np.float32)).max(axis=1)
         near = np.argpartition(worst, min(each, len(worst) - 1))[:each]
         found.append(near)
     return np.unique(np.concatenate(found))

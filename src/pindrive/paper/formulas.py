@@ -87,7 +87,7 @@ class Releases:
         displacement: x_0, m.
 
     Raises:
-        ValueError: A value is no number or out of its range, or the shapes do not broadcast.
+        ValueError: A value is not a number or out of its range, or the shapes do not broadcast.
     """
 
     mass: NDArray[np.float64]

@@ -61,9 +61,9 @@ class Report:
     sections: tuple[Section, ...]
 
     @cached_property
-    def exhibits(self) -> tuple[Exhibit, ...]:
-        """All figures, in order."""
-        return tuple(e for section in self.sections for e in section.exhibits)
+    def exhibits(self) -> dict[str, Exhibit]:
+        """All figures by name, in order."""
+        return {e.name: e for section in self.sections for e in section.exhibits}
 
     @property
     def summary(self) -> str:
@@ -159,7 +159,7 @@ class Report:
 
         found: dict[str, bytes] = {}
         pictures: dict[str, bytes] = {}
-        for exhibit in self.exhibits:
+        for exhibit in self.exhibits.values():
             step(f"drawing {exhibit.name}")
             drawn = exhibit.pictures()
             pictures[exhibit.name] = drawn["svg"]
@@ -299,7 +299,7 @@ def _section(section: Section) -> list[str]:
 def files(report: Report, step: Callable[[str], None] = lambda _: None) -> dict[str, bytes]:
     """Everything that `pindrive paper --docs` writes, by its path in the folder."""
     found = {NAME: text(report).encode()}
-    for exhibit in report.exhibits:
+    for exhibit in report.exhibits.values():
         step(f"drawing {exhibit.name}")
         found[f"{IMAGES}/{exhibit.name}.png"] = exhibit.pictures()["png"]
     return found
@@ -309,7 +309,7 @@ def _link(report: Report, name: str) -> str:
     """To an exhibit's heading, where there is one."""
     if not name:
         return ""
-    titles = {exhibit.name: exhibit.title for exhibit in report.exhibits}
+    titles = {exhibit.name: exhibit.title for exhibit in report.exhibits.values()}
     title = markdown(titles.get(name, _EQUATIONS))
     return f"[→ {name.replace('-', ' ')}](#{anchor(title)})"
 

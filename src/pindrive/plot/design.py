@@ -64,7 +64,7 @@ def plot_design(found: Design) -> Figure:
         figure.legend(handles=_key(found), loc="outside lower left", ncols=4 if columns > 2 else 2)
         name = found.problem.study.name or found.device.name
         title = plain(f"{name}: {_outcome(found)}", _WIDTH if columns > 2 else 2 * _WIDTH // 3)
-        figure.head(title + ("\nmaps: all else as the design has it" if found.maps else ""))
+        figure.head(title + ("\nmaps: other values as in the design" if found.maps else ""))
     return figure
 
 

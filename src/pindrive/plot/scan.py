@@ -170,7 +170,7 @@ def _key(scan: Scan, panels: Iterable[Axes]) -> list[Artist]:
     handles: list[Artist] = [Line2D([], [], **way, lw=0.9, label="way of the hand, reading")]
     if any(back for _, back in _strokes(scan)):
         handles.append(Line2D([], [], **way, **RETURN, label="and back"))
-    spot = Line2D([], [], **SPOT, label="what a pin's sensor sees at first")
+    spot = Line2D([], [], **SPOT, label="initial sensing spot of a pin")
     handles += [spot, Line2D([], [], color="0.35", lw=0.5, label="outline of the print")]
     if any(mark.get_gid() == "back" for axes in panels for mark in axes.collections):
         handles.append(Patch(**DOTTED, label="deflected backwards"))
@@ -354,7 +354,7 @@ def _title(evaluation: Evaluation) -> str:
     speed = QUANTITIES["hand_speed"].text(scan.path.peak_speed)
     what = f"{pins}, {scan.path.end - scan.path.begin:.3g} s, hand at up to {speed}"
     if not lines:
-        return "\n".join([f"{what}; no line passed whole under a pin.", *gap_words(scan)])
+        return "\n".join([f"{what}; no line passed completely under a pin.", *gap_words(scan)])
     medians = []
     for name in ("lag_on", "lag_off", "smear", "overshoot", "contrast"):
         value, unit = evaluation.spread(f"line.{name}")[1], QUANTITIES[f"line.{name}"].unit

@@ -28,7 +28,7 @@ class Budget:
         """Refuse a count beyond the limit.
 
         Args:
-            count: Requested number; a value that is no number is too many.
+            count: Requested number; a value that is not a number is too many.
             of: Origin of the number, for messages: "16 pins over 10 s".
             where: The place that asks for them, said first.
 

@@ -52,7 +52,7 @@ _PLAIN = str.maketrans({"·": "*", "⋅": "*", "×": "*", "−": "-", "²": "^2"
 
 
 class UnitError(ValueError):
-    """Text that is no number with a unit of the expected kind; says what is expected."""
+    """Text that is not a number with a unit of the expected kind; says what is expected."""
 
 
 def to_si(text: str, unit: str, example: str) -> float:
@@ -64,7 +64,7 @@ def to_si(text: str, unit: str, example: str) -> float:
         example: Example of such a quantity, for the message.
 
     Raises:
-        UnitError: The text is no number, or has no unit, an unknown unit or a unit of another
+        UnitError: The text is not a number, or has no unit, an unknown unit or a unit of another
             dimension.
     """
     plain = text.translate(_PLAIN)

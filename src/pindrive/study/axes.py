@@ -35,7 +35,7 @@ class Source:
     si: bool = False
 
 
-_WAYS: Final = ("lin", "log", "list", *KINDS, "times")
+_KINDS: Final = ("lin", "log", "list", *KINDS, "times")
 _BESIDE: Final = {"lin": ("count",), "log": ("count",), "list": (), "times": ("of",)}
 
 
@@ -88,26 +88,26 @@ class AxisReader:
             return self._around(spec)
         if isinstance(spec, list) and not self._tolerance:
             return self._listed(spec, "")
-        ways = [way for way in _WAYS if way in spec] if isinstance(spec, dict) else []
-        if not isinstance(spec, dict) or len(ways) != 1:
+        kinds = [kind for kind in _KINDS if kind in spec] if isinstance(spec, dict) else []
+        if not isinstance(spec, dict) or len(kinds) != 1:
             raise ValueError(self._refusal(self._expected(), spec))
-        way = ways[0]
-        beside = _BESIDE.get(way, ("within",))
+        kind = kinds[0]
+        beside = _BESIDE.get(kind, ("within",))
         for name in spec:
-            if name not in (way, *beside):
-                known = " and ".join((way, *beside))
+            if name not in (kind, *beside):
+                known = " and ".join((kind, *beside))
                 raise ValueError(
                     f"{self._file}: unknown key {self._label}.{name}; there is {known}"
                 )
-        if way == "times":
+        if kind == "times":
             return self._linked(spec)
-        if way in KINDS:
-            return self._distribution(way, spec)
+        if kind in KINDS:
+            return self._distribution(kind, spec)
         if self._tolerance:
             raise ValueError(self._refusal(self._expected(), spec))
-        if way == "list":
+        if kind == "list":
             return self._listed(spec["list"], ".list")
-        return self._even(way, spec)
+        return self._even(kind, spec)
 
     def _expected(self) -> str:
         a, b = (quoted(self._quantity.written(x)) for x in self._example())
@@ -138,19 +138,19 @@ class AxisReader:
             raise ValueError(self._refusal("a list of at least one value", values, part))
         return Listed(tuple(self._value(v, f"{part}[{i}]") for i, v in enumerate(values)))
 
-    def _even(self, way: str, spec: Mapping[str, Any]) -> Even:
-        pair = self._pair(spec[way], f".{way}", ("first", "last"))
-        low, high = (self._value(v, f".{way}[{i}]") for i, v in enumerate(pair))
+    def _even(self, kind: str, spec: Mapping[str, Any]) -> Even:
+        pair = self._pair(spec[kind], f".{kind}", ("first", "last"))
+        low, high = (self._value(v, f".{kind}[{i}]") for i, v in enumerate(pair))
         if low == high:
-            raise ValueError(self._refusal("two different values", pair, f".{way}"))
-        if way == "log" and not min(low, high) > 0.0:
+            raise ValueError(self._refusal("two different values", pair, f".{kind}"))
+        if kind == "log" and not min(low, high) > 0.0:
             raise ValueError(self._refusal("two values greater than 0", pair, ".log"))
         count = spec.get("count")
         if type(count) is not int or not 2 <= count <= budgets.AXIS.most:
             given = "none" if count is None else quoted(count)
             required = f"a whole number from 2 to {budgets.AXIS.most}"
             raise ValueError(refusal(f"{self._label}.count", required, given, self._file))
-        return Even(low, high, count, way == "log")
+        return Even(low, high, count, kind == "log")
 
     def _linked(self, spec: Mapping[str, Any]) -> Linked:
         of = spec.get("of")

@@ -210,7 +210,7 @@ def constraints(
         try:
             name = known_output(given, f"{file}: specification", among)
             if not is_measured(name):
-                raise ValueError(f"{file}: specification.{given} is no number to be required")
+                raise ValueError(f"{file}: specification.{given} names no number with a limit")
         except ValueError as error:
             problems.append(str(error))
             continue

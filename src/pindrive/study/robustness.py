@@ -154,16 +154,16 @@ def robustness(
     threads: int | None = None,
     progress: Progress = lambda done, total: None,
 ) -> Robustness:
-    """Draw designs within the tolerances of a study and hold them against its specification.
+    """Draw designs within the tolerances of a study and compare them with its specification.
 
     A value that keeps its ratio to another value varies with that value, unless it has a tolerance
-    (see `Quantity.follows`). A draw that cannot exist all the same is no design: it is counted
-    apart.
+    (see `Quantity.follows`). A draw whose values contradict each other is not a design and is
+    counted separately.
 
     Args:
         study: A study with tolerances.
-        count: Independent random draws, at least 1; the confidence interval rests on them. 100 000
-            unless given, of scans 1000.
+        count: Number of independent random draws, >= 1, from which the confidence intervals follow.
+            None: 100 000, of scans 1000.
         seed: Seed of the draws and of the search for the worst case.
         threads: Number of threads; None: all cores.
         progress: Function called with the points done and the points in all.
@@ -255,7 +255,7 @@ def _worst(
     low, width = spans[:, :1], np.maximum(np.diff(spans, axis=1), 1e-300)
 
     def badness(excess: NDArray[np.float64], status: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Lower is worse; what never happens is worst, what cannot exist does not count."""
+        """Lower is worse. An infinite excess is the worst; a contradictory draw does not count."""
         far = 1e6 * abs(constraint.limit or 1.0)
         return np.where(exist(status), -np.minimum(excess, far), far)
 

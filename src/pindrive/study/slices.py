@@ -155,7 +155,7 @@ class Slice:
         """Open the file of a sweep.
 
         Raises:
-            ValueError: The file cannot be read, or is no study.
+            ValueError: The file cannot be read, or is not a study.
         """
         self.path = str(path)
         try:
@@ -173,7 +173,7 @@ class Slice:
             )
         if "identity" not in self.data.attrs:
             self.data.close()
-            raise ValueError(f"{self.path}: is no study; `pindrive sweep` writes one")
+            raise ValueError(f"{self.path}: is not a study; `pindrive sweep` writes one")
         self.keys = [
             str(name)
             for name, c in self.data.coords.items()

@@ -111,7 +111,7 @@ class Study:
         if isinstance(device, Drive) and isinstance(release, Release):
             device = DeviceFile.of(device, release)
         elif not isinstance(device, DeviceFile) or release is not None:
-            required = "what load_device reads, or a Drive with its release"
+            required = "a DeviceFile, or a Drive with its release"
             raise ValueError(refusal("device", required, f"{device!r}, release={release!r}"))
         tables: dict[str, Any] = {
             "name": name or None,
