@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "arrays.hpp"
 #include "interrupt.hpp"
 #include "owned_motion.hpp"
 #include "pindrive/certificate/certify.hpp"
@@ -31,16 +32,7 @@ using nb::literals::operator""_a;
 
 namespace {
 
-using Times = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-template <class T>
-using Array = nb::ndarray<nb::numpy, T, nb::ndim<1>, nb::c_contig>;
-
-template <class T>
-Array<T> to_array(std::vector<T>&& values) {
-  auto* owned = new std::vector<T>(std::move(values));
-  nb::capsule owner(owned, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
-  return Array<T>(owned->data(), {owned->size()}, owner);
-}
+using Times = Column;
 
 // ---- what Python hands over ----------------------------------------------------------------------
 
@@ -355,7 +347,8 @@ nb::class_<CoreMotion<T>> bind(nb::module_& m, const char* name, const char* mea
 
 }  // namespace
 
-void bind_batch(nb::module_& m);  // _batch.cpp
+void bind_batch(nb::module_& m);   // _batch.cpp
+void bind_device(nb::module_& m);  // _device.cpp
 
 NB_MODULE(_core, m) {
   m.doc() = "The exact core. All quantities in SI units; nothing is checked here.";
@@ -401,6 +394,7 @@ NB_MODULE(_core, m) {
   m.def("differentiate", &differentiate, "numbers"_a, "along"_a,
         "The derivatives of a motion along a direction; both as the arguments of simulate.");
   bind_batch(m);
+  bind_device(m);
   m.attr("settling_band") = pd::settling_band;
   m.attr("event_limit") = pd::event_limit;
   nb::dict statuses;  // Status in quantities/status.py

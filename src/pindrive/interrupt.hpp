@@ -39,7 +39,7 @@ auto interruptible(Computation&& computation) {
   Interrupt interrupt;
   auto result = [&] {
     const nanobind::gil_scoped_release unlocked;
-    return computation([&interrupt] { return interrupt.go_on(); });
+    return computation([&interrupt](std::size_t done = 1) { return interrupt.go_on(done); });
   }();
   if (interrupt.found()) throw nanobind::python_error();
   return result;

@@ -20,7 +20,7 @@ from pindrive.cli.tables import device_words, ending, motion_report, regime
 from pindrive.device import Criteria, Device, PinArray, Scene, lines, scan
 from pindrive.device.dataset import numbers as pin_numbers
 from pindrive.evaluation import Evaluation, evaluate
-from pindrive.evaluation.line_crossings import Cue
+from pindrive.evaluation.line_crossings import CUES, FATES, Cue
 from pindrive.evaluation.resolution import SpeedLimit, Trial
 from pindrive.files.device import load_device
 from pindrive.motion.simulate import motion_of
@@ -158,12 +158,10 @@ def test_fates_of_the_lines(evaluated: Evaluation) -> None:
 
 def test_cues_are_counted(evaluated: Evaluation) -> None:
     cues: tuple[Cue, ...] = ("none", "felt", "direction", "sure", "sure")
-    shown = [
-        replace(line, begin=replace(line.begin, cue=cue))
-        for line, cue in zip(evaluated.shown, cues, strict=False)
-    ]
-    assert len(shown) == len(cues)
-    counts = replace(evaluated, lines=tuple(shown)).counts
+    rows = np.flatnonzero(evaluated.table["fate"] == FATES.index("shown"))[: len(cues)]
+    table = {name: column[rows] for name, column in evaluated.table.items() if "false" not in name}
+    table |= {"cue_on": np.array([CUES.index(cue) for cue in cues]), "false_line_pin": np.zeros(0)}
+    counts = replace(evaluated, table=table).counts
     assert (counts["lines.direction"], counts["lines.sure"]) == (3, 2)
 
 

@@ -22,7 +22,7 @@ from pindrive.motion import batch
 
 drive = Drive(mass=0.01, stiffness=100.0, damping=0.0, plate=Contact(0.0), finger=Contact(1e-9))
 motion = simulate(drive, Release(0.06, 0.002))
-core, numbers, duration = motion._core, motion.core_numbers, motion.duration
+core, numbers, duration = motion.core, motion.core_numbers, motion.duration
 t = np.linspace(0.0, 1.0, 1_000_000)
 call, arguments = {call}
 print("ready", flush=True)

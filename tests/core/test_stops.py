@@ -202,8 +202,8 @@ def test_no_number_of_a_motion_is_beyond_a_rigid_stop() -> None:
         motion = simulate(made, start, duration=0.1)
         struck += len(motion.events)
         times = [e.time for e in motion.events]
-        sides = [motion._core.position(np.array(times), right) for right in (False, True)]
-        found = [*np.concatenate(sides), *motion._core.extrema(0, 0.1, 1000)[1]]
+        sides = [motion.core.position(np.array(times), right) for right in (False, True)]
+        found = [*np.concatenate(sides), *motion.core.extrema(0, 0.1, 1000)[1]]
         numbers = motion.transient
         found += [numbers.peak_displacement, numbers.trough_displacement]
         assert np.nanmax(np.abs(found)) <= most

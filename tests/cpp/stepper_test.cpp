@@ -188,8 +188,7 @@ void events() {
   expect(stepper.tau() > 0, "nor one that differs by rounding");
 }
 
-/// Rigid and elastic stops: steps find the events of an uninterrupted run; a jerk of the housing throws the pin
-/// from one rigid stop and keeps it at the other.
+/// Events at rigid and elastic stops in steps; a jerk of the housing, which throws the pin from one rigid stop.
 void at_the_stops() {
   for (const double stiffness : {infinity, 2000.0}) {
     pd::Drive<double> stopped = drive;

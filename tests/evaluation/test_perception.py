@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import isnan, nan
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -25,7 +25,7 @@ from pindrive.device import (
     strokes,
 )
 from pindrive.evaluation import Evaluation, Line, evaluate
-from pindrive.evaluation.line_crossings import FATES, printed, turnings
+from pindrive.evaluation.line_crossings import FATES, printed_lines
 from random_scans import RandomScan
 
 PLATE = Contact(0.022, 0.0265)
@@ -63,6 +63,19 @@ def numbers(line: Line) -> list[float]:
 # ---- what is printed -----------------------------------------------------------------------------
 
 
+class Printed(NamedTuple):
+    begin: float
+    end: float
+    whole: bool
+
+
+def printed(done: Scan) -> list[list[Printed]]:
+    """The lines along the way of each pin, one by one."""
+    found = printed_lines(done.device, done.path, done.scene)
+    columns = ((pin.begin.tolist(), pin.end.tolist(), pin.whole.tolist()) for pin in found)
+    return [[Printed(*row) for row in zip(*pin, strict=True)] for pin in columns]
+
+
 def test_edges_are_where_the_lines_were_drawn() -> None:
     scene = grating(0.004, 0.0021)
     path = across(scene, 0.07)
@@ -70,9 +83,7 @@ def test_edges_are_where_the_lines_were_drawn() -> None:
     done = scan(Device(drive=drive(), array=array), scene, path)
     begin = scene.extent[0] + 0.012
     drawn = [(0.0, 0.002), (0.004, 0.006), (0.018, 0.01905), (0.0201, 0.02115)]
-    for (shift, _), passed in zip(
-        array.spots, printed(done.device, done.path, done.scene), strict=True
-    ):
+    for (shift, _), passed in zip(array.spots, printed(done), strict=True):
         assert all(line.whole for line in passed)
         for line, edges in zip(passed, drawn, strict=True):
             for time, edge in zip((line.begin, line.end), edges, strict=True):
@@ -91,7 +102,7 @@ def test_a_line_on_which_the_hand_turns_or_begins_is_not_whole() -> None:
         ([(left + 0.002, y), (right - 0.002, y), (left + 0.002, y)], [True, True]),
     ):
         done = scan(Device(drive=drive()), scene, strokes(stops, 0.06, pause=0.05))
-        (passed,) = printed(done.device, done.path, done.scene)
+        (passed,) = printed(done)
         assert [line.whole for line in passed] == whole
         assert len(evaluate(done).lines) == sum(whole)
 
@@ -101,7 +112,7 @@ def test_turnings_are_where_the_hand_stops_or_turns() -> None:
     y = scene.lines[0]
     path = HandPath([0.0, 0.1, 0.2, 0.3], [0.06, -0.02, 0.0, 0.0], [0.0] * 4, (0.0, y))
     done = scan(Device(drive=drive()), scene, path)
-    assert turnings(done.path, done.device.array.axis) == pytest.approx([0.075, 0.2])
+    assert done.path.turnings(done.device.array.axis) == pytest.approx([0.075, 0.2])
 
 
 # ---- against dense samples -----------------------------------------------------------------------
@@ -130,7 +141,7 @@ def sampled(done: Scan, pin: PinScan, passed: Any, felt: float) -> list[dict[str
         first_climb(x, on, nxt)
         for (on, _), nxt in zip(spans, [*(s[0] for s in spans[1:]), pin.end], strict=True)
     ]
-    stops = [s for s in turnings(done.path, done.device.array.axis) if s > spans[-1][1]]
+    stops = [s for s in done.path.turnings(done.device.array.axis) if s > spans[-1][1]]
     for k, line in enumerate(passed):
         on, off = spans[k]
         i = begins[k]
@@ -178,9 +189,7 @@ def test_numbers_are_those_of_dense_samples(finger: Contact, speed: float) -> No
     done = scan(Device(drive=drive(finger)), scene, across(scene, speed))
     evaluation = evaluate(done)
     assert {line.fate for line in evaluation.lines} == {"shown"}
-    expected = sampled(
-        done, done.pins[0], printed(done.device, done.path, done.scene)[0], evaluation.criteria.felt
-    )
+    expected = sampled(done, done.pins[0], printed(done)[0], evaluation.criteria.felt)
     for line, samples in zip(evaluation.lines, expected, strict=True):
         for name, value in samples.items():
             size = {"line.overshoot": 1e-4, "line.contrast": 1e-4, "line.smear": 1e-6}

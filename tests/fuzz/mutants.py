@@ -3,8 +3,9 @@
 python3 tests/fuzz/mutants.py [COUNT [PART...]]
 
 Each mutant of the core is built beside the sources and runs COUNT drives (50 000) of seed 1, then
-those of tests/hard; with PARTs only those mutants whose name has one of them. A mutant that passes
-them all, or whose text is not in the core exactly once, is an error.
+those of tests/hard; a mutant of the device layer runs the C++ test of its header. With PARTs only
+those mutants whose name has one of them. A mutant that passes them all, or whose text is not in
+the core exactly once, is an error.
 """
 
 from __future__ import annotations
@@ -284,6 +285,138 @@ MUTANTS = (
         "state = at_end(end, push(s, end) > 0);",
         "state = at_end(end, true);",
     ),
+    Mutant(
+        "luminance of the pixel to the left",
+        "device/raster.hpp",
+        "upper[i] * (1 - u) + upper[next] * u",
+        "upper[i] * u + upper[next] * (1 - u)",
+    ),
+    Mutant(
+        "the page ends within its border",
+        "device/raster.hpp",
+        "static constexpr double border = 1e-9;",
+        "static constexpr double border = 0;",
+    ),
+    Mutant(
+        "velocities are integrated from the end of a stretch",
+        "device/hand_path.hpp",
+        "since * (v[i] + 0.5 *",
+        "since * (v[i + 1] + 0.5 *",
+    ),
+    Mutant(
+        "a rest of the hand is no turn",
+        "device/hand_path.hpp",
+        "if (i > 0 && v[i] == 0",
+        "if (i > 0 && v[i] == 1",
+    ),
+    Mutant(
+        "rounding across the axis is a turn",
+        "device/hand_path.hpp",
+        "if (std::abs(each) < across * most) each = 0;",
+        "",
+    ),
+    Mutant(
+        "a sign change is found to half a bracket",
+        "device/sign_change.hpp",
+        "if (!(low < half && half < high)) return high;",
+        "if (!(low + 1e-9 < half && half < high)) return high;",
+    ),
+    Mutant(
+        "lines are where it is bright",
+        "device/printed_lines.hpp",
+        "lightness(spot, t, i) < 0;",
+        "lightness(spot, t, i) > 0;",
+    ),
+    Mutant(
+        "a line on which the hand turns is whole",
+        "device/printed_lines.hpp",
+        "return line.begin < t && t < line.end;",
+        "return t < line.begin && line.end < t;",
+    ),
+    Mutant(
+        "grazed gaps part lines",
+        "device/printed_lines.hpp",
+        "way.between(found.back().end, at[i]) > shortest",
+        "true",
+    ),
+    Mutant(
+        "the highest value is that of a begin",
+        "device/monotone_pieces.hpp",
+        "if (b.value > end.value) end = b;",
+        "",
+    ),
+    Mutant(
+        "a climb is counted from the first value",
+        "device/monotone_pieces.hpp",
+        "if (b.value < low.value) low = b;",
+        "",
+    ),
+    Mutant(
+        "the first instant beyond a band for the last",
+        "device/monotone_pieces.hpp",
+        "if (beyond(a.value)) low = a.time",
+        "if (beyond(a.value) && std::isnan(low)) low = a.time",
+    ),
+    Mutant(
+        "swings of one rise are apart",
+        "device/monotone_pieces.hpp",
+        "if (rising)\n          found.back().high = b;\n        else\n",
+        "",
+    ),
+    Mutant(
+        "an instant without load joins two touches",
+        "device/evaluation.hpp",
+        "if (at_begin && !found.empty()",
+        "if (!found.empty()",
+    ),
+    Mutant(
+        "a heavily damped pin settles in half a period",
+        "device/evaluation.hpp",
+        "if (!(ratio > 1)) return half_period;",
+        "return half_period;",
+    ),
+    Mutant(
+        "unseen lines are merged",
+        "device/pin_evaluation.hpp",
+        "seen ? Outcome::merged : Outcome::unseen",
+        "seen ? Outcome::unseen : Outcome::merged",
+    ),
+    Mutant(
+        "a stroke from zero",
+        "device/pin_evaluation.hpp",
+        "found.stroke = peak.value - pieces_.at(x, first->dip);",
+        "found.stroke = 2 * peak.value;",
+    ),
+    Mutant(
+        "the lag of the hand is counted from the switching",
+        "device/pin_evaluation.hpp",
+        "setting_.way->between(edge.time, edge.response)",
+        "setting_.way->between(edge.command, edge.response)",
+    ),
+    Mutant(
+        "smear from the begin of the scan",
+        "device/pin_evaluation.hpp",
+        "setting_.way->between(found.release, found.settled)",
+        "setting_.way->between(origin_, found.settled)",
+    ),
+    Mutant(
+        "false lines of any height",
+        "device/pin_evaluation.hpp",
+        "if (swing.height() < std::max(usual, least)) continue;",
+        "",
+    ),
+    Mutant(
+        "swings of a magnet are false lines",
+        "device/pin_evaluation.hpp",
+        "        before = heights[pull - pulls_.data()];\n        continue;",
+        "        before = heights[pull - pulls_.data()];",
+    ),
+    Mutant(
+        "a lifted finger feels",
+        "device/pin_evaluation.hpp",
+        "if (!(begin < end)) continue;",
+        "if (!(begin < end)) return skin_motion_in_touch(skin, from, to);",
+    ),
 )
 
 
@@ -301,7 +434,7 @@ def problems(mutants: Sequence[Mutant]) -> list[str]:
 
 
 def judged(mutant: Mutant, count: int, folder: Path) -> str:
-    """Return the detection of the mutant by fuzz, or an empty string."""
+    """Return the detection of the mutant by its test or by fuzz, or an empty string."""
     include = folder / "include"
     shutil.copytree(ROOT / "include", include, dirs_exist_ok=True)
     header = include / "pindrive" / mutant.header
@@ -309,6 +442,14 @@ def judged(mutant: Mutant, count: int, folder: Path) -> str:
     header.write_text(source.replace(mutant.text, mutant.instead), "utf-8")
     compiler = os.environ.get("CXX", "c++")
     flags = ["-std=c++17", "-O1", "-ffp-contract=off", "-pthread", f"-I{include}"]
+    layer, _, name = mutant.header.removesuffix(".hpp").partition("/")
+    if layer == "device":
+        test, program = ROOT / "tests" / "cpp" / f"{name}_test.cpp", folder / "test"
+        flags.append(f"-I{ROOT / 'tests' / 'fuzz'}")
+        subprocess.run([compiler, *flags, str(test), "-o", str(program)], check=True)
+        result = subprocess.run([program], capture_output=True, text=True, timeout=300, check=False)
+        failed = [line for line in result.stdout.splitlines() if line.startswith("FAIL")]
+        return "; ".join(failed) or (f"status {result.returncode}" if result.returncode else "")
     program = ROOT / "tests" / "fuzz" / "fuzz.cpp"
     subprocess.run([compiler, *flags, str(program), "-o", str(folder / "fuzz")], check=True)
     for drives in (100, count):  # few are enough for most

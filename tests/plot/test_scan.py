@@ -20,7 +20,7 @@ from pindrive.cli.app import app
 from pindrive.device import Device, HandPath, PinArray, Scene, scan
 from pindrive.device import lines as lines_of
 from pindrive.evaluation import Evaluation, evaluate
-from pindrive.evaluation.line_crossings import printed
+from pindrive.evaluation.line_crossings import printed_lines
 from pindrive.evaluation.tactile_image import paint
 from pindrive.plot.pin import moment
 from pindrive.plot.scan import plot_reliefs, plot_scan
@@ -129,12 +129,12 @@ def test_the_history_is_that_of_the_pin(evaluated: Evaluation, figure: Figure) -
 def test_the_history_shows_what_was_under_the_spot(evaluated: Evaluation, figure: Figure) -> None:
     chosen = moment(evaluated)
     pin, axes = evaluated.scan.pins[chosen.pin], panel(figure, "seen")
+    done = evaluated.scan
+    lines = printed_lines(done.device, done.path, done.scene)[chosen.pin]
     under = [
-        (1e3 * (line.begin - chosen.begin), 1e3 * (line.end - chosen.begin))
-        for line in printed(evaluated.scan.device, evaluated.scan.path, evaluated.scan.scene)[
-            chosen.pin
-        ]
-        if line.end > chosen.begin and line.begin < chosen.end
+        (1e3 * (begin - chosen.begin), 1e3 * (end - chosen.begin))
+        for begin, end in zip(lines.begin, lines.end, strict=True)
+        if end > chosen.begin and begin < chosen.end
     ]
     for name in ("seen", "pull", "x", "force"):
         assert spans(panel(figure, name), "printed") == [pytest.approx(span) for span in under]

@@ -14,9 +14,8 @@ import pytest
 from PIL import Image
 
 from command import run
-from pindrive import Contact, Drive, Profile, Release, Status, simulate
+from pindrive import Contact, Drive, Status
 from pindrive.device import Device, Electromagnet, PinArray, Scene, scan, strokes
-from pindrive.device.trajectory import Trajectory
 from pindrive.evaluation.perception import evaluate
 from pindrive.evaluation.resolution import largest_speeds
 from pindrive.files.keys import template
@@ -158,16 +157,6 @@ def traced(work: Callable[[], Found]) -> tuple[Found, int]:
         return work(), tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()
-
-
-def test_samples_for_turning_points_are_not_kept() -> None:
-    drive = device(stiffness=1e9).drive
-    ramp = Profile((0.0, 0.5, 1.0), (0.05, 0.06, 0.05))
-    motion = simulate(drive, Release(ramp), duration=1.0)
-    sample_times = 30.0 * np.sqrt(1e9 / 0.01) / (2.0 * np.pi)
-    knots, peak = traced(lambda: Trajectory(motion).knots)
-    assert sample_times > 1.5e6
-    assert peak < 8 * sample_times + 64 * len(knots)  # not even one array of them
 
 
 def test_samples_of_the_page_are_not_kept() -> None:

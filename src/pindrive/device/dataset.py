@@ -16,7 +16,6 @@ from pindrive.device.geometry import doubts
 from pindrive.device.hand import HandPath
 from pindrive.device.page import AT_ONCE
 from pindrive.device.scanning import PinScan, Scan
-from pindrive.device.trajectory import peak_displacement
 from pindrive.lazy import xr
 from pindrive.motion.dataset import columns
 from pindrive.motion.profile import Profile
@@ -158,7 +157,7 @@ def numbers(pin: PinScan) -> dict[str, float]:
         "pin.slips": float(np.count_nonzero(on)),
         "pin.captures": float(sum(e.kind == "stick" for e in at_plate)),
         "pin.carried": used.plate.time_stuck,
-        "pin.peak_displacement": peak_displacement(motion),
+        "pin.peak_displacement": pin.peak_displacement,
         "pin.peak_skin_force": used.finger.peak_force,
         "pin.peak_stretch": used.peak_stretch if not motion.drive.finger.rigid else nan,
     }

@@ -10,6 +10,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pindrive import _core
 from pindrive.motion.profile import Profile
 from pindrive.quantities import budgets
 from pindrive.quantities.refusal import refusal
@@ -91,32 +92,40 @@ class HandPath:
         """The largest speed, m/s."""
         return float(np.hypot(self.vx, self.vy).max())
 
+    @property
+    def rows(self) -> tuple[NDArray[np.float64], ...]:
+        """Columns of the path: times, velocity (x, y) and place (x, y), SI, each of shape (n,)."""
+        return self.times, self.vx, self.vy, self.x, self.y
+
     def position(self, t: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Place (x, y) on the page at times t (s, any shape) from begin to end, m."""
-        times = np.asarray(t, np.float64)
-        i, since, part = self._locate(times)
-        places = []
-        for place, v in ((self.x, self.vx), (self.y, self.vy)):
-            slope = (v[i + 1] - v[i]) * part
-            places.append(place[i] + since * (v[i] + 0.5 * slope))
-        return places[0], places[1]
+        times = self._within(t)
+        x, y = _core.hand_position(self.rows, times.ravel())
+        return x.reshape(times.shape), y.reshape(times.shape)
 
     def velocity(self, t: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Velocity (x, y) on the page at times t (s, any shape) from begin to end, m/s."""
-        i, _, part = self._locate(np.asarray(t, np.float64))
-        vx, vy = ((v[i] + (v[i + 1] - v[i]) * part) for v in (self.vx, self.vy))
-        return vx, vy
+        times = self._within(t)
+        x, y = _core.hand_velocity(self.rows, times.ravel())
+        return x.reshape(times.shape), y.reshape(times.shape)
 
-    def _locate(
-        self, t: NDArray[np.float64]
-    ) -> tuple[NDArray[np.intp], NDArray[np.float64], NDArray[np.float64]]:
-        """Return the stretch of each time, the time since its begin, and the elapsed fraction."""
-        if not ((t >= self.times[0]) & (t <= self.times[-1])).all():
+    def way(self, t: ArrayLike) -> NDArray[np.float64]:
+        """Length of the way from the begin to times t (s, any shape), m."""
+        times = self._within(t)
+        return _core.way(self.rows, times.ravel()).reshape(times.shape)
+
+    def turnings(self, axis: float = default("axis")) -> NDArray[np.float64]:
+        """Stops and turns of the hand along an axis (rad) of the page, s, in order."""
+        return _core.turnings(self.rows, axis)
+
+    def _within(self, t: ArrayLike) -> NDArray[np.float64]:
+        """Times that are within the path, s."""
+        times = np.asarray(t, np.float64, order="C")
+        if not ((times >= self.begin) & (times <= self.end)).all():
             required = f"from {self.begin!r} s to {self.end!r} s"
-            raise ValueError(refusal("t", required, f"{float(t.min())!r} to {float(t.max())!r} s"))
-        i = np.clip(np.searchsorted(self.times, t, "right") - 1, 0, len(self.times) - 2)
-        since = t - self.times[i]
-        return i, since, since / (self.times[i + 1] - self.times[i])
+            given = f"{float(times.min())!r} to {float(times.max())!r} s"
+            raise ValueError(refusal("t", required, given))
+        return times
 
     def plate_velocity(self, axis: float = default("axis")) -> Profile:
         """The velocity at which the plate passes under the mouse, over the time since `begin`.

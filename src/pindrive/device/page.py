@@ -25,6 +25,7 @@ from unicodedata import bidirectional, category, name, normalize
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pindrive import _core
 from pindrive.lazy import Image, ImageDraw, ImageFont, ImageOps, features, ft2font, matplotlib
 from pindrive.quantities import budgets
 from pindrive.quantities.refusal import check_whole, quoted, refusal
@@ -36,8 +37,6 @@ LUMA: Final = (0.299, 0.587, 0.114)
 STRIP: Final = 1 << 20
 """Pixels of a picture that are turned into luminance together."""
 INCH: Final = 0.0254
-NEAR: Final = 1e-9
-"""Off the page by no more than that (m) is on its border."""
 AT_ONCE: Final = 1 << 18
 """Looks at the page that are taken together: more take memory and save no time."""
 FINER: Final = 4.0
@@ -70,7 +69,7 @@ class Scene:
 
     def __post_init__(self) -> None:
         """Validate, and keep an array that nobody writes to."""
-        values = np.asarray(self.luminance, np.float64)
+        values = np.asarray(self.luminance, np.float64, order="C")
         if values.flags.writeable or values.base is not None:
             values = values.copy()  # the caller may write to it
         if values.ndim != 2 or values.size == 0:
@@ -90,12 +89,15 @@ class Scene:
         (rows, columns), (x, y) = self.luminance.shape, self.origin
         return x, x + columns * self.pixel, y, y + rows * self.pixel
 
+    @property
+    def raster(self) -> tuple[NDArray[np.float64], float, float, float]:
+        """Luminance, size of a pixel, left and top of the page, m, as the core takes them."""
+        return self.luminance, self.pixel, *self.origin
+
     def contains(self, x: ArrayLike, y: ArrayLike) -> NDArray[np.bool_]:
         """Return True for places (m, any shape) on the page, including its border and rounding."""
-        left, right, top, bottom = self.extent
-        left, right, top, bottom = left - NEAR, right + NEAR, top - NEAR, bottom + NEAR
-        px, py = np.asarray(x, np.float64), np.asarray(y, np.float64)
-        return (left <= px) & (px <= right) & (top <= py) & (py <= bottom)
+        px, py = _places(x, y)
+        return _core.on_page(self.raster, px.ravel(), py.ravel()).reshape(px.shape).view(np.bool_)
 
     def at(self, x: ArrayLike, y: ArrayLike) -> NDArray[np.float64]:
         """Luminance at places (m, any shape), linear between the middles of pixels.
@@ -103,17 +105,8 @@ class Scene:
         In the outer half of the outermost pixels it is theirs; beyond the page it is that of blank
         paper, 1.
         """
-        px, py = np.broadcast_arrays(np.asarray(x, np.float64), np.asarray(y, np.float64))
-        inside = self.contains(px, py)
-        left, right, top, bottom = self.extent
-        px, py = np.clip(px, left, right), np.clip(py, top, bottom)
-        (rows, columns), (x0, y0) = self.luminance.shape, self.origin
-        i, u = _between((px - x0) / self.pixel, columns)
-        j, w = _between((py - y0) / self.pixel, rows)
-        i1, j1 = np.minimum(i + 1, columns - 1), np.minimum(j + 1, rows - 1)
-        above = self.luminance[j, i] * (1.0 - u) + self.luminance[j, i1] * u
-        below = self.luminance[j1, i] * (1.0 - u) + self.luminance[j1, i1] * u
-        return np.where(inside, above * (1.0 - w) + below * w, 1.0)
+        px, py = _places(x, y)
+        return _core.luminance(self.raster, px.ravel(), py.ravel()).reshape(px.shape)
 
     def dark(self, threshold: float | str = default("threshold")) -> NDArray[np.bool_]:
         """Return True for pixels with information: darker than the threshold, in [0, 1]."""
@@ -233,13 +226,10 @@ def in_words(text: str) -> str:
     return f"text {quoted(' / '.join(text.splitlines()))}"
 
 
-def _between(
-    place: NDArray[np.float64], count: int
-) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
-    """The pixel before a place (in pixels) and how far on to the next one it is, 0 to 1."""
-    middle = np.clip(place - 0.5, 0.0, count - 1.0)
-    i = np.minimum(middle.astype(np.intp), max(count - 2, 0))
-    return i, middle - i
+def _places(x: ArrayLike, y: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Coordinates of places as arrays of one shape."""
+    px, py = np.broadcast_arrays(np.asarray(x, np.float64), np.asarray(y, np.float64))
+    return np.ascontiguousarray(px), np.ascontiguousarray(py)
 
 
 def _covered(

@@ -30,7 +30,7 @@ from pindrive.device.page_description import Page, recorded
 from pindrive.device.pin_array import Neighbours
 from pindrive.device.reading import Reading
 from pindrive.device.touch import finger_load, held_stretch
-from pindrive.device.trajectory import Way, check_vibration, peak_displacement
+from pindrive.device.trajectory import check_vibration
 from pindrive.lazy import mpl_figure, xr
 from pindrive.motion.drive import Drive
 from pindrive.motion.motion import Motion
@@ -178,6 +178,11 @@ class PinScan:
         return float(self.current.warming(np.append(times, self.end)).max())
 
     @property
+    def peak_displacement(self) -> float:
+        """Largest deflection of the pin in either direction, m."""
+        return float(np.abs(self.motion.extrema("position").value).max())
+
+    @property
     def state(self) -> PinState:
         """Return the state at the end."""
         last, lasts = self.motion.segments[-1], self.end - self.begin
@@ -295,7 +300,7 @@ class Scan(lazy.NotebookHtml):
         if travel is None:
             return None
         return min(
-            (SlotRoom(pin.number, travel - peak_displacement(pin.motion)) for pin in self.pins),
+            (SlotRoom(pin.number, travel - pin.peak_displacement) for pin in self.pins),
             key=lambda room: room.size,
         )
 
@@ -523,7 +528,7 @@ def check_work(device: Device, scene: Scene, path: HandPath) -> None:
     of = f"{pins} pins, {len(path.times)} rows of hand speed for each"
     budgets.INPUT_ROWS.check(float(pins * len(path.times)), of)
     check_vibration(device.drive, lasts, pins)
-    length = float(Way(path)(path.end)[0])
+    length = float(path.way(path.end))
     of = f"{pins} pins, {length:g} m of way, pixels of {1e3 * scene.pixel:g} mm"
     budgets.SAMPLES_OF_PAGE.check(pins * (len(path.times) + FINER * length / scene.pixel), of)
 

@@ -35,9 +35,9 @@ from pindrive.device.hand import HandPath
 from pindrive.device.page import Scene
 from pindrive.device.pin_array import PinArray
 from pindrive.device.scanning import PinState, Progress, scan
-from pindrive.device.trajectory import Way, brackets, check_vibration
-from pindrive.evaluation.line_crossings import Line, Printed
-from pindrive.evaluation.perception import EvaluatedPin
+from pindrive.device.trajectory import brackets, check_vibration
+from pindrive.evaluation.line_crossings import FATES, PrintedLines
+from pindrive.evaluation.perception import Columns, evaluated
 from pindrive.lazy import mpl_figure, xr
 from pindrive.motion.drive import Drive
 from pindrive.quantities import budgets
@@ -368,19 +368,13 @@ def two_lines(
         speed: m/s.
         criteria: Criteria of a felt line.
     """
-    drive = device.drive
-    after = _clear(device) + 4.0 * pi / drive.natural_frequency
-    worst = Trial(speed, inf, inf, ())
-    for pin in _pass(device, (0.0, pitch), pitch, width, speed, after, criteria):
-        first, second = pin.lines()
-        back = 0.0 if "merged" in (first.fate, second.fate) else _back(device, first)
-        worst = Trial(
-            speed,
-            min(worst.back, back),
-            min(worst.skin, _skin(first), _skin(second)),
-            (*worst.until, pin.pulls[1].dip if len(pin.pulls) > 1 else 0.0),
-        )
-    return worst
+    after = _clear(device) + 4.0 * pi / device.drive.natural_frequency
+    table, dips = _pass(device, (0.0, pitch), pitch, width, speed, after, criteria)
+    merged = (table["fate"] == FATES.index("merged")).any(axis=1)
+    back = np.where(merged, 0.0, _back(device, table["height"][:, 0], table["returned"][:, 0]))
+    skin = np.nan_to_num(np.fmax(table["skin_on"], table["skin_off"]))
+    until = tuple(float(each[1]) if len(each) > 1 else 0.0 for each in dips)
+    return Trial(speed, float(back.min()), float(skin.min()), until)
 
 
 def settles(device: Device, pitch: float, width: float, trial: Trial, criteria: Criteria) -> bool:
@@ -394,9 +388,8 @@ def settles(device: Device, pitch: float, width: float, trial: Trial, criteria: 
         criteria: Criteria of the trial.
     """
     after = _clear(device) + _followed(device.drive)
-    alone = _pass(device, (0.0,), pitch, width, trial.speed, after, criteria)
-    times = [line.settled for pin in alone for line in pin.lines()]
-    return all(time <= until for time, until in zip(times, trial.until, strict=True))
+    alone, _ = _pass(device, (0.0,), pitch, width, trial.speed, after, criteria)
+    return bool((alone["settled"][:, 0] <= trial.until).all())
 
 
 def _pass(
@@ -407,8 +400,12 @@ def _pass(
     speed: float,
     after: float,
     criteria: Criteria,
-) -> list[EvaluatedPin]:
-    """Go evenly over lines that begin at these places (m), once for each phase, and `after` (s)."""
+) -> tuple[Columns, list[NDArray[np.float64]]]:
+    """Go evenly over lines that begin at these places (m), once for each phase, and `after` (s).
+
+    Returns:
+        Columns of the lines of shape (phases, lines); the times before each motion, as `evaluated`.
+    """
     interval = 1.0 / device.control.sample_rate
     begin, end = -speed * (MOMENT + interval), begins[-1] + width + speed * after
     pixel = min(width, pitch - width) / FINE
@@ -422,13 +419,15 @@ def _pass(
     done = scan(
         replace(device, array=phases), page, path, start=[steady(device)] * PHASES, threads=1
     )
-    stops, way = np.zeros(0), Way(path)
-    evaluated = []
+    pins = []
     for pin, shift in zip(done.pins, shifts, strict=True):
-        times = [(x - begin - shift) / speed for x in begins]
-        passed = [Printed(time, time + width / speed, True) for time in times]
-        evaluated.append(EvaluatedPin(done, pin, passed, stops, way, criteria))
-    return evaluated
+        times = (np.array(begins) - begin - shift) / speed
+        whole = np.ones(len(times), np.uint8)
+        pins.append((pin, PrintedLines(times, times + width / speed, whole)))
+    table, dips = evaluated(done, pins, criteria)
+    columns = {name: column for name, column in table.items() if not name.startswith("false_line")}
+    shape = PHASES, len(begins)
+    return {name: column.reshape(shape) for name, column in columns.items()}, dips
 
 
 def _clear(device: Device) -> float:
@@ -456,18 +455,13 @@ def _page(begins: Sequence[float], width: float, left: float, right: float, pixe
     return Scene(row[np.newaxis], pixel, (first * pixel, 0.0), title="lines")
 
 
-def _back(device: Device, line: Line) -> float:
+def _back(
+    device: Device, height: NDArray[np.float64], returned: NDArray[np.float64]
+) -> NDArray[np.float64]:
     """The part of its way back to its place of rest that the pin comes after a line."""
-    if isnan(line.returned):
-        return 0.0
-    high = line.height - device.drag(device.array.axis)
-    return line.returned / high if high > 0.0 else 0.0
-
-
-def _skin(line: Line) -> float:
-    """Return the displacement of the skin by a line, forward or back, m."""
-    moves = [edge.skin for edge in (line.begin, line.end) if not isnan(edge.skin)]
-    return max(moves, default=0.0)
+    high = height - device.drag(device.array.axis)
+    part = np.divide(returned, high, out=np.zeros_like(high), where=high > 0.0)
+    return np.nan_to_num(part)
 
 
 def criterion(part: float, direction: float) -> str:

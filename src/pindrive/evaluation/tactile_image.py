@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from pindrive.device.scanning import Scan
 from pindrive.device.touch import spans
-from pindrive.device.trajectory import Way
 from pindrive.quantities import budgets
 
 CELLS: Final = 1400
@@ -83,8 +82,8 @@ def _reading(scan: Scan, cell: float) -> tuple[NDArray[np.float64], float]:
     It reads the way that it goes further while it is slower on the whole: where it goes back and
     forth, the direction in which it spends more time.
     """
-    path, way = scan.path, Way(scan.path)
-    lengths = np.diff(way(path.times))
+    path = scan.path
+    lengths = np.diff(path.way(path.times))
     counts = np.ceil(lengths * FINER / cell).astype(int)
     t = np.concatenate(
         [

@@ -76,7 +76,7 @@ class Motion(lazy.NotebookHtml):
         self.drive = drive
         self.release = release
         self.core_numbers = numbers
-        self._core = core
+        self.core = core
         self.settling_band = settling_band
         self.duration: float = core.duration(settling_band)
 
@@ -117,7 +117,7 @@ class Motion(lazy.NotebookHtml):
         Raises:
             ValueError: A time is negative, NaN, or later than the motion is known.
         """
-        return self._evaluate(self._core.position, t, side)
+        return self._evaluate(self.core.position, t, side)
 
     @overload
     def velocity(self, t: float, side: Side = ...) -> float: ...
@@ -125,7 +125,7 @@ class Motion(lazy.NotebookHtml):
     def velocity(self, t: ArrayLike, side: Side = ...) -> NDArray[np.float64]: ...
     def velocity(self, t: ArrayLike, side: Side = "right") -> float | NDArray[np.float64]:
         """Velocity x' of the pin in the housing, m/s; arguments as for `position`."""
-        return self._evaluate(self._core.velocity, t, side)
+        return self._evaluate(self.core.velocity, t, side)
 
     @overload
     def acceleration(self, t: float, side: Side = ...) -> float: ...
@@ -133,7 +133,7 @@ class Motion(lazy.NotebookHtml):
     def acceleration(self, t: ArrayLike, side: Side = ...) -> NDArray[np.float64]: ...
     def acceleration(self, t: ArrayLike, side: Side = "right") -> float | NDArray[np.float64]:
         """Acceleration x'' of the pin in the housing, m/s²; it jumps where friction does."""
-        return self._evaluate(self._core.acceleration, t, side)
+        return self._evaluate(self.core.acceleration, t, side)
 
     @overload
     def force(self, contact: ContactName, t: float, side: Side = ...) -> float: ...
@@ -147,7 +147,7 @@ class Motion(lazy.NotebookHtml):
         """Force of the plate, the finger or the end stops on the pin, N; `t`, `side` as above."""
         if contact not in ("plate", "finger", "stop"):
             raise ValueError(refusal("contact", '"plate", "finger" or "stop"', repr(contact)))
-        of_contact = getattr(self._core, f"{contact}_force")
+        of_contact = getattr(self.core, f"{contact}_force")
         return self._evaluate(of_contact, t, side)
 
     @overload
@@ -159,7 +159,7 @@ class Motion(lazy.NotebookHtml):
 
         The force on the skin is `-force("finger", t)`.
         """
-        return self._evaluate(self._core.stretch, t, side)
+        return self._evaluate(self.core.stretch, t, side)
 
     @overload
     def stretch_rate(self, t: float, side: Side = ...) -> float: ...
@@ -167,7 +167,7 @@ class Motion(lazy.NotebookHtml):
     def stretch_rate(self, t: ArrayLike, side: Side = ...) -> NDArray[np.float64]: ...
     def stretch_rate(self, t: ArrayLike, side: Side = "right") -> float | NDArray[np.float64]:
         """Return the stretch rate of the skin of a compliant finger, m/s."""
-        return self._evaluate(self._core.stretch_rate, t, side)
+        return self._evaluate(self.core.stretch_rate, t, side)
 
     def columns(self, t: ArrayLike) -> dict[str, NDArray[np.float64]]:
         """Return all quantities at the times t (s, shape (n,)), right-hand limits, by name.
@@ -175,7 +175,7 @@ class Motion(lazy.NotebookHtml):
         The forces are "plate_force" and "finger_force", with end stops "stop_force"; of a rigid
         finger there is no stretch.
         """
-        return self._core.columns(np.ascontiguousarray(self._known(t, "t")), True)
+        return self.core.columns(np.ascontiguousarray(self._known(t, "t")), True)
 
     def plate_velocity(self, t: ArrayLike) -> NDArray[np.float64]:
         """The plate's velocity v_p(t) in the housing, m/s, in the shape of t."""
@@ -198,7 +198,7 @@ class Motion(lazy.NotebookHtml):
     def _known(self, t: ArrayLike, name: str) -> NDArray[np.float64]:
         """Times at which the motion is known."""
         times = _times(t)
-        known = self._core.known_until
+        known = self.core.known_until
         good = (times >= 0.0) & (times <= known) & (times < inf)
         if not good.all():
             required = f"from 0 s to {known!r} s" if known < inf else "finite and at least 0 s"
@@ -209,7 +209,7 @@ class Motion(lazy.NotebookHtml):
 
     @cached_property
     def _table(self) -> Table:
-        return self._core.segments()
+        return self.core.segments()
 
     @cached_property
     def events(self) -> tuple[Event, ...]:
@@ -235,7 +235,7 @@ class Motion(lazy.NotebookHtml):
         )
         if not begin <= end:
             raise ValueError(refusal("begin", f"at most end ({end!r} s)", f"{begin!r} s"))
-        times, ended = self._core.events(begin, end, budgets.MOMENTS.most + 1)
+        times, ended = self.core.events(begin, end, budgets.MOMENTS.most + 1)
         budgets.MOMENTS.check(len(times), f"events from {begin:g} s to {end:g} s")
         each = [self._table[f"{name}_event"] for name in ("plate", "finger", "stop")]
         kinds = np.stack(each, axis=-1)[ended]
@@ -260,7 +260,7 @@ class Motion(lazy.NotebookHtml):
             ValueError: Another quantity; more extrema than the budget.
         """
         index = _quantity(which)
-        found = Extrema(*self._core.extrema(index, self.duration, budgets.MOMENTS.most + 1))
+        found = Extrema(*self.core.extrema(index, self.duration, budgets.MOMENTS.most + 1))
         budgets.MOMENTS.check(len(found.time), f"extrema of the {which} in {self.duration:g} s")
         return found
 
@@ -285,7 +285,7 @@ class Motion(lazy.NotebookHtml):
         if not -inf < level < inf:
             raise ValueError(refusal("level", "finite", repr(level)))
         found = Crossings(
-            *self._core.crossings(index, float(level), self.duration, budgets.MOMENTS.most + 1)
+            *self.core.crossings(index, float(level), self.duration, budgets.MOMENTS.most + 1)
         )
         budgets.MOMENTS.check(len(found.time), f"crossings by the {which} in {self.duration:g} s")
         return found
@@ -293,7 +293,7 @@ class Motion(lazy.NotebookHtml):
     @property
     def segment_count(self) -> int:
         """Number of segments; does not create them."""
-        return self._core.segment_count
+        return self.core.segment_count
 
     @cached_property
     def segments(self) -> tuple[Segment, ...]:
@@ -306,19 +306,19 @@ class Motion(lazy.NotebookHtml):
 
         NaN of one in closed form, whose swing says so.
         """
-        return self._core.acceleration_bounds()
+        return self.core.acceleration_bounds()
 
     @property
     def status(self) -> Status:
         """Status of the simulation: complete, or the reason for its end (`Status.explanation`)."""
-        return Status(self._core.status)
+        return Status(self.core.status)
 
     # ---- the numbers -----------------------------------------------------------------------------
 
     @cached_property
     def _numbers(self) -> dict[str, float]:
         """Numbers of the transient and the ending, by their names in the table of quantities."""
-        numbers = self._core.transient(self.duration, self.settling_band)
+        numbers = self.core.transient(self.duration, self.settling_band)
         counts = ("transient.plate.reversals", "transient.finger.reversals")
         return {k: int(n) if k in counts else n for k, n in numbers.items()}
 
@@ -336,7 +336,7 @@ class Motion(lazy.NotebookHtml):
         numbers = part(self._numbers, "ending.")
         plate, finger = (Afterwards(**part(numbers, f"{name}.")) for name in ("plate", "finger"))
         own = {name: number for name, number in numbers.items() if "." not in name}
-        return Ending(End(self._core.end), **own, plate=plate, finger=finger)
+        return Ending(End(self.core.end), **own, plate=plate, finger=finger)
 
     def settling_time(self, band: float = _core.settling_band) -> float:
         """The settling time (s) for another band, a part of |x(0) - x_end|; NaN if none.
@@ -344,16 +344,16 @@ class Motion(lazy.NotebookHtml):
         The band is above 0 and at most 1.
         """
         band = check("settling_band", band, label="band")
-        return float(self._core.transient(self.duration, band)["transient.settling_time"])
+        return float(self.core.transient(self.duration, band)["transient.settling_time"])
 
     @cached_property
     def energy(self) -> Ledger:
         """The energy ledger over [0, duration]."""
-        return Ledger(**self._core.ledger(self.duration))
+        return Ledger(**self.core.ledger(self.duration))
 
     def certificate(self) -> Certificate:
         """The worst residual of each law over [0, duration], computed without the solver."""
-        return Certificate(**self._core.certificate(self.duration))
+        return Certificate(**self.core.certificate(self.duration))
 
     def plot(self) -> mpl_figure.Figure:
         """The motion over time and in the phase plane, as a figure that a notebook shows.

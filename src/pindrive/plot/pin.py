@@ -10,8 +10,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from pindrive.device.touch import spans
-from pindrive.device.trajectory import Trajectory
-from pindrive.evaluation.line_crossings import printed
+from pindrive.evaluation.line_crossings import printed_lines
 from pindrive.plot.style import (
     GREY,
     LIFTED,
@@ -143,7 +142,9 @@ def draw_history(
 def _times(pin: PinScan, chosen: Moment) -> NDArray[np.float64]:
     """Close together, with every event and turning point, and just before each."""
     even = np.linspace(chosen.begin, chosen.end, 3000)
-    knots = pin.begin + Trajectory(pin.motion).knots
+    motion = pin.motion
+    events = [event.time for event in motion.events_between(0.0, motion.duration)]
+    knots = pin.begin + np.union1d(motion.extrema("position").time, events)
     knots = knots[(knots > chosen.begin) & (knots < chosen.end)]
     return np.union1d(even, np.concatenate([knots, np.nextafter(knots, -np.inf)]))
 
@@ -151,10 +152,11 @@ def _times(pin: PinScan, chosen: Moment) -> NDArray[np.float64]:
 def _draw_bands(evaluation: Evaluation, chosen: Moment, axes: Axes) -> None:
     """Draw the times at which a printed line is under the pin's spot."""
     scan = evaluation.scan
+    lines = printed_lines(scan.device, scan.path, scan.scene)[chosen.pin]
     spans = [
-        (MS * (line.begin - chosen.begin), MS * (line.end - line.begin))
-        for line in printed(scan.device, scan.path, scan.scene)[chosen.pin]
-        if line.end > chosen.begin and line.begin < chosen.end
+        (MS * (begin - chosen.begin), MS * (end - begin))
+        for begin, end in zip(lines.begin.tolist(), lines.end.tolist(), strict=True)
+        if end > chosen.begin and begin < chosen.end
     ]
     shade(axes, spans, "printed", **PRINTED, zorder=0)
 
@@ -187,7 +189,7 @@ def _draw_motion(
     axes.axhline(0.0, color="0.8", lw=0.5, zorder=0.2, gid="zero")
     carried = [
         (MS * (pin.begin + begin - chosen.begin), MS * (end - begin))
-        for begin, end in Trajectory(pin.motion).held()
+        for begin, end in _held(pin)
         if pin.begin + end > chosen.begin and pin.begin + begin < chosen.end
     ]
     shade(axes, carried, "carried", color=PALETTE["carried"], alpha=0.6, zorder=0.1)
@@ -203,6 +205,16 @@ def _draw_motion(
     axes.margins(y=0.12)
     axes.set_ylabel("deflection $x$ (mm)")
     return signs
+
+
+def _held(pin: PinScan) -> list[tuple[float, float]]:
+    """Times of stick on the plate, s since the begin of the scan."""
+    held: list[tuple[float, float]] = []
+    for segment in pin.motion.segments:
+        if segment.plate == 0:
+            begin = held.pop()[0] if held and held[-1][1] == segment.begin else segment.begin
+            held.append((begin, min(segment.end, pin.motion.duration)))
+    return held
 
 
 def _draw_force(

@@ -12,7 +12,6 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from pindrive.device.dataset import gap_words
-from pindrive.evaluation.line_crossings import turnings
 from pindrive.evaluation.tactile_image import Painting, paint, view
 from pindrive.plot.pin import Moment, draw_history, moment
 from pindrive.plot.style import MM, PALETTE, SMALL, STYLE, Figure, new_figure, plain
@@ -242,7 +241,7 @@ def _draw_way(scan: Scan, axes: Axes) -> None:
 def _strokes(scan: Scan) -> Iterator[tuple[NDArray[np.float64], bool]]:
     """Times along each stroke of the hand, and whether it goes back; pauses are left out."""
     path = scan.path
-    cuts = np.unique([path.begin, *turnings(path, scan.device.array.axis).tolist(), path.end])
+    cuts = np.unique([path.begin, *path.turnings(scan.device.array.axis).tolist(), path.end])
     plate = path.plate_velocity(scan.device.array.axis)
     for begin, end in zip(cuts[:-1].tolist(), cuts[1:].tolist(), strict=True):
         t = np.linspace(begin, end, 200)

@@ -1,0 +1,77 @@
+// Path of a hand: place and velocity between rows, length of the way, stops and turns along an axis.
+#include "pindrive/device/hand_path.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include "check.hpp"
+
+namespace device = pindrive::device;
+using check::expect;
+
+namespace {
+
+/// Rows of a path from rest, with the places that the velocity leads to.
+struct Rows {
+  std::vector<double> times, vx, vy, x{0}, y{0};
+
+  Rows(std::vector<double> t, std::vector<double> u, std::vector<double> w)
+      : times(std::move(t)), vx(std::move(u)), vy(std::move(w)) {
+    for (std::size_t i = 1; i < times.size(); ++i) {
+      const double half = 0.5 * (times[i] - times[i - 1]);
+      x.push_back(x.back() + half * (vx[i] + vx[i - 1]));
+      y.push_back(y.back() + half * (vy[i] + vy[i - 1]));
+    }
+  }
+  device::HandPath path() const {
+    return {times.data(), vx.data(), vy.data(), x.data(), y.data(), times.size()};
+  }
+};
+
+const Rows curved({0, 0.1, 0.3, 0.4, 0.6}, {0, 0.2, -0.1, -0.1, 0}, {0.1, 0.05, 0.1, -0.2, 0});
+
+void places_are_the_integral_of_velocities() {
+  const device::HandPath path = curved.path();
+  constexpr int count = 60000;
+  double x = 0, y = 0, length = 0, worst = 0;
+  const device::Way way(path);
+  for (int i = 0; i < count; ++i) {
+    const double lasts = path.end() / count, t = (i + 0.5) * lasts;
+    const device::Vector v = path.velocity(t);
+    x += v.x * lasts;
+    y += v.y * lasts;
+    length += std::hypot(v.x, v.y) * lasts;
+    const device::Place at = path.position((i + 1) * lasts);
+    worst = std::max({worst, std::abs(at.x - x), std::abs(at.y - y),
+                      std::abs(way((i + 1) * lasts) - length) * 0.01});
+  }
+  expect(worst < 1e-8, "places and lengths are integrals");
+  expect(path.position(path.end()).x == path.x[path.count - 1], "the end is the last place");
+  expect(way.between(0.2, 0.5) == -way.between(0.5, 0.2), "backwards the length is negative");
+  expect(std::isnan(way.between(0.1, std::nan(""))), "NaN for a NaN");
+}
+
+void a_straight_way_is_exact() {
+  const Rows straight({0, 0.5, 1}, {0, 0.06, 0}, {0, 0.08, 0});
+  const device::Way way(straight.path());
+  expect(std::abs(way(1) - 0.05) < 1e-17 && std::abs(way(0.5) - 0.025) < 1e-17, "of length 50 mm");
+}
+
+void stops_and_turns() {
+  const Rows rows({0, 0.1, 0.2, 0.3, 0.4}, {0.06, -0.02, 0, 0, 0.1}, {0, 0, 0, 0, 0});
+  const std::vector<double> found = device::turnings(rows.path(), device::Axis(0));
+  expect(found.size() == 3 && std::abs(found[0] - 0.075) < 1e-15, "a turn within a stretch");
+  expect(found[1] == 0.2 && found[2] == 0.3, "the begin and the end of a rest");
+  const Rows across({0, 0.1, 0.2}, {1e-12, -1e-12, 1e-12}, {0.1, 0.1, 0.1});
+  expect(device::turnings(across.path(), device::Axis(1.5707963267948966)).empty(),
+         "rounding of a hand across the axis is no turn");
+}
+
+}  // namespace
+
+int main() {
+  places_are_the_integral_of_velocities();
+  a_straight_way_is_exact();
+  stops_and_turns();
+  return check::status();
+}

@@ -1,0 +1,638 @@
+"""Evaluation of scans in Python: the reference of include/pindrive/device, which replaced it.
+
+Printed lines, trajectories between turning points, and each pin's lines and false lines, by NumPy
+over the interface of `Motion`: nothing is shared with the evaluation in C++ but the motions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import cos, nan, pi, sin
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pindrive.device.device import Criteria, Device
+from pindrive.device.hand import HandPath
+from pindrive.device.page import Scene
+from pindrive.device.scanning import PinScan, Scan
+from pindrive.device.touch import spans
+from pindrive.evaluation.line_crossings import CUES, Cue, Edge, FalseLine, Fate, Line
+from pindrive.motion.motion import Motion
+from pindrive.motion.profile import Profile
+from pindrive.quantities.status import Side
+
+settling_band: Final = 0.05
+AT_ONCE: Final = 1 << 18
+FINER: Final = 4.0
+GRAZED: Final = 0.5
+PIECES: Final = 64
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
+
+
+@dataclass(frozen=True, slots=True)
+class Printed:
+    """A line printed across a pin's way, while its spot was on it."""
+
+    begin: float
+    """Time at which the spot entered the line, s."""
+    end: float
+    """Time at which the spot left the line, s."""
+    whole: bool
+    """True for a whole crossing: no begin, end or turn of the path on the line."""
+
+
+def evaluated(scan: Scan, limits: Criteria) -> tuple[list[Line], list[FalseLine]]:
+    """The lines and the false lines of all pins."""
+    stops, way = turnings(scan.path, scan.device.array.axis), Way(scan.path)
+    lines: list[Line] = []
+    false_lines: list[FalseLine] = []
+    lines_passed = printed(scan.device, scan.path, scan.scene)
+    for pin, passed in zip(scan.pins, lines_passed, strict=True):
+        one = EvaluatedPin(scan, pin, passed, stops, way, limits)
+        lines += one.lines()
+        false_lines += one.false_lines()
+    return lines, false_lines
+
+
+class Signal:
+    """A quantity of a pin over time, counted forward: monotone between the knots of its course.
+
+    Args:
+        of: A method of a `Motion`: its `position` or its `stretch`.
+        sign: 1, or -1 where the plate goes backwards.
+    """
+
+    def __init__(self, of: Callable[..., NDArray[np.float64]], sign: float) -> None:
+        self.of, self.sign = of, sign
+
+    def __call__(self, t: ArrayLike, side: Side = "right") -> NDArray[np.float64]:
+        """It at times t (s, any shape); `side` is the limit taken where it jumps."""
+        return self.sign * np.asarray(self.of(t, side))
+
+    def __neg__(self) -> Signal:
+        """Return the signal counted backwards."""
+        return Signal(self.of, -self.sign)
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectory:
+    """Trajectory of a pin, piece by piece; times are since the motion's begin, s."""
+
+    motion: Motion
+
+    @cached_property
+    def knots(self) -> NDArray[np.float64]:
+        """Begin, events, turning points and end, s, shape (n,), increasing."""
+        motion, lasts = self.motion, self.motion.duration
+        ends = [segment.end for segment in motion.segments if segment.end < lasts]
+        events = [event.time for event in motion.events_between(0.0, lasts)]
+        turns = motion.extrema("position").time
+        return np.unique(np.concatenate([[0.0], ends, events, turns, [lasts]]))
+
+    def within(self, begin: float, end: float) -> NDArray[np.float64]:
+        """Return the knots from `begin` to `end`, with both ends."""
+        first, last = np.searchsorted(self.knots, (begin, end), ("right"))
+        inner = self.knots[first:last]
+        return np.concatenate([[begin], inner[inner < end], [end]])
+
+    def pieces(
+        self, values: Signal, begin: float, end: float
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """The knots in between, and the values where each piece begins and where it ends."""
+        t = self.within(begin, end)
+        return t, values(t[:-1]), values(t[1:], "left")
+
+    def highest(self, values: Signal, begin: float, end: float) -> tuple[float, float]:
+        """The time and the size of the largest value from `begin` to `end`."""
+        t, starts, stops = self.pieces(values, begin, end)
+        i, j = int(np.argmax(starts)), int(np.argmax(stops))
+        if starts[i] >= stops[j]:
+            return float(t[i]), float(starts[i])
+        return float(t[j + 1]), float(stops[j])
+
+    def first_at(self, values: Signal, level: float, begin: float, end: float) -> float:
+        """The first time in [begin, end] at which the values are at `level` or above; or NaN."""
+        t, starts, stops = self.pieces(values, begin, end)
+        found = np.flatnonzero((starts >= level) | (stops >= level))
+        if not found.size:
+            return nan
+        i = int(found[0])
+        if starts[i] >= level:
+            return float(t[i])
+        return root(lambda s: values(s, "left") - level, t[i], t[i + 1])
+
+    def last_beyond(
+        self, values: Signal, middle: float, band: float, begin: float, end: float
+    ) -> float:
+        """The last time in [begin, end] at which the values are `band` or more from `middle`.
+
+        For values that do not jump; `begin` where they never are.
+        """
+        t = self.within(begin, end)
+        out = np.flatnonzero(np.abs(values(t) - middle) >= band)
+        if not out.size:
+            return begin
+        i = int(out[-1])
+        if i == len(t) - 1:
+            return end
+        return root(lambda s: band - np.abs(values(s) - middle), t[i], t[i + 1])
+
+    def climbs(self, values: Signal, height: float, begin: float, end: float) -> bool:
+        """Return True if the values ever exceed their lowest since `begin` by `height`."""
+        y = values(self.within(begin, end))
+        return bool((y - np.minimum.accumulate(y) >= height).any())
+
+    def climb(self, values: Signal, height: float, begin: float, end: float) -> tuple[float, float]:
+        """Return the first time at which continuous values exceed their lowest by `height`.
+
+        Returns:
+            That time, NaN if they never are; and the time of that lowest value.
+        """
+        t = self.within(begin, end)
+        y = values(t)
+        found = np.flatnonzero(y - np.minimum.accumulate(y) >= height)
+        if not found.size:
+            return nan, float(t[int(np.argmin(y))])
+        i = int(found[0])
+        dip = int(np.argmin(y[: i + 1]))
+        base = float(y[dip])
+        return root(lambda s: values(s) - base - height, t[i - 1], t[i]), float(t[dip])
+
+    def swings(self, values: Signal, begin: float, end: float) -> list[tuple[float, float]]:
+        """From when to when values that do not jump climb, from each lowest to the next highest."""
+        t = self.within(begin, end)
+        up = np.diff(values(t)) > 0.0
+        steps = np.diff(np.concatenate([[False], up, [False]]).astype(int))
+        return list(zip(t[steps == 1].tolist(), t[steps == -1].tolist(), strict=True))
+
+    def held(self) -> list[tuple[float, float]]:
+        """From when to when the plate holds the pin."""
+        held: list[tuple[float, float]] = []
+        for segment in self.motion.segments:
+            if segment.plate == 0 and segment.begin < self.motion.duration:
+                begin, end = segment.begin, min(segment.end, self.motion.duration)
+                if held and held[-1][1] == begin:
+                    begin, _ = held.pop()
+                held.append((begin, end))
+        return held
+
+    def rests(self, t: float) -> bool:
+        """Return True if the finger holds the pin just before a time."""
+        i = int(np.searchsorted(self._ends, t))
+        segments = self.motion.segments
+        segment = segments[min(i, len(segments) - 1)]
+        return segment.mode == "resting" and float(self.motion.velocity(t, "left")) == 0.0
+
+    @cached_property
+    def _ends(self) -> NDArray[np.float64]:
+        return np.array([segment.end for segment in self.motion.segments])
+
+
+def roots(
+    f: Callable[[Any], NDArray[np.float64]],
+    low: NDArray[np.float64],
+    high: NDArray[np.float64],
+    sign: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """The first times at which f no longer has its sign, shape (n,); see `brackets`."""
+    return brackets(f, low, high, sign, max(2, PIECES // max(1, low.size)), 0.0)[1]
+
+
+def brackets(
+    f: Callable[[Any], NDArray[np.float64]],
+    low: NDArray[np.float64],
+    high: NDArray[np.float64],
+    sign: NDArray[np.float64],
+    pieces: int,
+    precision: float,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The last places where f has its sign and the first where not, by cutting brackets.
+
+    SciPy's brentq takes fewer steps, but loading scipy.optimize takes longer than a usual scan.
+
+    Args:
+        f: Function of positions of shape (n, k), such as times.
+        low: Lower ends of the brackets, shape (n,); f changes its sign once in each.
+        high: Upper ends of the brackets, shape (n,).
+        sign: Sign of f at the lower ends, 1 or -1, shape (n,).
+        pieces: Number of pieces into which each bracket is cut at once.
+        precision: Largest width of a bracket at the end, as a part of its first width; 0:
+            neighbouring floats.
+    """
+    grid, row = np.arange(pieces + 1) / pieces, np.arange(low.size)
+    while (high - low > precision * low).any():
+        t = low[:, None] + (high - low)[:, None] * grid
+        t[:, -1] = high
+        first = np.argmax(sign[:, None] * f(t[:, 1:]) <= 0.0, axis=1) + 1
+        before, after = t[row, first - 1], t[row, first]
+        if not ((low < before) | (after < high)).any():
+            break
+        low, high = before, after
+    return low, high
+
+
+def root(f: Callable[[Any], NDArray[np.float64]], low: float, high: float) -> float:
+    """The first time at which f, negative at `low`, is so no longer; it is at least 0 at `high`."""
+    return float(roots(f, np.array([low]), np.array([high]), np.array([-1.0]))[0])
+
+
+class Way:
+    """The length of the hand's way over the page."""
+
+    def __init__(self, path: HandPath) -> None:
+        self.path = path
+        times = path.times
+        self._lengths = np.concatenate([[0.0], np.cumsum(self._length(times[:-1], times[1:]))])
+
+    def _length(self, begin: NDArray[np.float64], end: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the length of stretches with linear velocity: exact on straight paths."""
+        half = 0.5 * (end - begin)
+        t = begin[:, None] + half[:, None] * (1.0 + NODES)
+        speed = np.hypot(*self.path.velocity(np.clip(t, self.path.begin, self.path.end)))
+        return np.asarray(half * (speed @ WEIGHTS))
+
+    def __call__(self, t: ArrayLike) -> NDArray[np.float64]:
+        """The length gone by times t (s, shape (n,)), m."""
+        at = np.atleast_1d(np.asarray(t, np.float64))
+        i = np.clip(np.searchsorted(self.path.times, at, "right") - 1, 0, len(self._lengths) - 2)
+        return self._lengths[i] + self._length(self.path.times[i], at)
+
+    def between(self, begin: float, end: float) -> float:
+        """Return the path length between two times, m; NaN for a NaN."""
+        if not begin <= end:
+            return nan if begin != begin or end != end else -self.between(end, begin)
+        first, last = self((begin, end))
+        return float(last - first)
+
+
+def printed(device: Device, path: HandPath, scene: Scene) -> list[list[Printed]]:
+    """The lines along the way of each pin: where the luminance is below the threshold.
+
+    The luminance is linear between the middles of pixels (`Scene.at`), its edges are found by
+    cutting brackets. A line on which the hand turns back is not whole, nor is one under the spot at
+    the path's begin or end.
+
+    Raises:
+        ValueError: Too many lines.
+    """
+    way = Way(path)
+    lengths = np.diff(way(path.times))
+    counts = 1 + np.ceil(lengths * FINER / scene.pixel).astype(int)
+    turned = turnings(path, device.array.axis)
+    threshold = device.control.threshold
+    offsets = device.array.on_page(device.array.spots)
+    found: list[list[Printed]] = []
+    passed = 0.0
+    for dx, dy in offsets.tolist():
+
+        def lightness(
+            t: NDArray[np.float64], dx: float = dx, dy: float = dy
+        ) -> NDArray[np.float64]:
+            x, y = path.position(t)
+            return scene.at(x + dx, y + dy) - threshold
+
+        edges, first, last = _edges(lightness, _sample_times(path, counts))
+        passed += 0.5 * len(edges)
+        times = np.concatenate([[path.begin], edges, [path.end]])
+        times = times[0 if first else 1 : None if last else -1]
+        begins, ends = times[::2], times[1::2]
+        shortest = GRAZED * scene.pixel
+        gaps = way(begins[1:]) - way(ends[:-1]) > shortest if len(begins) else np.zeros(0, bool)
+        begins = begins[np.append(True, gaps)] if len(begins) else begins
+        ends = ends[np.append(gaps, True)] if len(ends) else ends
+        long = way(ends) - way(begins) > shortest if len(begins) else np.zeros(0, bool)
+        found.append(
+            [
+                Printed(
+                    a,
+                    b,
+                    path.begin < a and b < path.end and not ((turned > a) & (turned < b)).any(),
+                )
+                for a, b in zip(begins[long].tolist(), ends[long].tolist(), strict=True)
+            ]
+        )
+    return found
+
+
+def _edges(
+    lightness: Callable[[NDArray[np.float64]], NDArray[np.float64]],
+    sample_times: Iterator[NDArray[np.float64]],
+) -> tuple[NDArray[np.float64], bool, bool]:
+    """Return the changes between dark and light, s, and the darkness at both ends.
+
+    Args:
+        lightness: Luminance above the threshold at times, s.
+        sample_times: Times that find each change, in order, some at a time.
+    """
+    low, high, sign = [np.zeros(0)], [np.zeros(0)], [np.zeros(0)]
+    first, before, was = False, np.zeros(0), np.zeros(0, bool)
+    for some in sample_times:
+        t = np.concatenate([before, some])
+        dark = np.concatenate([was, lightness(some) < 0.0])
+        changes = np.flatnonzero(dark[1:] != dark[:-1])
+        low.append(t[changes])
+        high.append(t[changes + 1])
+        sign.append(np.where(dark[changes], -1.0, 1.0))
+        first = first if before.size else bool(dark[0])
+        before, was = t[-1:], dark[-1:]
+    edges = roots(lightness, *(np.concatenate(parts) for parts in (low, high, sign)))
+    return edges, first, bool(was[0])
+
+
+def _sample_times(path: HandPath, counts: NDArray[np.int64]) -> Iterator[NDArray[np.float64]]:
+    """Return the sampling times of the page, s, in order: several per row of a path."""
+    starts = np.concatenate([[0], np.cumsum(counts)])
+    lasts = np.diff(path.times)
+    for first in range(0, int(starts[-1]), AT_ONCE):
+        k = np.arange(first, min(first + AT_ONCE, int(starts[-1])))
+        row = np.searchsorted(starts, k, "right") - 1
+        yield path.times[row] + lasts[row] * (k - starts[row]) / counts[row]
+    yield path.times[-1:]
+
+
+def turnings(path: HandPath, axis: float) -> NDArray[np.float64]:
+    """Return the stops and turns of the hand along an axis (rad) of the page, s, in order."""
+    along = path.vx * cos(axis) + path.vy * sin(axis)
+    along[np.abs(along) < 1e-9 * np.abs(along).max()] = 0.0  # across the axis except for rounding
+    still = path.times[1:-1][(along[1:-1] == 0.0) & ((along[:-2] != 0.0) | (along[2:] != 0.0))]
+    through = np.flatnonzero(along[1:] * along[:-1] < 0.0)
+    part = along[through] / (along[through] - along[through + 1])
+    across = path.times[through] + part * (path.times[through + 1] - path.times[through])
+    return np.union1d(still, across)
+
+
+@dataclass(frozen=True, slots=True)
+class _Pull:
+    """One time its magnet was on, and how the pin answered."""
+
+    on: float
+    off: float
+    begin: float
+    """Time at which the pin came forward; NaN: never."""
+    dip: float
+    """Time of the lowest position before that."""
+    release: float
+    """Time of the break-away from the plate."""
+    sign: float
+    """Sign of the plate's velocity."""
+
+
+class EvaluatedPin:
+    """One pin's lines and swings. Times are since the scan's begin, s.
+
+    Args:
+        scan: The scan.
+        pin: One of the pins of the scan.
+        passed: The lines printed along its way.
+        stops: Times at which the hand stops or turns back, s.
+        way: The length of the hand's way.
+        criteria: Criteria of a felt line.
+    """
+
+    def __init__(
+        self,
+        scan: Scan,
+        pin: PinScan,
+        passed: Sequence[Printed],
+        stops: NDArray[np.float64],
+        way: Way,
+        criteria: Criteria,
+    ) -> None:
+        self.scan, self.pin, self.criteria = scan, pin, criteria
+        self.begin, self.way = pin.begin, way
+        self.passed = [
+            Printed(line.begin - pin.begin, line.end - pin.begin, line.whole) for line in passed
+        ]
+        self.stops = stops - pin.begin
+        self.latency = scan.device.control.latency
+        self.trajectory, self.end = Trajectory(pin.motion), pin.motion.duration
+        self.held = self.trajectory.held()
+        self.plate = scan.path.plate_velocity(scan.device.array.axis)
+        self.touching = spans(pin.finger_load)
+        self.pulls = self._pulls()
+
+    # ---- what the magnet did -----------------------------------------------------------------
+
+    def _pulls(self) -> list[_Pull]:
+        spans = [(on - self.begin, off - self.begin) for on, off in self.pin.energised]
+        pulls = []
+        for (on, off), (limit, _) in zip(spans, [*spans[1:], (self.end, nan)], strict=False):
+            sign = self._sign(max(0.0, on - self.latency))
+            x = Signal(self.pin.motion.position, sign)
+            stop = min(limit, self._stop(off))
+            begin, dip = self.trajectory.climb(x, self.criteria.felt, on, stop)
+            release = next((end for start, end in self.held if start <= off < end), off)
+            pulls.append(_Pull(on, off, begin, dip, release, sign))
+        return pulls
+
+    def _sign(self, t: float) -> float:
+        """Return the direction of the plate at a time; forward at rest."""
+        return -1.0 if self.plate(t) < 0.0 else 1.0
+
+    def _stop(self, t: float) -> float:
+        """Return the next stop or turn of the hand after a time, or the scan's end."""
+        i = int(np.searchsorted(self.stops, t, "right"))
+        return min(float(self.stops[i]), self.end) if i < len(self.stops) else self.end
+
+    def _until(self, k: int) -> float:
+        """Return the end of pull k: the next pull, or the stop of the hand."""
+        stop = max(self._stop(self.pulls[k].off), self.pulls[k].off)
+        later = self.pulls[k + 1 : k + 2]
+        return min([stop, *(p.dip if p.begin == p.begin else p.on for p in later)])
+
+    # ---- the printed lines -------------------------------------------------------------------
+
+    def lines(self) -> list[Line]:
+        """Each whole line that passed under the pin."""
+        found = []
+        begun: set[int] = set()
+        for i, line in enumerate(self.passed):
+            mine = [
+                k
+                for k, pull in enumerate(self.pulls)
+                if pull.on - self.latency <= line.end and pull.off - self.latency >= line.begin
+            ]
+            first = next((k for k in mine if k not in begun), None)
+            last = mine[-1] if mine and not self._goes_on(mine[-1], i) else None
+            begun.update(mine)
+            if line.whole:
+                found.append(self._line(line, first, last, bool(mine)))
+        return found
+
+    def _goes_on(self, k: int, i: int) -> bool:
+        """Return True if the magnet stays on from line i into the next."""
+        later = self.passed[i + 1 : i + 2]
+        return any(self.pulls[k].off - self.latency >= line.begin for line in later)
+
+    def _line(self, line: Printed, first: int | None, last: int | None, seen: bool) -> Line:
+        """A printed line, for which pull `first` began and pull `last` ended."""
+        sign = self._sign(line.begin)
+        x, skin = Signal(self.pin.motion.position, sign), self._skin(sign)
+        fate: Fate = "shown"
+        stroke = height = returned = release = settled = overshoot = contrast = nan
+        on = off = (nan, nan, nan)  # command, response, motion of the skin
+        cue_on = cue_off = CUES[0]
+        if first is None:
+            fate = "merged" if seen else "unseen"
+        elif self._still_held(first):
+            fate = "merged"
+        else:
+            pull = self.pulls[first]
+            on = (pull.on, nan, nan)
+            if pull.begin == pull.begin:
+                peak_time, peak = self.trajectory.highest(x, pull.begin, self._until(first))
+                stroke = peak - float(x(pull.dip))
+                moved, cue_on = self._moved(skin, pull.dip, peak_time)
+                on = (pull.on, pull.begin, moved)
+        if last is not None:
+            pull, limit = self.pulls[last], self._until(last)
+            release = min(pull.release, limit)
+            peak_time, peak = self.trajectory.highest(x, pull.on, limit)
+            low = -self.trajectory.highest(-x, peak_time, limit)[1]
+            back = self.trajectory.climb(-x, self.criteria.felt, pull.off, limit)[0]
+            off = (pull.off, back, nan)
+            if back == back:
+                moved, cue_off = self._moved(-skin, peak_time, limit)
+                off = (pull.off, back, moved)
+            height, returned = peak, peak - low
+            contrast = (peak - low) / (abs(peak) + abs(low)) if peak > low else 0.0
+            settled, overshoot = self._settling(x, release, peak, low, limit)
+        went, felt = on[1] == on[1], (cue_on, cue_off) != (CUES[0], CUES[0])
+        if fate == "shown" and not (went and felt):
+            fate = "faint"
+        return Line(
+            pin=self.pin.number,
+            begin=self._edge(line.begin, *on, cue_on),
+            end=self._edge(line.end, *off, cue_off),
+            fate=fate,
+            stroke=stroke,
+            height=height,
+            returned=returned,
+            release=self.begin + release,
+            settled=self.begin + settled,
+            smear=self.way.between(self.begin + release, self.begin + settled),
+            overshoot=overshoot,
+            contrast=contrast,
+        )
+
+    def _edge(self, time: float, command: float, response: float, skin: float, cue: Cue) -> Edge:
+        x, y = self._spot(time)
+        return Edge(
+            time=self.begin + time,
+            x=x,
+            y=y,
+            command=self.begin + command,
+            response=self.begin + response,
+            lag=self.way.between(self.begin + time, self.begin + response),
+            skin=skin,
+            cue=cue,
+        )
+
+    def _spot(self, t: float) -> tuple[float, float]:
+        """Return the place of the pin's spot on the page."""
+        x, y = self.scan.spot(self.pin.number, [min(self.begin + t, self.pin.end)])[0].tolist()
+        return x, y
+
+    def _still_held(self, k: int) -> bool:
+        """Return True if the pin had not come back from the pull before when pull k moved it on."""
+        before, pull = self.pulls[max(k - 1, 0)], self.pulls[k]
+        if k == 0 or before.sign != pull.sign or before.begin != before.begin:
+            return False  # nothing before it, or nothing that had moved the pin
+        until = pull.begin if pull.begin == pull.begin else self._until(k)
+        back = -Signal(self.pin.motion.position, pull.sign)
+        return not self.trajectory.climbs(back, self.criteria.felt, before.off, until)
+
+    # ---- numbers -----------------------------------------------------------------------------
+
+    def _skin(self, sign: float) -> Signal:
+        """Return the position of the skin; for a rigid finger, of the pin."""
+        motion = self.pin.motion
+        return Signal(motion.position if motion.drive.finger.rigid else motion.stretch, sign)
+
+    def _moved(self, skin: Signal, begin: float, end: float) -> tuple[float, Cue]:
+        """Return the forward displacement of the skin between two times, and the perceived cue."""
+        times = [(max(begin, touch), min(end, lift)) for touch, lift in self.touching]
+        moved = [self._moved_in(skin, touch, lift) for touch, lift in times if touch < lift]
+        return max(moved, key=lambda found: (CUES.index(found[1]), found[0]), default=(0.0, "none"))
+
+    def _moved_in(self, skin: Signal, begin: float, end: float) -> tuple[float, Cue]:
+        """Return displacement and cue between two times of one touch."""
+        limits = self.criteria
+        base = float(skin(begin, "left"))
+        way = self.trajectory.highest(skin, begin, end)[1] - base
+        soon = begin + limits.direction_sure / limits.direction_speed
+        if way >= limits.direction_sure:
+            sure = base + limits.direction_sure
+            if self.trajectory.first_at(skin, sure, begin, end) <= soon:
+                return way, "sure"
+        if way < limits.felt:
+            return way, "none"
+        return way, "direction" if way >= limits.direction else "felt"
+
+    def _settling(
+        self, x: Signal, release: float, peak: float, low: float, limit: float
+    ) -> tuple[float, float]:
+        """Return the settling time of the pin after a release, and its overshoot."""
+        if not limit > release:
+            return nan, nan
+        end = float(x(limit))
+        band = settling_band * abs(float(x(release)) - end)
+        since = self.trajectory.last_beyond(x, end, band, release, limit)
+        settles = limit - since >= self._patience or self.trajectory.rests(limit)
+        load = self.pin.finger_load
+        pressed = load(limit) if isinstance(load, Profile) else load
+        place = end if settles else self.scan.device.drag(finger_load=pressed)
+        over = max(0.0, (place - low) / (peak - place)) if peak > place else nan
+        return since if settles else nan, over
+
+    @property
+    def _patience(self) -> float:
+        """Time within its band after which a pin counts as settled, s."""
+        drive = self.pin.motion.drive
+        half = pi / drive.natural_frequency
+        return max(half, 1.0 / drive.slowest_rate) if drive.damping_ratio > 1.0 else half
+
+    # ---- false lines -------------------------------------------------------------------------
+
+    def false_lines(self) -> list[FalseLine]:
+        """Swings forward that no magnet made, and that are as high as the criteria ask."""
+        found = []
+        times = np.unique(np.concatenate([[0.0], self.stops, [self.end]]))
+        for begin, end in zip(times[:-1].tolist(), times[1:].tolist(), strict=True):
+            if self.plate(0.5 * (begin + end)) != 0.0:
+                found += self._false_lines(begin, end)
+        return found
+
+    def _false_lines(self, begin: float, end: float) -> list[FalseLine]:
+        """Return the false lines of one stroke of the hand."""
+        sign = self._sign(0.5 * (begin + end))
+        x, skin = Signal(self.pin.motion.position, sign), self._skin(sign)
+        swings = [
+            (low, high, float(x(high) - x(low)), self._puller(low, high))
+            for low, high in self.trajectory.swings(x, begin, end)
+        ]
+        heights: dict[int, float] = {}  # highest swing of each pull, by its line
+        for _, _, height, k in swings:
+            if k is not None:
+                heights[k] = max(heights.get(k, 0.0), height)
+        before = next(iter(heights.values()), nan)
+        found = []
+        for low, high, height, k in swings:
+            if k is not None:
+                before = heights[k]
+                continue
+            usual = self.criteria.false_line * before if before == before else 0.0
+            least = self.criteria.direction if usual else self.criteria.direction_sure
+            if height >= max(usual, least) and self._moved(skin, low, high)[0] >= least:
+                px, py = self._spot(high)
+                found.append(FalseLine(self.pin.number, self.begin + high, px, py, height))
+        return found
+
+    def _puller(self, low: float, high: float) -> int | None:
+        """The last pull that has a part in a swing."""
+        mine = [k for k, p in enumerate(self.pulls) if p.on < high and max(p.off, p.release) > low]
+        return mine[-1] if mine else None
