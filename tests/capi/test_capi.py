@@ -159,7 +159,17 @@ IN_C = {
     "": {"simulate_batch": "batch", "statuses": "status_text"},
 }
 """The function of pindrive.h for what the extension calls otherwise."""
-OF_THE_EXTENSION = {"kernel_widths", "elementary", "settling_band", "event_limit"}
+OF_THE_DEVICE = {
+    "luminance",
+    "on_page",
+    "hand_position",
+    "hand_velocity",
+    "way",
+    "turnings",
+    "printed_lines",
+    "evaluate",
+}
+OF_THE_EXTENSION = {"kernel_widths", "elementary", "settling_band", "event_limit"} | OF_THE_DEVICE
 """Names of the extension without a function in C."""
 
 

@@ -27,7 +27,7 @@ def check(done: Scan) -> int:
     """Compare both evaluations; returns the number of lines."""
     lines, false_lines = evaluated(done, Criteria())
     found = done.evaluate(Criteria())
-    pairs = [
+    pairs: list[tuple[Any, Any]] = [
         *zip(lines, found.lines, strict=True),
         *zip(false_lines, found.false_lines, strict=True),
     ]
@@ -62,7 +62,7 @@ def test_lines_under_a_finger_that_is_lifted_and_from_a_state() -> None:
     for seed in range(25):
         case = RandomScan.of(seed)
         given = case.device.drive
-        finger = Contact(coefficient=0.5, stiffness=draw.choice([np.inf, 400.0]))
+        finger = Contact(coefficient=0.5, stiffness=float(draw.choice([np.inf, 400.0])))
         drive = Drive(
             mass=given.mass,
             stiffness=given.stiffness,
@@ -70,8 +70,8 @@ def test_lines_under_a_finger_that_is_lifted_and_from_a_state() -> None:
             plate=given.plate,
             finger=finger,
             touch_force=0.02,
-            travel=draw.choice([0.5e-3, 2e-3]),
-            stop_stiffness=draw.choice([None, 50.0 * given.stiffness]),
+            travel=float(draw.choice([0.5e-3, 2e-3])),
+            stop_stiffness=50.0 * given.stiffness if draw.random() < 0.5 else None,
         )
         lasts = case.path.end
         touch = Profile(

@@ -249,7 +249,7 @@ BAD = [
 
 
 @pytest.mark.filterwarnings("ignore::pindrive.ImplausibleValueWarning")
-@pytest.mark.parametrize(("name", "value", "told"), BAD)
+@pytest.mark.parametrize(("name", "value", "reported"), BAD)
 def test_a_bad_point_is_marked_and_the_others_go_on(name: str, value: float, reported: str) -> None:
     good = {**PIN, "plate_static": 0.03, "finger_static": 0.03, "finger_stiffness": 1e3}
     good |= {"velocity": 0.0, "duration": 0.2}

@@ -26,6 +26,7 @@ RECORDED: Final = "time [s], x [m], y [m]"
 """The header of a CSV with a recorded path."""
 
 Point = tuple[float, float]
+Column = NDArray[np.float64]
 
 
 @equal_by_value
@@ -93,7 +94,7 @@ class HandPath:
         return float(np.hypot(self.vx, self.vy).max())
 
     @property
-    def rows(self) -> tuple[NDArray[np.float64], ...]:
+    def rows(self) -> tuple[Column, Column, Column, Column, Column]:
         """Columns of the path: times, velocity (x, y) and place (x, y), SI, each of shape (n,)."""
         return self.times, self.vx, self.vy, self.x, self.y
 

@@ -248,7 +248,8 @@ def evaluated(
     given = [
         (
             pin.number,
-            *map(float, spots[pin.number]),
+            float(spots[pin.number, 0]),
+            float(spots[pin.number, 1]),
             pin.motion.core,
             np.array(pin.energised, np.float64).reshape(-1, 2),
             (lines.begin, lines.end, lines.whole),
