@@ -18,7 +18,7 @@ from time import perf_counter, process_time
 from pindrive import Contact, Drive
 from pindrive.device import Device, Electromagnet, PinArray, scan
 from pindrive.device.reading import Reading
-from pindrive.device.scanning import prepare
+from pindrive.device.scanning import ScanInputs, energised
 
 TEXT = "A quick brown\nfox jumps ov"
 
@@ -53,7 +53,7 @@ def main() -> None:
         walls.append(perf_counter() - begin)
         cores.append(process_time() - work)
         begin = perf_counter()
-        prepare(device, scene, path)
+        energised(ScanInputs(device, scene, path, None, None))
         switching.append(perf_counter() - begin)
     begin = perf_counter()
     done.to_dataset()

@@ -109,55 +109,85 @@ struct OwnedContact {
   }
 };
 
-/// As dual numbers, all that it is asked for are derivatives along the direction in which its inputs
-/// change. It stays where it was made: the core refers to what it owns.
+/// Inputs of a motion with the arrays to which they refer.
 template <class T>
-class OwnedMotion {
+struct OwnedInputs {
+  OwnedContact<T> plate, finger;
+  OwnedRows<T> mouse_velocity, plate_load, force, across_velocity, finger_load;
+  Drive<T> core_drive;
+  Inputs<T> core_inputs;
+
+  OwnedInputs(const Numbers& at, const Numbers& along)
+      : plate(at.plate, along.plate),
+        finger(at.finger, along.finger),
+        mouse_velocity(at.mouse_velocity, along.mouse_velocity),
+        plate_load(at.plate_load, along.plate_load),
+        force(at.force, along.force),
+        across_velocity(at.across_velocity, along.across_velocity),
+        finger_load(at.finger_load, along.finger_load),
+        core_drive{number<T>(at.mass, along.mass),
+                   number<T>(at.stiffness, along.stiffness),
+                   number<T>(at.damping, along.damping),
+                   plate.contact,
+                   finger.contact,
+                   stops<T>(at.stops, along.stops)},
+        core_inputs{mouse_velocity.profile(),
+                    number<T>(at.displacement, along.displacement),
+                    number<T>(at.velocity, along.velocity),
+                    number<T>(at.duration, along.duration),
+                    plate_load.profile(),
+                    number<T>(at.skin_stretch, along.skin_stretch),
+                    force.profile(),
+                    across_velocity.profile(),
+                    finger_load.profile()} {}
+  OwnedInputs(const OwnedInputs&) = delete;
+  OwnedInputs& operator=(const OwnedInputs&) = delete;
+};
+
+/// Motion with its segments. Refers to the rows of its inputs and the branches of its friction curves,
+/// which must outlive it.
+template <class T>
+class StoredMotion {
  public:
-  /// go_on() says, after each segment, whether to go on.
-  template <class GoOn>
-  OwnedMotion(const Numbers& at, const Numbers& along, GoOn go_on)
-      : plate_(at.plate, along.plate),
-        finger_(at.finger, along.finger),
-        mouse_velocity_(at.mouse_velocity, along.mouse_velocity),
-        plate_load_(at.plate_load, along.plate_load),
-        force_(at.force, along.force),
-        across_velocity_(at.across_velocity, along.across_velocity),
-        finger_load_(at.finger_load, along.finger_load),
-        drive_{number<T>(at.mass, along.mass),
-               number<T>(at.stiffness, along.stiffness),
-               number<T>(at.damping, along.damping),
-               plate_.contact,
-               finger_.contact,
-               stops<T>(at.stops, along.stops)},
-        inputs_{mouse_velocity_.profile(),
-                number<T>(at.displacement, along.displacement),
-                number<T>(at.velocity, along.velocity),
-                number<T>(at.duration, along.duration),
-                plate_load_.profile(),
-                number<T>(at.skin_stretch, along.skin_stretch),
-                force_.profile(),
-                across_velocity_.profile(),
-                finger_load_.profile()},
-        outcome_(simulate(drive_, inputs_, [&](const Segment<T>& segment) {
-          segments_.push_back(segment);
-          return go_on();
-        })) {}
-  OwnedMotion(const OwnedMotion&) = delete;
-  OwnedMotion& operator=(const OwnedMotion&) = delete;
+  StoredMotion(const Drive<T>& drive, const Inputs<T>& inputs, std::vector<Segment<T>>&& segments,
+               const Outcome<T>& outcome)
+      : drive_(drive), inputs_(inputs), segments_(std::move(segments)), outcome_(outcome) {}
+  StoredMotion(const StoredMotion&) = delete;
+  StoredMotion& operator=(const StoredMotion&) = delete;
+  virtual ~StoredMotion() = default;
 
   Motion<T> view() const { return {drive_, inputs_, segments_.data(), segments_.size(), outcome_}; }
   const std::vector<Segment<T>>& segments() const { return segments_; }
   const Outcome<T>& outcome() const { return outcome_; }
   const Drive<T>& drive() const { return drive_; }
 
+ protected:
+  /// Simulates; go_on() says, after each segment, whether to continue.
+  template <class GoOn>
+  StoredMotion(const Drive<T>& drive, const Inputs<T>& inputs, GoOn&& go_on)
+      : drive_(drive),
+        inputs_(inputs),
+        outcome_(simulate(drive_, inputs_, [&](const Segment<T>& segment) {
+          segments_.push_back(segment);
+          return go_on();
+        })) {}
+
  private:
-  OwnedContact<T> plate_, finger_;
-  OwnedRows<T> mouse_velocity_, plate_load_, force_, across_velocity_, finger_load_;
   Drive<T> drive_;
   Inputs<T> inputs_;
   std::vector<Segment<T>> segments_;
   Outcome<T> outcome_;
+};
+
+/// Motion that owns its inputs. With dual numbers, its results are derivatives along the direction in which
+/// the inputs change.
+template <class T>
+class OwnedMotion : private OwnedInputs<T>, public StoredMotion<T> {
+ public:
+  template <class GoOn>
+  OwnedMotion(const Numbers& at, const Numbers& along, GoOn go_on)
+      : OwnedInputs<T>(at, along),
+        StoredMotion<T>(OwnedInputs<T>::core_drive, OwnedInputs<T>::core_inputs, go_on) {}
 };
 
 /// Returns the bound of the acceleration of a segment that is a step of a series; NaN for a closed

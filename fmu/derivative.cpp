@@ -5,6 +5,7 @@
 
 #include "instance.hpp"
 #include "interface.hpp"
+#include "parameters.hpp"
 #include "pindrive/motion/instant.hpp"
 #include "pindrive/numbers/dual.hpp"
 #include "stepper.hpp"
@@ -113,7 +114,7 @@ pindrive_error Instance::derivative(std::size_t unknown, const unsigned* knowns,
   const Release of_release(pindrive_release_rate_new(release.get()));
   if (!error) error = fill(of_drive.get(), of_release.get(), given, &Number::slope);
   if (error) return error;
-  if (magnet_.present()) now.plate_load.value.slope = Magnet::first_load(given).slope;
+  if (magnet_.present()) now.plate_load.value.slope = residual_load(given).slope;
   pd::Numbers at = pindrive_c::numbers_of(*drive, *release);
   pd::Numbers changes = pindrive_c::numbers_of(*of_drive, *of_release);
   pindrive_c::start(at, changes);

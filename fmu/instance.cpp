@@ -1,6 +1,7 @@
 #include "instance.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -9,12 +10,23 @@
 #include <utility>
 
 #include "interface.hpp"
+#include "parameters.hpp"
 
 namespace pindrive_fmu {
 
 namespace {
 
 using pindrive_c::fail;
+
+/// Makes the magnet of the parameters, without a current.
+pindrive_error make_magnet(const Given& given, double time, Magnet& magnet) {
+  magnet = {};
+  const pindrive_error error = read_magnet(given, magnet.electromagnet);
+  if (error || !magnet.electromagnet) return error;
+  magnet.coil.emplace(*magnet.electromagnet, time);
+  magnet.normal_force = given.plate_normal_force().value;
+  return PINDRIVE_OK;
+}
 
 /// Sets the plate load by the pull of the magnet from now on.
 pindrive_error pulled(pindrive_stepper* stepper, const Magnet& magnet, double time) {
@@ -59,10 +71,10 @@ pindrive_error Instance::make(Stepper& stepper, Magnet& magnet) const {
   const double* const values = values_.start.data();
   const Given given(variables_, values, nullptr);
   pindrive_stepper* made = nullptr;
-  pindrive_error error = magnet.begin(given, values_.begin);
+  pindrive_error error = make_magnet(given, values_.begin, magnet);
   if (!error) error = fill(drive.get(), release.get(), given, &Number::value);
   if (!error && magnet.present())
-    error = pindrive_release_set(release.get(), "plate_load", Magnet::first_load(given).value);
+    error = pindrive_release_set(release.get(), "plate_load", residual_load(given).value);
   if (!error) error = pindrive_stepper_new(drive.get(), release.get(), values_.begin, &made);
   if (error) return error;
   stepper.reset(made);
@@ -75,7 +87,7 @@ pindrive_error Instance::make(Stepper& stepper, Magnet& magnet) const {
   }
   for (std::size_t i = 0; i < variables_.size() && !error; ++i)
     if (variables_[i].kind == Variable::command && values[i] != 0) {
-      magnet.command(true, values_.begin);
+      magnet.coil->command(true, values_.begin);
       error = pulled(made, magnet, values_.begin);
     }
   if (error) stepper.reset();
@@ -130,10 +142,10 @@ pindrive_error Instance::next_event(double& time) {
   if (error) return error;
   time = now.next_event;
   if (!magnet_.present()) return PINDRIVE_OK;
-  if (magnet_.next() > now.time) {
-    time = std::min(time, magnet_.next());
+  if (magnet_.coil->next() > now.time) {
+    time = std::min(time, magnet_.coil->next());
   } else {  // a line of the pull ends now: its next one is not the stepper's yet
-    Magnet ahead = magnet_;
+    pindrive::device::Coil ahead = *magnet_.coil;
     ahead.pass(now.time);
     time = std::min(time > now.time ? time : ahead.next(), ahead.next());
   }
@@ -163,13 +175,13 @@ pindrive_error Instance::number(std::size_t reference, double& value) {
     return pindrive_stepper_evaluate(stepper_.get(), asked->place, &value);
   switch (asked->place) {
     case magnet_current:
-      value = magnet_.current(now.time);
+      value = magnet_.coil->current(now.time);
       return PINDRIVE_OK;
     case magnet_pull:
-      value = magnet_.pull(now.time);
+      value = magnet_.coil->pull(now.time);
       return PINDRIVE_OK;
     case magnet_warming:
-      value = magnet_.warming(now.time);
+      value = magnet_.coil->warming(now.time);
       return PINDRIVE_OK;
     default:
       error = next_event(value);
@@ -193,7 +205,7 @@ pindrive_error Instance::flag(std::size_t reference, bool& value) {
   if (!asked) return PINDRIVE_BAD_VALUE;
   if (asked->kind != Variable::command)
     return fail(PINDRIVE_BAD_VALUE, "%s is no Boolean", asked->name);
-  value = values_.initialised ? magnet_.state().command != 0 : values_.start[reference - 1] != 0;
+  value = values_.initialised ? magnet_.coil->state().command : values_.start[reference - 1] != 0;
   return PINDRIVE_OK;
 }
 
@@ -242,9 +254,9 @@ pindrive_error Instance::set_flag(std::size_t reference, bool value) {
   }
   pindrive_instant now;
   error = instant(now);
-  if (error || value == (magnet_.state().command != 0)) return error;
-  magnet_.command(value, now.time);
-  magnet_.pass(now.time);
+  if (error || value == magnet_.coil->state().command) return error;
+  magnet_.coil->command(value, now.time);
+  magnet_.coil->pass(now.time);
   return pulled(stepper_.get(), magnet_, now.time);
 }
 
@@ -271,11 +283,11 @@ pindrive_error Instance::step(double from, double size, bool may_end_early, bool
                 size);
   const double until = std::max(from + size, at.time);
   do {  // an event due at the end of the step waits for the next step: a command may come first
-    if (magnet_.present() && magnet_.next() <= at.time) {
-      magnet_.pass(at.time);
+    if (magnet_.present() && magnet_.coil->next() <= at.time) {
+      magnet_.coil->pass(at.time);
       error = pulled(stepper_.get(), magnet_, at.time);
     }
-    const double next = magnet_.present() ? std::min(until, magnet_.next()) : until;
+    const double next = magnet_.present() ? std::min(until, magnet_.coil->next()) : until;
     if (!error)
       error = pindrive_stepper_step(stepper_.get(), next, may_end_early, nullptr, nullptr);
     if (!error) error = instant(at);
@@ -287,6 +299,21 @@ pindrive_error Instance::step(double from, double size, bool may_end_early, bool
 // ---- states ------------------------------------------------------------------------------------
 
 namespace {
+
+/// A state of a coil as numbers.
+constexpr std::size_t coil_numbers = 8;
+std::array<double, coil_numbers> numbers_of(const pindrive::device::CoilState& s) {
+  return {s.since, s.flux,      s.pull,           s.warming,
+          s.level, s.commanded, s.on ? 1.0 : 0.0, s.command ? 1.0 : 0.0};
+}
+pindrive::device::CoilState coil_of(const std::array<double, coil_numbers>& n) {
+  return {n[0], n[1], n[2], n[3], n[4], n[5], n[6] != 0, n[7] != 0};
+}
+bool possible(const pindrive::device::CoilState& s) {
+  const auto part = [](double number) { return number >= 0 && number <= 1; };
+  return part(s.flux) && part(s.level) && s.warming >= 0 && std::isfinite(s.since) &&
+         std::isfinite(s.pull) && std::isfinite(s.warming) && std::isfinite(s.commanded);
+}
 
 pindrive_error copy(const Stepper& stepper, Stepper& copied) {
   copied.reset();
@@ -302,7 +329,7 @@ pindrive_error copy(const Stepper& stepper, Stepper& copied) {
 pindrive_error Instance::keep(std::unique_ptr<State>& state) const {
   auto kept = std::make_unique<State>();
   kept->values = values_;
-  kept->coil = magnet_.state();
+  if (magnet_.present()) kept->coil = magnet_.coil->state();
   const pindrive_error error = copy(stepper_, kept->stepper);
   if (!error) state = std::move(kept);
   return error;
@@ -313,8 +340,17 @@ pindrive_error Instance::go_back(const State& state) {
   Magnet magnet;
   pindrive_error error = copy(state.stepper, stepper);
   if (!error && stepper)
-    error = magnet.begin({variables_, state.values.start.data(), nullptr}, state.values.begin);
-  if (!error && magnet.present()) error = magnet.go_back(state.coil);
+    error =
+        make_magnet({variables_, state.values.start.data(), nullptr}, state.values.begin, magnet);
+  if (error) return error;
+  if (magnet.present()) {
+    if (!possible(state.coil))
+      return fail(PINDRIVE_BAD_VALUE, "the bytes must be those of a state of this unit");
+    magnet.coil.emplace(*magnet.electromagnet, state.coil);
+    pindrive_instant now;
+    if (stepper && !(error = pindrive_stepper_now(stepper.get(), &now)))
+      magnet.coil->pass_rows(now.time);
+  }
   if (error) return error;
   values_ = state.values;
   magnet_ = std::move(magnet);
@@ -344,7 +380,7 @@ pindrive_error Instance::write(const State& state, std::vector<unsigned char>& b
   for (const double number : state.values.start) add(number);
   add(state.values.begin);
   add(static_cast<unsigned char>(state.values.initialised));
-  add(state.coil);
+  for (const double number : numbers_of(state.coil)) add(number);
   pindrive_error error = PINDRIVE_OK;
   if (state.stepper) {
     const std::size_t before = bytes.size(), size = pindrive_stepper_size(state.stepper.get());
@@ -358,7 +394,7 @@ pindrive_error Instance::write(const State& state, std::vector<unsigned char>& b
 pindrive_error Instance::read(const unsigned char* bytes, std::size_t size,
                               std::unique_ptr<State>& state) const {
   const std::size_t before = variables_.size() * sizeof(double) + sizeof(double) + 1;
-  const std::size_t numbers = before + sizeof(CoilState);
+  const std::size_t numbers = before + coil_numbers * sizeof(double);
   const auto refused = [&] {
     return fail(PINDRIVE_BAD_VALUE, "the bytes must be those of a state of this unit, not %zu",
                 size);
@@ -374,7 +410,9 @@ pindrive_error Instance::read(const unsigned char* bytes, std::size_t size,
   std::memcpy(values.start.data(), bytes, variables_.size() * sizeof(double));
   std::memcpy(&values.begin, bytes + variables_.size() * sizeof(double), sizeof(double));
   values.initialised = bytes[before - 1] != 0;
-  std::memcpy(&found->coil, bytes + before, sizeof(CoilState));
+  std::array<double, coil_numbers> coil;
+  std::memcpy(coil.data(), bytes + before, sizeof coil);
+  found->coil = coil_of(coil);
   if (size > numbers) {
     pindrive_stepper* stepper = nullptr;
     if (const pindrive_error error =

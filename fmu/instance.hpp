@@ -4,10 +4,11 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <vector>
 
-#include "magnet.hpp"
 #include "pindrive.h"
+#include "pindrive/device/coil.hpp"
 #include "variables.hpp"
 
 namespace pindrive_fmu {
@@ -16,6 +17,17 @@ struct FreeStepper {
   void operator()(pindrive_stepper* stepper) const { pindrive_stepper_free(stepper); }
 };
 using Stepper = std::unique_ptr<pindrive_stepper, FreeStepper>;
+
+/// Magnet of a unit and its coil; without one, neither.
+struct Magnet {
+  std::unique_ptr<const pindrive::device::Electromagnet> electromagnet;
+  std::optional<pindrive::device::Coil> coil;
+  double normal_force{0};  ///< of the plate without a pull, N
+
+  bool present() const { return coil.has_value(); }
+  double load(double time) const { return 1 + coil->pull(time) / normal_force; }
+  double load_rate() const { return coil->rate() / normal_force; }
+};
 
 /// Variable state of an instance, beside its stepper and its magnet.
 struct Values {
@@ -53,7 +65,7 @@ class Instance {
 
   struct State {
     Values values;
-    CoilState coil;
+    pindrive::device::CoilState coil;
     Stepper stepper;
   };
   pindrive_error keep(std::unique_ptr<State>& state) const;

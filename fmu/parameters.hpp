@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "pindrive.h"
+#include "pindrive/device/electromagnet.hpp"
 #include "pindrive/numbers/dual.hpp"
 #include "variables.hpp"
 
@@ -46,6 +47,13 @@ struct FreeRelease {
 };
 using Drive = std::unique_ptr<pindrive_drive, FreeDrive>;
 using Release = std::unique_ptr<pindrive_release, FreeRelease>;
+
+/// Reads the electromagnet of a unit; null without one. Refused where a parameter is out of its range.
+pindrive_error read_magnet(const Given& given,
+                           std::unique_ptr<const pindrive::device::Electromagnet>& magnet);
+
+/// Plate load without a current: that of the residual pull.
+Number residual_load(const Given& given);
 
 /// Gives a drive and a release what is given, or, by `part`, how that changes.
 pindrive_error fill(pindrive_drive* drive, pindrive_release* release, const Given& given,

@@ -38,7 +38,7 @@ using Times = Column;
 
 using pd::result, pd::Rows;
 template <class T>
-using CoreMotion = pd::OwnedMotion<T>;
+using CoreMotion = pd::StoredMotion<T>;
 using Dual = pd::Dual<double>;
 /// A contact: kinetic, static, stiffness, and the rows (speed, force) of its curve.
 using ContactNumbers = std::tuple<double, double, double, Rows>;
@@ -81,8 +81,9 @@ pd::Numbers numbers(double mass, double stiffness, double damping, ContactNumber
 
 template <class T>
 std::unique_ptr<CoreMotion<T>> run(const pd::Numbers& at, const pd::Numbers& along) {
-  return interruptible(
-      [&](auto go_on) { return std::make_unique<CoreMotion<T>>(at, along, go_on); });
+  return interruptible([&](auto go_on) -> std::unique_ptr<CoreMotion<T>> {
+    return std::make_unique<pd::OwnedMotion<T>>(at, along, go_on);
+  });
 }
 
 std::unique_ptr<CoreMotion<Dual>> differentiate(Numbers at, Numbers along) {

@@ -139,7 +139,39 @@ def printed_lines(raster: tuple[Annotated[NDArray[numpy.float64], dict(shape=(No
     Begins, ends and wholeness of the lines along the way of each spot, and the number of edges; incomplete at `most` edges.
     """
 
-def evaluate(path: tuple[Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]], axis: float, latency: float, residual_load: float, criteria: tuple[float, float, float, float, float], pins: Sequence[tuple[int, float, float, Motion, Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], tuple[Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', writable=False)]]]]) -> dict: ...
+def plate_velocity(path: tuple[Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]], axis: float) -> tuple:
+    """
+    Times since the begin; velocity along and across the axis; whether across it moves.
+    """
+
+def coil_course(magnet: tuple[Sequence[float], Sequence[tuple[float, float]]], state: tuple[float, float, float, float, float, float, bool, bool], switchings: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], begin: float, end: float, most: int) -> tuple:
+    """
+    Pieces of a coil under commands, rows of its pull (times, N), and its state at the end.
+    """
+
+class Scan:
+    """Pins under a hand that moves over a page."""
+
+    def __init__(self, drive: tuple[float, float, float, tuple[float, float, float, Sequence[tuple[float, float]]], tuple[float, float, float, Sequence[tuple[float, float]]], tuple[float, float, float]], normal_force: float, magnet: tuple[Sequence[float], Sequence[tuple[float, float]]], control: tuple[float, float, float, float], axis: float, raster: tuple[Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], float, float, float], path: tuple[Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]], spots: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], touch: Sequence[tuple[float, float]], states: Sequence[tuple[float, float, float, tuple[float, float, float, float, float, float, bool, bool], bool, Sequence[float]]]) -> None: ...
+
+    def energise(self, most_switchings: int, most_rows: int) -> tuple: ...
+
+    def simulate(self, threads: int, most_segments: int, progress: object | None) -> tuple: ...
+
+    def motion(self, pin: int) -> Motion: ...
+
+    def switchings(self, pin: int) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]: ...
+
+    def coil(self, pin: int) -> tuple: ...
+
+    def load(self, pin: int) -> tuple: ...
+
+    def control(self, pin: int) -> tuple:
+        """
+        Whether it was commanded on at first; the last decision; pending switchings.
+        """
+
+    def evaluate(self, criteria: tuple[float, float, float, float, float], lines: Sequence[tuple[Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', writable=False)]]]) -> dict: ...
 
 settling_band: float = 0.05
 

@@ -1,11 +1,17 @@
 // Page, hand and evaluation of a scan: arrays in and out of include/pindrive/device. No logic lives here.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <future>
+#include <memory>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -18,6 +24,7 @@
 #include "pindrive/device/pin_evaluation.hpp"
 #include "pindrive/device/printed_lines.hpp"
 #include "pindrive/device/raster.hpp"
+#include "pindrive/device/scan.hpp"
 
 namespace nb = nanobind;
 namespace pd = pindrive;
@@ -92,22 +99,216 @@ nb::tuple printed_lines(const RasterNumbers& raster, const PathNumbers& path, do
   return nb::make_tuple(tables, count);
 }
 
+// ---- scan ----------------------------------------------------------------------------------------
+
+/// Kinetic and static friction, stiffness, and the rows (speed, force) of the curve.
+using ContactNumbers = std::tuple<double, double, double, pd::Rows>;
+/// Mass, stiffness, damping; plate, finger; travel, stiffness and damping of the end stops.
+using DriveNumbers = std::tuple<double, double, double, ContactNumbers, ContactNumbers,
+                                std::tuple<double, double, double>>;
+/// Numbers of an electromagnet in the order of MagnetParameters; rows (time, level) of its voltage.
+using MagnetNumbers = std::pair<std::vector<double>, pd::Rows>;
+/// Sample rate, latency, threshold, hysteresis.
+using ControlNumbers = std::tuple<double, double, double, double>;
+/// Since, flux, pull, warming, level, commanded; on, command.
+using CoilNumbers = std::tuple<double, double, double, double, double, double, bool, bool>;
+/// Position, velocity, stretch; coil; decision, pending switchings.
+using StateNumbers = std::tuple<double, double, double, CoilNumbers, bool, std::vector<double>>;
+
+device::Electromagnet magnet_of(const MagnetNumbers& given) {
+  const std::vector<double>& n = given.first;
+  std::vector<device::VoltageStep> steps;
+  for (const auto& [time, level] : given.second) steps.push_back({time, level});
+  return device::Electromagnet(
+      {n.at(0), n.at(1), n.at(2), n.at(3), n.at(4), n.at(5), n.at(6), n.at(7), n.at(8), n.at(9),
+       n.at(10), n.at(11), n.at(12), n.at(13), n.at(14)},
+      std::move(steps));
+}
+
+device::CoilState coil_of(const CoilNumbers& given) {
+  const auto& [since, flux, pull, warming, level, commanded, on, command] = given;
+  return {since, flux, pull, warming, level, commanded, on, command};
+}
+CoilNumbers numbers_of(const device::CoilState& s) {
+  return {s.since, s.flux, s.pull, s.warming, s.level, s.commanded, s.on, s.command};
+}
+
+template <class Function>
+auto column_of(const std::vector<device::FluxPiece>& pieces, Function&& f) {
+  return mapped<double>(pieces.size(), [&](std::size_t i) { return f(pieces[i]); });
+}
+
+/// Columns of the pieces of a coil, rows of its pull and its state at the end.
+nb::tuple table_of(const device::CoilCourse& course) {
+  using Piece = device::FluxPiece;
+  const auto column = [&](auto&& f) { return column_of(course.pieces, f); };
+  nb::dict pieces;
+  pieces["begins"] = column([](const Piece& p) { return p.begin; });
+  pieces["starts"] = column([](const Piece& p) { return p.start; });
+  pieces["on"] = mapped<std::uint8_t>(course.pieces.size(),
+                                      [&](std::size_t i) { return course.pieces[i].on; });
+  pieces["levels"] = column([](const Piece& p) { return p.level; });
+  pieces["targets"] = column([](const Piece& p) { return p.target; });
+  pieces["constants"] = column([](const Piece& p) { return p.constant; });
+  pieces["inductances"] = column([](const Piece& p) { return p.inductance; });
+  pieces["warmings"] = column([](const Piece& p) { return p.warming; });
+  pieces["resistances"] = column([](const Piece& p) { return p.resistance; });
+  return nb::make_tuple(pieces, to_array(std::vector<double>(course.times)),
+                        to_array(std::vector<double>(course.pulls)), numbers_of(course.end));
+}
+
+nb::tuple coil_course(const MagnetNumbers& magnet, const CoilNumbers& from,
+                      const Column& switchings, double begin, double end, std::size_t most) {
+  device::CoilCourse course;
+  course.follow(magnet_of(magnet), coil_of(from), switchings.data(), switchings.size(), begin, end,
+                most);
+  return table_of(course);
+}
+
+/// Scan with all that it refers to.
+class Scan {
+ public:
+  Scan(const DriveNumbers& drive, double normal_force, const MagnetNumbers& magnet,
+       const ControlNumbers& control, double axis, RasterNumbers raster, PathNumbers path,
+       const Table& spots, const pd::Rows& touch, const std::vector<StateNumbers>& states)
+      : raster_(std::move(raster)),
+        path_(std::move(path)),
+        plate_(contact(std::get<3>(drive)), contact(std::get<3>(drive))),
+        finger_(contact(std::get<4>(drive)), contact(std::get<4>(drive))),
+        touch_(touch, touch),
+        device_{drive_of(drive),        normal_force,       magnet_of(magnet),
+                controller_of(control), device::Axis(axis), spots_of(spots)},
+        inputs_(device_, raster_of(raster_), path_of(path_), touch_.profile()) {
+    for (const auto& [position, velocity, stretch, coil, decision, pending] : states)
+      states_.push_back({position, velocity, stretch, coil_of(coil), decision, pending});
+    runs_.resize(states_.size());
+    motions_.resize(states_.size());
+  }
+  Scan(const Scan&) = delete;
+  Scan& operator=(const Scan&) = delete;
+
+  std::size_t size() const { return runs_.size(); }
+
+  /// Samples the page and switches the coils; returns the numbers of switchings and of input rows until
+  /// one of them exceeds its limit, and the number of pins so far.
+  nb::tuple energise(std::size_t most_switchings, std::size_t most_rows) {
+    std::size_t switchings = 0, rows = 0, pins = 0;
+    interruptible([&](auto go_on) {
+      while (pins < size() && switchings <= most_switchings && rows <= most_rows &&
+             go_on(1U << 12)) {
+        device::PinRun& run = runs_[pins];
+        run.energise(inputs_, pins, states_[pins], std::max(most_switchings, most_rows));
+        switchings += run.coil.pieces.size() - 1;
+        rows += run.loads.size() + inputs_.path.count + touch_rows();
+        ++pins;
+      }
+      return 0;
+    });
+    return nb::make_tuple(switchings, rows, pins);
+  }
+
+  /// Simulates the pins with several threads, until they have more than the largest number of segments;
+  /// returns the numbers of segments and of pins.
+  /// The caller's thread is the first one; it alone checks for an interrupt and reports the progress.
+  nb::tuple simulate(std::size_t threads, std::size_t most_segments, const nb::object& progress) {
+    std::atomic<std::size_t> next{0}, done{0}, segments{0};
+    std::atomic<bool> stopped{false};
+    std::size_t reported = 0;
+    Interrupt interrupt;
+    const auto work = [&](auto go_on, auto report) {
+      for (std::size_t i = next++; i < size() && !stopped; i = next++) {
+        simulate_pin(i, go_on);
+        segments += motions_[i]->segments().size();
+        ++done;
+        if (segments > most_segments) stopped = true;
+        if (!stopped) report();
+      }
+    };
+    const auto report = [&] {
+      if (progress.is_none() || interrupt.found() || stopped) return;
+      const nb::gil_scoped_acquire locked;
+      for (std::size_t now = done; reported < now;) progress(++reported, size());
+    };
+    {
+      const nb::gil_scoped_release unlocked;
+      std::vector<std::future<void>> others;
+      try {
+        while (others.size() + 1 < std::min(threads, size()))
+          others.push_back(std::async(std::launch::async, [&] {
+            work([&] { return !stopped.load(std::memory_order_relaxed); }, [] {});
+          }));
+        work([&] { return interrupt.go_on() && !stopped; }, report);
+        if (interrupt.found()) stopped = true;
+        for (auto& other : others)
+          while (other.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready) {
+            if (!interrupt.look()) stopped = true;
+            report();
+          }
+        report();
+      } catch (...) {
+        stopped = true;
+        throw;
+      }
+    }
+    if (interrupt.found()) throw nb::python_error();
+    return nb::make_tuple(segments.load(), done.load());
+  }
+
+  const pd::StoredMotion<double>& motion(std::size_t pin) const { return *motions_.at(pin); }
+  const device::PinRun& run(std::size_t pin) const { return runs_.at(pin); }
+  const device::ScanInputs& inputs() const { return inputs_; }
+
+ private:
+  static pd::ContactNumbers contact(const ContactNumbers& given) {
+    const auto& [kinetic, fixed, stiffness, curve] = given;
+    return {kinetic, fixed, stiffness, curve};
+  }
+  pd::Drive<double> drive_of(const DriveNumbers& given) const {
+    const auto& [travel, stiffness, damping] = std::get<5>(given);
+    return {std::get<0>(given), std::get<1>(given), std::get<2>(given),
+            plate_.contact,     finger_.contact,    {travel, stiffness, damping}};
+  }
+  static device::Controller controller_of(const ControlNumbers& given) {
+    const auto& [rate, latency, threshold, hysteresis] = given;
+    return {rate, latency, threshold, hysteresis};
+  }
+  static std::vector<device::Place> spots_of(const Table& spots) {
+    std::vector<device::Place> found;
+    for (std::size_t i = 0; i < spots.shape(0); ++i) found.push_back({spots(i, 0), spots(i, 1)});
+    return found;
+  }
+  std::size_t touch_rows() const { return std::max<std::size_t>(touch_.first.size(), 1); }
+
+  template <class GoOn>
+  void simulate_pin(std::size_t i, GoOn&& go_on) {
+    device::PinRun& run = runs_[i];
+    run.simulate(inputs_, states_[i], go_on);
+    motions_[i] = std::make_unique<pd::StoredMotion<double>>(
+        device_.drive, run.inputs(inputs_, states_[i]), std::move(run.segments), run.outcome);
+  }
+
+  RasterNumbers raster_;
+  PathNumbers path_;
+  pd::OwnedContact<double> plate_, finger_;
+  pd::OwnedRows<double> touch_;
+  device::Device device_;
+  device::ScanInputs inputs_;
+  std::vector<device::PinState> states_;
+  std::vector<device::PinRun> runs_;
+  std::vector<std::unique_ptr<pd::StoredMotion<double>>> motions_;
+};
+
 // ---- evaluation ----------------------------------------------------------------------------------
 
 using Lines =
     std::tuple<Column, Column, nb::ndarray<const std::uint8_t, nb::ndim<1>, nb::c_contig>>;
-/// Number; offset of its spot; motion; times with the magnet on, (n, 2); printed lines.
-using PinNumbers = std::tuple<int, double, double, const pd::OwnedMotion<double>*, Table, Lines>;
 
-device::ScannedPin pin_of(const PinNumbers& given, const pd::Motion<double>& motion) {
-  const auto& [number, x, y, owned, energised, lines] = given;
-  device::ScannedPin pin{number, {x, y}, &motion, {}, {}};
-  for (std::size_t i = 0; i < energised.shape(0); ++i)
-    pin.energised.push_back({energised(i, 0), energised(i, 1)});
-  const auto& [begins, ends, whole] = lines;
+std::vector<device::PrintedLine> lines_of(const Lines& given) {
+  const auto& [begins, ends, whole] = given;
+  std::vector<device::PrintedLine> found;
   for (std::size_t i = 0; i < begins.size(); ++i)
-    pin.lines.push_back({begins.data()[i], ends.data()[i], whole.data()[i] != 0});
-  return pin;
+    found.push_back({begins.data()[i], ends.data()[i], whole.data()[i] != 0});
+  return found;
 }
 
 struct Found {
@@ -170,33 +371,33 @@ nb::dict dictionary(Found&& found) {
   return table;
 }
 
-nb::dict evaluate(const PathNumbers& path, double axis, double latency, double residual_load,
+nb::dict evaluate(const Scan& scan,
                   const std::tuple<double, double, double, double, double>& criteria,
-                  const std::vector<PinNumbers>& pins) {
+                  const std::vector<Lines>& printed) {
   return dictionary(interruptible([&](auto go_on) {
-    const device::HandPath hand = path_of(path);
-    const device::Axis along(axis);
-    const device::Way way(hand);
-    const std::vector<double> turnings = device::turnings(hand, along);
+    const device::ScanInputs& inputs = scan.inputs();
+    const device::Device& device = inputs.device;
+    const device::Way way(inputs.path);
+    const std::vector<double> turnings = device::turnings(inputs.path, device.axis);
     const auto [felt, direction, sure, speed, false_line] = criteria;
-    const device::ScanSetting setting{hand,
-                                      along,
+    const device::ScanSetting setting{inputs.path,
+                                      device.axis,
                                       &way,
                                       &turnings,
-                                      latency,
-                                      residual_load,
+                                      device.controller.latency,
+                                      device.load(device.magnet.given().residual),
                                       {felt, direction, sure, speed, false_line}};
     Found found;
-    for (const PinNumbers& numbers : pins) {
-      const pd::Motion<double> motion = std::get<3>(numbers)->view();
-      const device::ScannedPin pin = pin_of(numbers, motion);
+    for (std::size_t i = 0; i < scan.size() && go_on(1U << 12); ++i) {
+      const pd::Motion<double> motion = scan.motion(i).view();
+      const device::ScannedPin pin{static_cast<int>(i), device.spots[i], &motion,
+                                   scan.run(i).energised(inputs), lines_of(printed.at(i))};
       const device::PinEvaluation evaluation(setting, pin);
       evaluation.add_lines(found.lines);
       evaluation.add_false_lines(found.false_lines);
       std::vector<double> dips;
       for (const auto& pull : evaluation.pulls()) dips.push_back(pull.dip);
       found.dips.push_back(std::move(dips));
-      if (!go_on(1U << 12)) break;
     }
     return found;
   }));
@@ -252,6 +453,51 @@ void bind_device(nb::module_& m) {
         "most"_a,
         "Begins, ends and wholeness of the lines along the way of each spot, and the number of "
         "edges; incomplete at `most` edges.");
-  m.def("evaluate", &evaluate, "path"_a, "axis"_a, "latency"_a, "residual_load"_a, "criteria"_a,
-        "pins"_a);
+  m.def(
+      "plate_velocity",
+      [](const PathNumbers& path, double axis) {
+        const device::PlateVelocity found(path_of(path), device::Axis(axis));
+        return nb::make_tuple(to_array(std::vector<double>(found.times)),
+                              to_array(std::vector<double>(found.along)),
+                              to_array(std::vector<double>(found.across)), found.oblique);
+      },
+      "path"_a, "axis"_a,
+      "Times since the begin; velocity along and across the axis; whether across it moves.");
+  m.def("coil_course", &coil_course, "magnet"_a, "state"_a, "switchings"_a, "begin"_a, "end"_a,
+        "most"_a,
+        "Pieces of a coil under commands, rows of its pull (times, N), and its state at the end.");
+  nb::class_<Scan>(m, "Scan", "Pins under a hand that moves over a page.")
+      .def(nb::init<const DriveNumbers&, double, const MagnetNumbers&, const ControlNumbers&,
+                    double, RasterNumbers, PathNumbers, const Table&, const pd::Rows&,
+                    const std::vector<StateNumbers>&>(),
+           "drive"_a, "normal_force"_a, "magnet"_a, "control"_a, "axis"_a, "raster"_a, "path"_a,
+           "spots"_a, "touch"_a, "states"_a)
+      .def("energise", &Scan::energise, "most_switchings"_a, "most_rows"_a)
+      .def("simulate", &Scan::simulate, "threads"_a, "most_segments"_a, "progress"_a.none())
+      .def("motion", &Scan::motion, "pin"_a, nb::rv_policy::reference_internal)
+      .def(
+          "switchings",
+          [](const Scan& scan, std::size_t pin) {
+            return to_array(std::vector<double>(scan.run(pin).switchings));
+          },
+          "pin"_a)
+      .def(
+          "coil", [](const Scan& scan, std::size_t pin) { return table_of(scan.run(pin).coil); },
+          "pin"_a)
+      .def(
+          "load",
+          [](const Scan& scan, std::size_t pin) {
+            const device::PinRun& run = scan.run(pin);
+            return nb::make_tuple(to_array(std::vector<double>(run.load_times)),
+                                  to_array(std::vector<double>(run.loads)));
+          },
+          "pin"_a)
+      .def(
+          "control",
+          [](const Scan& scan, std::size_t pin) {
+            const device::PinRun& run = scan.run(pin);
+            return nb::make_tuple(run.commanded, run.decision, run.pending);
+          },
+          "pin"_a, "Whether it was commanded on at first; the last decision; pending switchings.")
+      .def("evaluate", &evaluate, "criteria"_a, "lines"_a);
 }

@@ -167,8 +167,11 @@ OF_THE_DEVICE = {
     "way",
     "turnings",
     "printed_lines",
-    "evaluate",
+    "plate_velocity",
+    "coil_course",
+    "Scan",
 }
+"""Names of the device layer, which has no functions in C yet."""
 OF_THE_EXTENSION = {"kernel_widths", "elementary", "settling_band", "event_limit"} | OF_THE_DEVICE
 """Names of the extension without a function in C."""
 
@@ -179,7 +182,7 @@ def test_c_has_the_functions_of_python() -> None:
     stub = ast.parse((ROOT / "src" / "pindrive" / "_core.pyi").read_text("utf-8"))
     requested = 0
     for node in stub.body:
-        if isinstance(node, ast.ClassDef):
+        if isinstance(node, ast.ClassDef) and node.name not in OF_THE_DEVICE:
             names = [each.name for each in node.body if isinstance(each, ast.FunctionDef)]
         elif isinstance(node, ast.FunctionDef):
             names = [node.name]

@@ -36,12 +36,18 @@ LAYERS = (
 PUBLIC = {
     "certificate": {"certificate", "certify"},
     "device": {
+        "coil",
+        "coil_course",
+        "controller",
+        "electromagnet",
         "evaluation",
         "hand_path",
+        "magnet_construction",
         "monotone_pieces",
         "pin_evaluation",
         "printed_lines",
         "raster",
+        "scan",
         "sign_change",
     },
     "events": {"simulate", "stepper"},

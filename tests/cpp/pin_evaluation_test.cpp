@@ -60,7 +60,7 @@ void numbers_of_a_line() {
   const auto lines = scan.lines();
   expect(lines.size() == 2, "each whole line is evaluated");
   const device::EvaluatedLine& line = lines[0];
-  expect(line.pin == 3 && line.outcome == device::Outcome::shown, "the first is shown");
+  expect(line.pin == 3 && line.outcome == device::LineOutcome::shown, "the first is shown");
   double response = 0, peak = -1, peak_time = 0, low = 1;
   constexpr double step = 1e-6, until = 0.090;
   for (double t = 0.010; t < until; t += step) {
@@ -91,20 +91,20 @@ void outcomes() {
   Scan unseen;
   unseen.scanned.lines[1] = {0.150, 0.160, true};
   const auto lines = unseen.lines();
-  expect(lines[1].outcome == device::Outcome::unseen && std::isnan(lines[1].stroke),
+  expect(lines[1].outcome == device::LineOutcome::unseen && std::isnan(lines[1].stroke),
          "a line without a command is unseen");
   Scan merged;
   merged.scanned.lines.push_back({0.1055, 0.1058, true});
-  expect(merged.lines()[2].outcome == device::Outcome::merged,
+  expect(merged.lines()[2].outcome == device::LineOutcome::merged,
          "one under a pull of another merges");
   Scan partial;
   partial.scanned.lines[0].whole = false;
   expect(partial.lines().size() == 1, "a line that is not whole is left out");
   Scan faint;
   faint.setting.criteria.felt = 1;
-  expect(faint.lines()[0].outcome == device::Outcome::faint, "one below the criterion is faint");
+  expect(faint.lines()[0].outcome == device::LineOutcome::faint, "one below the criterion is faint");
   const Scan lifted(infinity, {0, 0.008, 0.009, 0.2}, {1, 1, 0, 0});
-  expect(lifted.lines()[0].outcome == device::Outcome::faint && lifted.lines()[0].begin.skin == 0,
+  expect(lifted.lines()[0].outcome == device::LineOutcome::faint && lifted.lines()[0].begin.skin == 0,
          "a lifted finger feels nothing");
 }
 

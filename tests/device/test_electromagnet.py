@@ -94,8 +94,8 @@ def test_rows_keep_their_bound(
     )
     times = np.cumsum(lasts)
     end = float(times[-1])
-    current = magnet.current(Commands(times[:-1]), CoilState(0.0, False, start))
-    rows, pull = magnet.pull_rows(current, end)
+    current = magnet.current(Commands(times[:-1]), CoilState(0.0, False, start), end=end)
+    rows, pull = current.rows
     assert rows[0] == 0.0
     assert rows[-1] >= end or pull[-1] == magnet.pull(float(current.on[-1]))
     assert (np.diff(rows) > 0.0).all()
@@ -110,8 +110,8 @@ def test_rows_are_no_more_than_the_bound_requires() -> None:
     counts = []
     for deviation in (1e-3, 1e-4, 1e-5):
         magnet = Electromagnet(hold_force=1.0, deviation=deviation)
-        current = magnet.current(commands(0.0, 0.05), CoilState(-1e-3))
-        rows, pull = magnet.pull_rows(current, 0.2)
+        current = magnet.current(commands(0.0, 0.05), CoilState(-1e-3), end=0.2)
+        rows, pull = current.rows
         dense = np.linspace(rows[:-1], rows[1:], 20).ravel()
         worst = np.abs(np.interp(dense, rows, pull) - magnet.pull(current(dense))).max()
         assert worst > 0.8 * deviation

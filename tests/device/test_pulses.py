@@ -24,10 +24,11 @@ from pindrive.device import (
     scan,
 )
 from pindrive.device.closing import CLOSED
-from pindrive.device.heating import COPPER_RISE, Heat
+from pindrive.device.heating import Heat
 from pindrive.device.reading import Reading
 
 ON, OFF = 0.0103, 0.0631
+COPPER_RISE = 3.93e-3  # per kelvin, of annealed copper from 20 °C (IEC 60028)
 COMMANDS = Commands(np.array([ON, OFF]))
 
 
@@ -83,7 +84,7 @@ def test_a_full_duty_is_no_pulse() -> None:
 def test_rows_of_pulses_keep_their_bound(duty: float, frequency: float) -> None:
     made = magnet(duty, frequency)
     current = made.current(COMMANDS, CoilState(), 0.0, 0.08)
-    rows, pull = made.pull_rows(current, 0.08)
+    rows, pull = current.rows
     dense = np.linspace(rows[:-1], rows[1:], 20).ravel()
     assert np.abs(np.interp(dense, rows, pull) - made.pull(current(dense))).max() <= 1.001e-4
 
@@ -171,7 +172,7 @@ def test_a_given_voltage_holds_from_each_switching_on() -> None:
         value = target + (value - target) * exp(-lasts / constant)
         assert current(end) == pytest.approx(value, rel=1e-12, abs=1e-15)
     assert made.sustained_pull == made.pull(0.5)
-    rows, pull = made.pull_rows(current, 0.08)
+    rows, pull = current.rows
     dense = np.linspace(rows[:-1], rows[1:], 20).ravel()
     error = np.abs(np.interp(dense, rows, pull) - made.pull(current(dense))).max()
     assert error <= 1.001e-4 * made.hold_force
@@ -241,17 +242,43 @@ def test_warming_is_that_of_the_coupled_equations() -> None:
     assert float(current.warming(np.array([0.1]))[0]) == pytest.approx(state[1], rel=1e-3)
     assert current(0.1) * coil.current == pytest.approx(state[0], rel=1e-3)
     cold = Electromagnet.from_coil(coil).current(COMMANDS, CoilState(), 0.0, 0.08)
-    assert current.targets[current.on].min() < 1.0 == cold.targets[1], "resistance grows"
+    assert current.targets[current.on].min() < cold.targets[1] < 1.0, "resistance grows"
 
 
 def test_in_the_end_it_is_as_warm_as_its_power_makes_it() -> None:
     heat = Heat(power=0.5, thermal_resistance=100.0, heat_capacity=0.01)
-    assert heat.after(0.0, 1.0, 1.0, 1e-3, 1e3) == pytest.approx(50.0, rel=1e-12)
-    assert heat.after(10.0, 0.0, 0.0, 1e-3, 1.0) == pytest.approx(10.0 * exp(-1.0), rel=1e-12)
+
+    def after(warming: float, start: float, target: float, constant: float, lasts: float) -> float:
+        given = {"warming": warming, "start": start, "target": target, "constant": constant}
+        arrays = {name: np.array([value]) for name, value in (given | {"resistance": 1.0}).items()}
+        return float(heat.after(np.array([lasts]), **arrays)[0])
+
+    assert after(0.0, 1.0, 1.0, 1e-3, 1e3) == pytest.approx(50.0, rel=1e-12)
+    assert after(10.0, 0.0, 0.0, 1e-3, 1.0) == pytest.approx(10.0 * exp(-1.0), rel=1e-12)
     # A rate of the current that is also that of the cooling has no quotient.
-    same = heat.after(0.0, 1.0, 0.0, 2.0, 0.5)
-    assert same == pytest.approx(50.0 * 0.5 * exp(-0.5), rel=1e-12)
-    assert COPPER_RISE == 3.93e-3
+    assert after(0.0, 1.0, 0.0, 2.0, 0.5) == pytest.approx(50.0 * 0.5 * exp(-0.5), rel=1e-12)
+
+
+def test_a_coil_that_is_held_on_loses_current_as_it_warms() -> None:
+    """2 V for 20 s: the coupled equations, which the pull follows to a thousandth."""
+    given = {name: getattr(COIL, name) for name in Coil.__dataclass_fields__}
+    coil = Coil(**given | {"supply_voltage": 2.0, "heat_capacity": 0.4, "saturation_field": 5.0})
+    made = Electromagnet.from_coil(coil)
+    current = made.current(Commands(np.array([0.0])), CoilState(), 0.0, 20.0)
+
+    def slope(_: float, y: list[float]) -> tuple[float, float]:
+        resistance = coil.resistance * (1.0 + COPPER_RISE * y[1])
+        rate = (coil.supply_voltage - resistance * y[0]) / coil.inductance
+        heating = resistance * y[0] ** 2 - y[1] / coil.thermal_resistance
+        return rate, heating / 0.4
+
+    t = np.linspace(0.1, 20.0, 200)
+    out = solve_ivp(slope, (0.0, 20.0), [0.0, 0.0], t_eval=t, method="LSODA", rtol=1e-9, atol=1e-12)
+    exact = made.pull(out.y[0] / coil.current)
+    assert exact[-1] < 0.9 * exact[0]
+    rows, pull = current.rows
+    np.testing.assert_allclose(np.interp(t, rows, pull), exact, rtol=1e-3)
+    np.testing.assert_allclose(current.warming(t), out.y[1], rtol=1e-3)
 
 
 def test_a_warm_coil_pulls_less_and_its_rows_keep_their_bound() -> None:
@@ -262,7 +289,7 @@ def test_a_warm_coil_pulls_less_and_its_rows_keep_their_bound() -> None:
         made = Electromagnet.from_coil(coil, deviation=1e-4)
         current = made.current(Commands(np.array([0.001, 0.02])), warm, 0.0, 0.04)
         assert current(0.0199) == pytest.approx(1.0 / (1.0 + 3.93e-3 * 60.0), rel=0.01)
-        rows, pull = made.pull_rows(current, 0.04)
+        rows, pull = current.rows
         dense = np.linspace(rows[:-1], rows[1:], 20).ravel()
         error = np.abs(np.interp(dense, rows, pull) - made.pull(current(dense))).max()
         assert error <= 1.001e-4 * made.hold_force

@@ -390,7 +390,12 @@ def test_control_blocks() -> None:
     instants = control.sample_times(0.0, 0.1)
     assert_allclose(instants, np.arange(10) / 100)
     seen = np.array([1.0, 0.45, 0.39, 0.45, 0.55, 0.61, 0.5, 0.3, 0.3, 1.0])
-    commands, after = control.decide(seen, instants, 0.1)
+    # A hand that passes a pixel's middle at each sample.
+    scene = Scene(seen[np.newaxis], 1e-3, (-0.5e-3, 0.0))
+    path = HandPath([0.0, 0.1], [0.1, 0.1], [0.0, 0.0], (0.0, 0.5e-3))
+    (pin,) = scan(Device(drive=drive(), control=control), scene, path).pins
+    assert_allclose(pin.luminance, seen, atol=1e-12)
+    commands, after = pin.commands, pin.state.decision
     assert_allclose(commands.times, [0.035, 0.065, 0.085])
     assert (after.on, after.switched) == (False, True)
     assert after.pending == pytest.approx((0.105,))

@@ -172,9 +172,7 @@ def test_steps_end_early_under_a_command(tmp_path: Path) -> None:
             assert not defined or following > time
             unit.slave.enterStepMode()
     magnet = device.device.magnet
-    times, pull = magnet.pull_rows(
-        magnet.current(Commands(np.array([0.0])), CoilState(-1e-9)), 0.06
-    )
+    times, pull = magnet.current(Commands(np.array([0.0])), CoilState(-1e-9), end=0.06).rows
     release = Release(0.05, 0.0, 0.0, Profile(times.tolist(), device.device.load(pull).tolist()))
     events = simulate(device.drive, release, duration=0.05).events
     assert found == pytest.approx([e.time for e in events if e.time > 0.0], rel=1e-9)

@@ -378,8 +378,8 @@ MUTANTS = (
     Mutant(
         "unseen lines are merged",
         "device/pin_evaluation.hpp",
-        "seen ? Outcome::merged : Outcome::unseen",
-        "seen ? Outcome::unseen : Outcome::merged",
+        "seen ? LineOutcome::merged : LineOutcome::unseen",
+        "seen ? LineOutcome::unseen : LineOutcome::merged",
     ),
     Mutant(
         "a stroke from zero",

@@ -24,7 +24,7 @@ struct Criteria {
 };
 
 /// Outcome of a printed line.
-enum class Outcome : signed char { shown, unseen, merged, faint };
+enum class LineOutcome : signed char { shown, unseen, merged, faint };
 /// Perceived motion of the skin: none, a pulse, its direction, its direction with certainty.
 enum class Cue : signed char { none, felt, direction, sure };
 
@@ -47,7 +47,7 @@ struct EvaluatedEdge {
 /// Printed line as one pin showed it; NaN where a number does not exist.
 struct EvaluatedLine {
   int pin;
-  Outcome outcome;
+  LineOutcome outcome;
   EvaluatedEdge begin, end;
   double stroke;    ///< displacement of the pin, m
   double height;    ///< largest deflection, m

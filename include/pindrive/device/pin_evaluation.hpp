@@ -123,7 +123,7 @@ class PinEvaluation {
     const double sign = direction(line.begin);
     const Signal x = deflection(sign);
     EvaluatedLine found{pin_.number,
-                        Outcome::shown,
+                        LineOutcome::shown,
                         edge_at(line.begin),
                         edge_at(line.end),
                         nan,
@@ -135,9 +135,9 @@ class PinEvaluation {
                         nan,
                         nan};
     if (!first) {
-      found.outcome = seen ? Outcome::merged : Outcome::unseen;
+      found.outcome = seen ? LineOutcome::merged : LineOutcome::unseen;
     } else if (still_out(*first)) {
-      found.outcome = Outcome::merged;
+      found.outcome = LineOutcome::merged;
     } else {
       answer(found.begin, first->on, first->begin);
       if (first->moved()) {
@@ -148,8 +148,8 @@ class PinEvaluation {
     }
     if (last) evaluate_return(*last, x, found);
     const bool felt = found.begin.cue != Cue::none || found.end.cue != Cue::none;
-    if (found.outcome == Outcome::shown && !(felt && !std::isnan(found.begin.response)))
-      found.outcome = Outcome::faint;
+    if (found.outcome == LineOutcome::shown && !(felt && !std::isnan(found.begin.response)))
+      found.outcome = LineOutcome::faint;
     return found;
   }
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import inf, log1p, sqrt
+from math import sqrt
 from typing import Final
 
 from pindrive.quantities.refusal import refusal
@@ -26,28 +26,6 @@ class Closing:
     """The flux linkage at which it closes and opens, a part of that of the full current."""
     inductance: float
     """q, the inductance while it is open over that while it is closed."""
-
-    def piece(
-        self, start: float, target: float, constant: float
-    ) -> tuple[float, float, float, float]:
-        """Return the continuation of the flux linkage from `start` at constant voltage.
-
-        Args:
-            start: The flux linkage, a part.
-            target: Limit of the flux linkage while the gap is closed.
-            constant: Time constant while the gap is closed, s.
-
-        Returns:
-            To which it tends, its time constant (s), the inductance over that with the closed gap,
-            and how long until the gap closes or opens (s), inf where it does not.
-        """
-        # Just where it closes or opens, the flux's way tells.
-        closed = start > self.flux or (start == self.flux and target > self.flux)
-        inductance = 1.0 if closed else self.inductance
-        target, constant, lasts = target * inductance, constant * inductance, inf
-        if start > self.flux > target if closed else start < self.flux < target:
-            lasts = constant * log1p((start - self.flux) / (self.flux - target))
-        return target, constant, inductance, lasts
 
 
 CLOSED: Final = Closing(flux=0.0, inductance=1.0)

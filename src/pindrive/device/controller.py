@@ -8,7 +8,6 @@ from math import ceil
 import numpy as np
 from numpy.typing import NDArray
 
-from pindrive.device.current import Commands
 from pindrive.quantities import budgets
 from pindrive.quantities.part import Number
 from pindrive.quantities.refusal import refusal
@@ -65,36 +64,6 @@ class ControlBlock:
         each, lasts = ceil((end - begin) * self.sample_rate), end - begin
         of = f"{pins} pins, {lasts:g} s at {self.sample_rate:g} Hz"
         budgets.SAMPLES_OF_CONTROL.check(float(pins * each), of)
-
-    def decide(
-        self,
-        luminance: NDArray[np.float64],
-        sample_times: NDArray[np.float64],
-        end: float,
-        before: Decision | None = None,
-    ) -> tuple[Commands, Decision]:
-        """The commands that one spot's luminance leads to.
-
-        Args:
-            luminance: Luminance at each sample, shape (n,).
-            sample_times: Times of the samples, s, shape (n,), as from `sample_times`.
-            end: Until when, s; a switching due then or later is left pending.
-            before: State of the control block at the first sample; None: all magnets off.
-
-        Returns:
-            The switchings before `end`, and where the control block stands then.
-        """
-        before = before or Decision()
-        dark = luminance < self.threshold - 0.5 * self.hysteresis
-        light = luminance > self.threshold + 0.5 * self.hysteresis
-        decided = np.flatnonzero(dark | light)
-        on = np.concatenate([[before.on], dark[decided]])
-        changes = decided[on[1:] != on[:-1]]
-        due = np.concatenate([before.pending, sample_times[changes] + self.latency])
-        times = due[due < end]
-        switched = before.switched ^ (len(times) % 2 == 1)
-        after = Decision(bool(on[-1]), switched, tuple(due[due >= end].tolist()))
-        return Commands(times, before.switched), after
 
 
 def check_band(threshold: float, hysteresis: float) -> None:

@@ -2,31 +2,36 @@
 
 Both are parts of what they are at full current with the closed gap, so that they are the same
 number while the gap is closed. The flux linkage is continuous; the current jumps as the gap closes.
+The core follows the coil (include/pindrive/device/coil.hpp).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from math import ceil, exp, floor, inf, log, log1p
-from typing import overload
+from math import exp, log, log1p
+from typing import Any, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pindrive import _core
 from pindrive.device.closing import Closing
 from pindrive.device.heating import Heat
 from pindrive.quantities import budgets
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.rows import check_increasing
 
+Numbers = tuple[list[float], list[tuple[float, float]]]
+"""An electromagnet as the core has it: numbers, and rows (time, level) of its voltage."""
+
 
 @dataclass(frozen=True, slots=True)
 class CoilState:
-    """All there is to know of a coil: its last switching, or closing or opening of its gap."""
+    """All there is to know of a coil: its last change of voltage, gap or resistance."""
 
     since: float = 0.0
-    """Time of the last switching, s."""
+    """Time of that change, s."""
     on: bool = False
     """True if on since then."""
     flux: float = 0.0
@@ -40,18 +45,26 @@ class CoilState:
     commanded: float = 0.0
     """Time of the command to switch on, s, if commanded."""
 
+    def numbers(
+        self, pull: float, command: bool
+    ) -> tuple[float, float, float, float, float, float, bool, bool]:
+        """Return the state as the core has it, with its pull (N) and the command in force."""
+        flux, warming, level, commanded = self.flux, self.warming, self.level, self.commanded
+        return self.since, flux, pull, warming, level, commanded, self.on, command
 
-Circuit = Callable[[bool, float], tuple[float, float]]
-"""Circuit of a coil with a closed gap, on or off, relative to its resistance at 20 °C: the flux
-linkage to which it tends at full voltage, as a fraction, and its time constant, s."""
+    @classmethod
+    def of(cls, numbers: tuple[Any, ...]) -> CoilState:
+        """Return a state of the core."""
+        since, flux, pull, warming, level, commanded, on, _ = numbers
+        return cls(since, on, flux, pull, warming, level, commanded)
 
 
 @dataclass(frozen=True, slots=True)
 class Current:
     """A current over time, a part of the full one, exactly.
 
-    A piece begins at each switching, and where the gap closes or opens; in each the flux linkage is
-    an exponential.
+    A piece begins at each switching, where the gap closes or opens, and where the resistance of a
+    warming coil has changed by half a thousandth; in each the flux linkage is an exponential.
     """
 
     begins: NDArray[np.float64]
@@ -70,47 +83,51 @@ class Current:
     """The inductance over that with the closed gap."""
     warmings: NDArray[np.float64]
     """The warming of the coil then, K; 0 where its temperature is not simulated."""
+    resistances: NDArray[np.float64]
+    """The resistance of the winding in each piece over that at 20 °C."""
     heat: Heat | None
+    rows: tuple[NDArray[np.float64], NDArray[np.float64]]
+    """Times (s) and pulls (N) between which the pull is linear."""
+    state: CoilState
+    """State at the last change."""
 
     @classmethod
-    def of(
-        cls,
-        begins: NDArray[np.float64],
-        on: NDArray[np.bool_],
-        before: CoilState,
-        circuit: Circuit,
-        *,
-        closing: Closing,
-        heat: Heat | None = None,
-        levels: NDArray[np.float64] | None = None,
-    ) -> Current:
-        """Return the current of a coil that is switched at `begins`, the first before the scan.
+    def of(cls, course: tuple[Any, ...], heat: Heat | None) -> Current:
+        """Return the current of a course of the core."""
+        pieces, times, pulls, end = course
+        on = pieces.pop("on").view(np.bool_)
+        return cls(**pieces, on=on, heat=heat, rows=(times, pulls), state=CoilState.of(end))
 
-        `levels` are the voltages across it while it is on, parts of the full one: 1 unless given.
+    @classmethod
+    def under(
+        cls,
+        magnet: Numbers,
+        state: tuple[float, float, float, float, float, float, bool, bool],
+        switchings: NDArray[np.float64],
+        begin: float,
+        end: float,
+        heat: Heat | None = None,
+    ) -> Current:
+        """Return the current of a coil whose command changes at `switchings`, from a state on.
+
+        Args:
+            magnet: The electromagnet.
+            state: State of the coil, with the command in force.
+            switchings: Times, s, shape (n,), increasing.
+            begin: First time of the rows of the pull, s.
+            end: Last time, s; later switchings are ignored.
+            heat: Heating of the coil, if its temperature is simulated.
+
+        Raises:
+            ValueError: The number of pieces or of rows exceeds its budget.
         """
-        levels = np.ones(len(on)) if levels is None else levels
-        ends = [*begins[1:].tolist(), inf]
-        flux, warming = float(before.flux), before.warming
-        pieces = []
-        for begin, end, rises, level in zip(
-            begins.tolist(), ends, on.tolist(), levels.tolist(), strict=True
-        ):
-            while begin < end:
-                target, constant = circuit(rises, 1.0 if heat is None else heat.resistance(warming))
-                target, constant, inductance, lasts = closing.piece(flux, target * level, constant)
-                pieces.append((begin, flux, rises, level, target, constant, inductance, warming))
-                crosses = begin + lasts < end
-                each = lasts if crosses else end - begin
-                if each == inf:
-                    break
-                if heat is not None:
-                    start, final = flux / inductance, target / inductance
-                    warming = heat.after(warming, start, final, constant, each)
-                flux = closing.flux if crosses else current_after(flux, target, each / constant)
-                begin = begin + lasts if crosses else end
-        columns = [np.array(each) for each in zip(*pieces, strict=True)]
-        begins, starts, on, levels, targets, constants, inductances, warmings = columns
-        return cls(begins, starts, on, levels, targets, constants, inductances, warmings, heat)
+        most = int(max(budgets.SWITCHINGS.most, budgets.INPUT_ROWS.most))
+        found = cls.of(_core.coil_course(magnet, state, switchings, begin, end, most), heat)
+        budgets.SWITCHINGS.check(len(found.begins) - 1, "one coil")
+        budgets.INPUT_ROWS.check(
+            len(found.rows[0]), f"{len(found.begins) - 1} switchings of one coil"
+        )
+        return found
 
     @overload
     def __call__(self, t: float) -> float: ...
@@ -146,10 +163,15 @@ class Current:
         assert self.heat is not None
         times = np.asarray(t, np.float64)
         i = self._piece(times)
-        since = np.maximum(times - self.begins[i], 0.0)
         starts, targets = (part[i] / self.inductances[i] for part in (self.starts, self.targets))
-        columns = (self.warmings[i], starts, targets, self.constants[i], since)
-        return np.array([self.heat.after(*row) for row in zip(*columns, strict=True)])
+        return self.heat.after(
+            np.maximum(times - self.begins[i], 0.0),
+            warming=self.warmings[i],
+            start=starts,
+            target=targets,
+            constant=self.constants[i],
+            resistance=self.resistances[i],
+        )
 
     def mean_square(self, end: float) -> float:
         """The mean of the current's square from its begin to `end` (s), a part."""
@@ -178,34 +200,6 @@ class Pulses:
     """Hz."""
     duty: float
     """The part, above 0 and below 1."""
-
-    def switchings(
-        self, commands: Commands, before: CoilState, begin: float, end: float
-    ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-        """Return the switchings of a coil in [begin, end) (s), with their directions.
-
-        Raises:
-            ValueError: The number of switchings exceeds its budget.
-        """
-        spans = np.array(commands.spans(begin, end)).reshape(-1, 2)
-        count = float(np.diff(spans).sum()) * self.frequency * 2.0
-        budgets.SWITCHINGS.check(count, f"one coil, pulses at {self.frequency:g} Hz")
-        edges: list[NDArray[np.float64]] = [np.zeros((0, 2))]
-        for first, last in spans.tolist():
-            k = np.arange(floor(first * self.frequency), ceil(last * self.frequency) + 1)
-            rises = np.maximum(k / self.frequency, first)
-            falls = np.minimum((k + self.duty) / self.frequency, last)
-            edges.append(np.stack([rises, falls], axis=1)[falls > rises])
-        times = np.concatenate(edges).ravel()
-        on = np.arange(times.size) % 2 == 0
-        times, on = times[times < end], on[times < end]
-        if not before.on:
-            return times, on
-        if times[:1] == begin:  # a pulse that continues is no switching
-            return times[1:], on[1:]
-        return np.concatenate([[begin], times]), np.concatenate(
-            [[False], on]
-        )  # the piece ends there
 
     def steady(
         self, rise_constant: float, fall_constant: float, closing: Closing
@@ -275,42 +269,6 @@ class VoltageSteps:
                 raise ValueError(refusal(f"voltage[{i}]", required, f"{volts!r} V"))
         times, volts_ = zip(*rows, strict=True)
         return cls(times, tuple(volts / full for volts in volts_))
-
-    def switchings(
-        self, commands: Commands, before: CoilState, begin: float, end: float
-    ) -> tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[np.float64]]:
-        """Return the switchings of a coil before `end` (s), with direction and level."""
-        spans = commanded_spans(commands, before, begin, end)
-        rows: list[tuple[float, bool, float]] = []
-        if before.on and not commands.on(begin):  # switched off right there
-            rows.append((begin, False, 1.0))
-        for first, last in spans:
-            rows += [
-                (first + t, True, level)
-                for t, level in zip(self.times, self.levels, strict=True)
-                if first + t < last
-            ]
-            rows.append((last, False, 1.0))
-            budgets.SWITCHINGS.check(len(rows), "one coil")
-        rows = [row for row in rows if row[0] < end]
-        times, on, levels = zip(*rows, strict=True) if rows else ((), (), ())
-        return np.array(times, np.float64), np.array(on, np.bool_), np.array(levels, np.float64)
-
-
-def commanded_spans(
-    commands: Commands, before: CoilState, begin: float, end: float
-) -> list[tuple[float, float]]:
-    """From when to when (s) a coil is commanded on; of one that was on before, since then."""
-    spans = commands.spans(begin, end)
-    if spans and spans[0][0] == begin and commands.at_first:
-        spans[0] = before.commanded, spans[0][1]
-    return spans
-
-
-def current_after(start: float, target: float, constants: float) -> float:
-    """Return a flux linkage that tends to `target`, a number of time constants later."""
-    left = exp(-constants)
-    return 1.0 - (1.0 - start) * left if target == 1.0 else target + (start - target) * left
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,14 +4,15 @@ The flux linkage c, a part of that of the full current, rises and falls exponent
 is the current too unless the gap opens (`closing`). The pull is
 P_r + (P_h − P_r) min((c/σ)², 1): it grows with the square of the flux until the iron saturates,
 and a residual pull stays. In time it is smooth piece by piece, so that rows whose distance h obeys
-h²/8 max|P''| <= deviation make a piecewise-linear pull that is never further from it.
+h²/8 max|P''| <= deviation make a piecewise-linear pull that is never further from it. The core
+follows the coil and sets the rows (include/pindrive/device/electromagnet.hpp).
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from math import exp, inf, log, sqrt
+from math import inf, log, sqrt
 from typing import Final, overload
 
 import numpy as np
@@ -23,19 +24,13 @@ from pindrive.device.current import (
     CoilState,
     Commands,
     Current,
+    Numbers,
     Pulses,
     VoltageSteps,
-    current_after,
 )
 from pindrive.motion.drive import Contact
-from pindrive.quantities import budgets
 from pindrive.quantities.part import Number, OptionalNumber, checked_by
 from pindrive.quantities.refusal import refusal
-
-AT_ONCE: Final = 0.01
-"""Relative change of the pull, over twice its deviation, below which it is exact after a switching.
-"""
-
 
 DIRECT: Final = ("hold_force", "rise_time", "fall_time", "saturation")
 """Source of the pull without a coil."""
@@ -260,12 +255,9 @@ class Electromagnet:
     def sustained_flux(self) -> float:
         """The flux linkage that it keeps while it is on: with pulses the least of each period."""
         if self.steps is not None:
-            times, levels = np.array(self.steps.times), np.array(self.steps.levels)
-            on = np.ones(len(times), np.bool_)
-            kept = Current.of(
-                times, on, CoilState(), self._circuit, closing=self.closing, levels=levels
-            )
-            return float(kept.targets[-1])
+            switchings = np.zeros(1)
+            off = CoilState().numbers(self.residual, False)
+            return float(Current.under(self._cold, off, switchings, 0.0, inf).targets[-1])
         return 1.0 if self.pulses is None else self._swing(self.pulses)[0]
 
     @property
@@ -280,192 +272,76 @@ class Electromagnet:
             return self.steps.levels[-1] ** 2
         if self.pulses is None:
             return 1.0
-        edges = np.array([0.0, self.pulses.duty / self.pulses.frequency])
-        before = CoilState(0.0, True, self._swing(self.pulses)[0])
-        on = np.array([True, False])
-        period = Current.of(edges, on, before, self._circuit, closing=self.closing)
-        return period.mean_square(1.0 / self.pulses.frequency)
+        fall, period = self.pulses.duty / self.pulses.frequency, 1.0 / self.pulses.frequency
+        low = CoilState(0.0, True, self._swing(self.pulses)[0]).numbers(0.0, True)
+        numbers, _ = self._cold
+        steady = [*numbers[:8], 0.0, 1.0, *numbers[10:]]  # no pulses: one of them alone
+        over = Current.under((steady, []), low, np.array([fall]), 0.0, period)
+        return over.mean_square(period)
 
     def _swing(self, pulses: Pulses) -> tuple[float, float]:
         """The least and the largest flux linkage of a period in the end."""
         return pulses.steady(self.rise_constant, self.fall_constant, self.closing)
 
+    @property
+    def core_numbers(self) -> Numbers:
+        """The electromagnet as the core has it, in the order of `MagnetParameters`."""
+        coil, heat = self.coil, None if self.coil is None else self.coil.heat
+        pulses, steps = self.pulses, self.steps
+        numbers = [
+            self.hold_force,
+            self.residual,
+            self.saturation,
+            self.rise_constant,
+            self.fall_constant,
+            self.deviation,
+            self.closing.flux,
+            self.closing.inductance,
+            0.0 if pulses is None else pulses.frequency,
+            1.0 if pulses is None else pulses.duty,
+            0.0 if coil is None else coil.resistance,
+            0.0 if coil is None else coil.release_resistance,
+            0.0 if heat is None else heat.power,
+            0.0 if heat is None else heat.thermal_resistance,
+            0.0 if heat is None else heat.heat_capacity,
+        ]
+        return numbers, [] if steps is None else [*zip(steps.times, steps.levels, strict=True)]
+
+    @property
+    def _cold(self) -> Numbers:
+        """The electromagnet without its temperature."""
+        numbers, steps = self.core_numbers
+        return [*numbers[:-1], 0.0], steps
+
     def current(
-        self, commands: Commands, before: CoilState, begin: float = 0.0, end: float = 0.0
+        self,
+        commands: Commands,
+        before: CoilState,
+        begin: float | None = None,
+        end: float = inf,
     ) -> Current:
-        """The current under commands that come after the coil's last switching.
+        """The current and the rows of the pull under commands after the coil's last change.
+
+        The pull is linear between its rows, and nowhere further from the exact one than `deviation`
+        of the hold force. No row depends on a later command: a course that is cut keeps its rows.
 
         Args:
             commands: Commands of the control block.
-            before: The last switching.
-            begin: Time from which the commands hold, s; with pulses or a voltage.
-            end: Until when, s; with pulses or a voltage.
-        """
-        levels = None
-        if self.steps is not None:
-            times, switched, levels = self.steps.switchings(commands, before, begin, end)
-        elif self.pulses is not None:
-            times, switched = self.pulses.switchings(commands, before, begin, end)
-        else:
-            times = commands.times
-            switched = commands.on(times)
-        new = times > before.since
-        levels = None if levels is None else np.concatenate([[before.level], levels[new]])
-        begins = np.concatenate([[before.since], times[new]])
-        on = np.concatenate([[before.on], switched[new]])
-        heat = None if self.coil is None else self.coil.heat
-        return Current.of(
-            begins, on, before, self._circuit, closing=self.closing, heat=heat, levels=levels
-        )
-
-    def _circuit(self, on: bool, resistance: float) -> tuple[float, float]:
-        """To which part of the full flux linkage it tends, its gap closed, and how fast (s).
-
-        `resistance` is that of the winding over the one at 20 °C.
-        """
-        if on:
-            return 1.0 / resistance, self.rise_constant / resistance
-        if resistance == 1.0:
-            return 0.0, self.fall_constant
-        assert self.coil  # another has no temperature
-        own = self.coil.resistance
-        outer = self.coil.release_resistance
-        return 0.0, self.fall_constant * (own + outer) / (resistance * own + outer)
-
-    def pull_rows(
-        self, current: Current, end: float, first: float | None = None
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """The pull as rows (time in s, N) from the current's begin to `end`, or a row beyond.
-
-        Linear between them it is nowhere further from the exact one than `deviation` of the hold
-        force. No row depends on what comes after it, so that a course that is cut keeps the same
-        rows: a switching finds the pull on its line, and a moment later it is exact again.
-
-        Args:
-            current: The current.
-            end: s, after its begin.
-            first: The pull at its begin, N; None: the exact one.
+            before: The last change.
+            begin: Time from which the commands hold, s; the rows begin with the one before it.
+                None: the time of the last change.
+            end: Until when, s; later commands are ignored. Finite with pulses or a temperature.
 
         Raises:
-            ValueError: The number of rows exceeds its budget.
+            ValueError: There are more switchings or rows than the budgets allow.
         """
-        rows, pieces = 0, max(1, int(np.searchsorted(current.begins, end)))
-        times: list[NDArray[np.float64]] = []
-        pulls: list[NDArray[np.float64]] = []
-        stops = [*current.begins[1:pieces].tolist(), end]
-        pull = self.pull(float(current.starts[0])) if first is None else first
-        for begin, stop, start, target, constant in zip(
-            current.begins[:pieces].tolist(),
-            stops,
-            current.starts[:pieces].tolist(),
-            current.targets[:pieces].tolist(),
-            current.constants[:pieces].tolist(),
-            strict=True,
-        ):
-            parts, currents = self._rows_after(start, target)
-            after = constant * parts
-            t = begin + after
-            p = np.concatenate([[pull], self.pull(currents)])
-            count = int(np.searchsorted(t, stop))
-            pull = float(np.interp(stop, t, p))
-            last = count + 1 if stop == end else count
-            rows += last
-            budgets.INPUT_ROWS.check(rows, f"{len(stops)} switchings of one coil")
-            times.append(t[:last])
-            pulls.append(p[:last])
-        return np.concatenate(times), np.concatenate(pulls)
-
-    def _rows_after(
-        self, start: float, target: float
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Return the times after a switching, in time constants, and the currents then.
-
-        At the switching, whose current is left out; a moment later; as the current passes its
-        levels; and when it has reached its end within the deviation, where it stays.
-        """
-        if start == target:
-            return np.zeros(1), np.zeros(0)
-        if target not in (0.0, 1.0):
-            return self._rows_between(start, target)
-        rises, final = target == 1.0, target
-        levels = self._rising if rises else self._falling
-        moment = AT_ONCE * self.saturation * self._tolerance
-        soon = current_after(start, target, moment)
-        due = levels[(levels > soon) if rises else (levels < soon)]
-        apart = np.log((1.0 - start) / (1.0 - due)) if rises else np.log(start / due)
-        due, apart = due[apart > 2.0 * moment], apart[apart > 2.0 * moment]
-        after = np.concatenate([[0.0, moment], apart])
-        return np.append(after, after[-1] + 1.0), np.concatenate([[soon], due, [final]])
-
-    def _rows_between(
-        self, start: float, target: float
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Return the times and currents of a partial switching.
-
-        With c = A + C E, E = exp(−t/τ), the curvature of c² is 4C²E² + 2AC E, at its largest at
-        first. A row is due where the iron comes to saturation, or out of it.
-        """
-        sigma, tolerance = self.saturation, self._tolerance
-        swing = start - target
-        kink = log(swing / (sigma - target)) if (start > sigma) != (target > sigma) else inf
-        due, x = [AT_ONCE * sigma * tolerance], AT_ONCE * sigma * tolerance
-        while True:
-            left = exp(-x)
-            c = target + swing * left
-            if x < kink and c >= sigma:  # saturated until then, or forever
-                if kink == inf:
-                    break
-                x = kink
-            elif x >= kink and target >= sigma:
-                break
-            else:
-                size = 4.0 * (swing * left) ** 2 + 2.0 * abs(target * swing) * left
-                if abs(2.0 * target * swing * left) + (swing * left) ** 2 <= tolerance * sigma**2:
-                    break
-                step = x + sigma * sqrt(8.0 * tolerance / size)
-                x = kink if x < kink <= step else step
-            due.append(x)
-        after = np.array(due)
-        currents = target + swing * np.exp(-after)
-        return np.concatenate([[0.0], after, [after[-1] + 1.0]]), np.append(currents, target)
-
-    @property
-    def _tolerance(self) -> float:
-        """The deviation as a part of the pull that comes and goes, less what a moment takes."""
-        part = self.deviation * self.hold_force / (self.hold_force - self.residual)
-        return (1.0 - 5.0 * AT_ONCE) * part
-
-    @cached_property
-    def _rising(self) -> NDArray[np.float64]:
-        """Currents at which rows are due as it rises from 0.
-
-        With E = 1 − c = exp(−t/τ) the pull's curvature is 2E (2E − 1) / (σ τ)², whose size at any
-        later time is at most that at E or, before E = 1/4, that there, 1/4.
-        """
-
-        def curvature(c: float) -> float:
-            e = 1.0 - c
-            return max(abs(2.0 * e * (2.0 * e - 1.0)), 0.25 if e > 0.25 else 0.0)
-
-        sigma, tolerance = self.saturation, self._tolerance
-        levels, c = [0.0], 0.0
-        while True:
-            if sigma == 1.0 and 1.0 - c * c <= tolerance:
-                return np.array(levels)
-            c = 1.0 - (1.0 - c) * exp(-sigma * sqrt(8.0 * tolerance / curvature(c)))
-            levels.append(min(c, sigma) if sigma < 1.0 else c)
-            if sigma < 1.0 and c >= sigma:
-                return np.array(levels)
-
-    @cached_property
-    def _falling(self) -> NDArray[np.float64]:
-        """Currents at which rows are due as it falls from 1, with a curvature of 4c² / (σ τ)²."""
-        sigma, tolerance = self.saturation, self._tolerance
-        levels = [1.0, sigma] if sigma < 1.0 else [1.0]
-        while (levels[-1] / sigma) ** 2 > tolerance:
-            c = levels[-1]
-            levels.append(c * exp(-sigma * sqrt(2.0 * tolerance) / c))
-        return np.array(levels)
+        if end == inf and (self.pulses or (self.coil and self.coil.heat)):
+            raise ValueError(refusal("end", "finite for pulses or a coil that warms", "inf s"))
+        begin = before.since if begin is None else begin
+        pull = self.pull(before.flux) if before.pull is None else before.pull
+        state = before.numbers(pull, commands.at_first)
+        heat = None if self.coil is None else self.coil.heat
+        return Current.under(self.core_numbers, state, commands.times, begin, end, heat)
 
 
 def check_pulses(frequency: float | None, duty: float | None) -> None:

@@ -138,8 +138,8 @@ class HandPath:
             The hand's velocity along that axis. Its sign is that of the hand: x, the pin's
             deflection, is positive against the mouse's own motion along the axis (docs/theory.md).
         """
-        along = self.vx * cos(axis) + self.vy * sin(axis)
-        return Profile((self.times - self.times[0]).tolist(), along.tolist())
+        times, along, *_ = _core.plate_velocity(self.rows, axis)
+        return Profile(times.tolist(), along.tolist())
 
     def across_velocity(self, axis: float = default("axis")) -> Profile | float:
         """The velocity of the plate across the drive axis, over the time since `begin`.
@@ -151,11 +151,8 @@ class HandPath:
             The hand's velocity a right angle from that axis, towards the left; 0 for a hand that
             moves along the axis, to the rounding of its speed.
         """
-        across = self.vy * cos(axis) - self.vx * sin(axis)
-        speed = float(np.hypot(self.vx, self.vy).max())
-        if np.abs(across).max() <= 4.0 * np.finfo(np.float64).eps * speed:
-            return 0.0
-        return Profile((self.times - self.times[0]).tolist(), across.tolist())
+        times, _, across, oblique = _core.plate_velocity(self.rows, axis)
+        return Profile(times.tolist(), across.tolist()) if oblique else 0.0
 
     def angles(self, axis: float = default("axis")) -> tuple[float, float]:
         """The angle between motion and drive axis, rad: the largest, and the mean over the way.

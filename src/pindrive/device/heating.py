@@ -1,10 +1,10 @@
 """Heating of a coil: one lump of copper and iron, heated by its current and cooled by air.
 
-The resistance grows with the temperature. Electrical times are so much shorter than thermal ones
-that the resistance is taken from one switching to the next as it was at the first of both; the
-temperature is then a closed form. With the current c = A + C exp(-t/τ), a part of the full one,
+The resistance grows with the temperature. It is constant in a piece of the current, which ends
+where it has changed by half a thousandth (include/pindrive/device/electromagnet.hpp), so that the
+temperature is a closed form in each. With the current c = A + C exp(-t/τ), a part of the full one,
 
-    C_th y' = P r c² - y / R_th,    r = 1 + α y(0),
+    C_th y' = P r c² - y / R_th,    r = 1 + α y,
 
 where y is the warming above 20 °C and P the power at full current and 20 °C.
 """
@@ -12,11 +12,9 @@ where y is the warming above 20 °C and P the power at full current and 20 °C.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import exp, expm1
-from typing import Final
 
-COPPER_RISE: Final = 3.93e-3
-"""Part by which the resistance of annealed copper grows for each kelvin from 20 °C (IEC 60028)."""
+import numpy as np
+from numpy.typing import NDArray
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,32 +28,35 @@ class Heat:
     heat_capacity: float
     """J/K."""
 
-    @staticmethod
-    def resistance(warming: float) -> float:
-        """The resistance at a warming (K) over that at 20 °C."""
-        return 1.0 + COPPER_RISE * warming
-
     def after(
-        self, warming: float, start: float, target: float, constant: float, lasts: float
-    ) -> float:
-        """The warming a time later, K.
+        self,
+        lasts: NDArray[np.float64],
+        *,
+        warming: NDArray[np.float64],
+        start: NDArray[np.float64],
+        target: NDArray[np.float64],
+        constant: NDArray[np.float64],
+        resistance: NDArray[np.float64],
+    ) -> NDArray[np.float64]:
+        """The warming a time later, K; arrays of one shape.
 
         Args:
+            lasts: Duration, s.
             warming: Initial warming, K.
             start: The current at first, a part of the full one.
-            target: Limit of the warming, K.
-            constant: Time constant of the warming, s.
-            lasts: Duration, s.
+            target: Limit of the current.
+            constant: Time constant of the current, s.
+            resistance: Resistance of the winding over that at 20 °C.
         """
         cooling = 1.0 / (self.thermal_resistance * self.heat_capacity)
-        swing, found = start - target, warming * exp(-cooling * lasts)
-        heating = self.power * self.resistance(warming) / self.heat_capacity
+        swing, found = start - target, warming * np.exp(-cooling * lasts)
+        heating = self.power * resistance / self.heat_capacity
         for share, rate in (
             (target**2, 0.0),
             (2.0 * target * swing, 1.0 / constant),
             (swing**2, 2.0 / constant),
         ):
-            apart = abs(cooling - rate) * lasts
-            mean = -expm1(-apart) / apart if apart else 1.0
-            found += heating * share * lasts * exp(-min(rate, cooling) * lasts) * mean
-        return found
+            apart = np.abs(cooling - rate) * lasts
+            mean = np.divide(-np.expm1(-apart), apart, out=np.ones_like(apart), where=apart > 0.0)
+            found += heating * share * lasts * np.exp(-np.minimum(rate, cooling) * lasts) * mean
+        return np.asarray(found)

@@ -8,9 +8,9 @@ swinging, caught again in mid-swing.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from math import nan
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -19,13 +19,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import pindrive
-from pindrive import lazy
+from pindrive import _core, lazy
 from pindrive.device.controller import Decision
-from pindrive.device.current import CoilState, Commands, Current, commanded_spans
+from pindrive.device.current import CoilState, Commands, Current
 from pindrive.device.device import Criteria, Device
 from pindrive.device.geometry import Gap, smallest_gaps
 from pindrive.device.hand import HandPath
-from pindrive.device.page import AT_ONCE, FINER, Scene
+from pindrive.device.page import FINER, Scene
 from pindrive.device.page_description import Page, recorded
 from pindrive.device.pin_array import Neighbours
 from pindrive.device.reading import Reading
@@ -35,9 +35,14 @@ from pindrive.lazy import mpl_figure, xr
 from pindrive.motion.drive import Drive
 from pindrive.motion.motion import Motion
 from pindrive.motion.profile import Profile
-from pindrive.motion.release import Release, input_of
+from pindrive.motion.release import (
+    Release,
+    core_numbers,
+    drive_numbers,
+    input_of,
+    rows_of,
+)
 from pindrive.motion.results import Event
-from pindrive.motion.simulate import simulated
 from pindrive.quantities import budgets
 from pindrive.quantities.budgets import worker_count
 from pindrive.quantities.quantity import counted
@@ -69,54 +74,143 @@ class PinState:
     """State of the control block."""
 
 
+@dataclass(frozen=True, slots=True)
+class ScanInputs:
+    """What a scan is made of; equal inputs give equal scans."""
+
+    device: Device
+    scene: Scene
+    path: HandPath
+    start: tuple[PinState, ...] | None
+    """State of each pin at the begin; None: springs at rest, magnets off."""
+    touch: float | Profile | None
+    """Touch force of the finger on each pin, N, over the time of the scan; None: the drive's."""
+
+    @property
+    def finger_load(self) -> float | Profile:
+        """Factor on the finger's friction, over the time since the begin."""
+        return finger_load(self.device.drive, self.touch, self.path.begin)
+
+    @property
+    def states(self) -> tuple[PinState, ...]:
+        """State of each pin at the begin."""
+        return self.start or (PinState(),) * len(self.device.array)
+
+    def core(self) -> _core.Scan:
+        """Return the pins at the begin, as the core has them."""
+        device = self.device
+        drive, control, magnet = device.drive, device.control, device.magnet
+        pressed = self.finger_load
+        begins = []
+        for state in self.states:
+            coil = CoilState(self.path.begin) if state.coil is None else state.coil
+            pull = magnet.pull(coil.flux) if coil.pull is None else coil.pull
+            begins.append(
+                (
+                    state.position,
+                    nan if state.velocity is None else state.velocity,
+                    nan if state.skin_stretch is None else state.skin_stretch,
+                    coil.numbers(pull, state.decision.switched),
+                    state.decision.on,
+                    [*state.decision.pending],
+                )
+            )
+        return _core.Scan(
+            drive_numbers(drive),
+            drive.normal_force,
+            magnet.core_numbers,
+            (control.sample_rate, control.latency, control.threshold, control.hysteresis),
+            device.array.axis,
+            self.scene.raster,
+            self.path.rows,
+            np.ascontiguousarray(device.array.on_page(device.array.spots), np.float64),
+            rows_of(pressed),
+            begins,
+        )
+
+
 @equal_by_value
 @concise
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PinScan:
-    """One pin in a scan: its inputs, and the motion to which they lead, computed when first asked.
+    """One pin in a scan: what its magnet did, and its motion.
 
     Times are those of the hand's path.
     """
 
     number: int
     """Its place in the array, from 0."""
-    drive: Drive
-    begin: float
-    end: float
-    """End of the scan, s."""
-    sample_times: NDArray[np.float64]
-    """Sampling instants of the control block, s, shape (n,)."""
-    luminance: NDArray[np.float64]
-    """Luminance at the pin's spot, shape (n,)."""
-    commands: Commands
-    """Switchings of the coil by the control block."""
-    current: Current
-    """The current in the coil, a part of the full one, over time."""
-    release: Release
-    """The state at `begin`, and the inputs over the time since."""
-    coil: CoilState
-    """The coil's last switching."""
-    decision: Decision
-    """State of the control block at the end."""
+    inputs: ScanInputs
+    core: _core.Scan = field(repr=False, compare=False)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle the inputs of the scan, which is repeated."""
+        return _pin_of, (self.inputs, self.number)
 
     @property
+    def drive(self) -> Drive:
+        """The drive of each pin."""
+        return self.inputs.device.drive
+
+    @property
+    def begin(self) -> float:
+        """Begin of the scan, s."""
+        return self.inputs.path.begin
+
+    @property
+    def end(self) -> float:
+        """End of the scan, s."""
+        return self.inputs.path.end
+
+    @cached_property
+    def sample_times(self) -> NDArray[np.float64]:
+        """Sampling instants of the control block, s, shape (n,)."""
+        return self.inputs.device.control.sample_times(self.begin, self.end)
+
+    @cached_property
+    def luminance(self) -> NDArray[np.float64]:
+        """Luminance at the pin's spot at each of these instants, shape (n,)."""
+        given = self.inputs
+        spots = _spot(given.device, given.path, self.number, self.sample_times)
+        return given.scene.at(*spots.T)
+
+    @cached_property
+    def commands(self) -> Commands:
+        """Switchings of the coil by the control block."""
+        at_first = self.core.control(self.number)[0]
+        return Commands(self.core.switchings(self.number), at_first)
+
+    @cached_property
+    def current(self) -> Current:
+        """The current in the coil, a part of the full one, over time."""
+        coil = self.inputs.device.magnet.coil
+        return Current.of(self.core.coil(self.number), None if coil is None else coil.heat)
+
+    @cached_property
+    def release(self) -> Release:
+        """The state at `begin`, and the inputs over the time since."""
+        given = self.inputs
+        state, axis, pressed = given.states[self.number], given.device.array.axis, given.finger_load
+        stretch = state.skin_stretch
+        if stretch is not None:
+            stretch = held_stretch(stretch, self.drive.finger, pressed)
+        times, load = self.core.load(self.number)
+        return Release(
+            given.path.plate_velocity(axis),
+            state.position,
+            state.velocity,
+            Profile(times.tolist(), load.tolist()) if len(load) > 1 else float(load[0]),
+            stretch,
+            across_velocity=given.path.across_velocity(axis),
+            finger_load=pressed,
+        )
+
+    @cached_property
     def motion(self) -> Motion:
-        """The pin's motion, over the time since `begin`.
-
-        Raises:
-            SimulationError: The simulation had to be given up.
-        """
-        kept = vars(self)  # cached_property of Python 3.11 lets one thread at a time compute
-        if "_motion" not in kept:
-            kept["_motion"] = self._followed()
-        found: Motion = kept["_motion"]
-        return found
-
-    def _followed(self) -> Motion:
-        motion = simulated(self.drive, self.release, duration=self.end - self.begin)
-        if motion.status != Status.ok:
-            raise SimulationError(f"pin {self.number}", motion.status)
-        return motion
+        """The pin's motion, over the time since `begin`."""
+        numbers = core_numbers(self.drive, self.release, self.end - self.begin)
+        core = self.core.motion(self.number)
+        return Motion(self.drive, self.release, numbers, core, _core.settling_band)
 
     def position(self, t: ArrayLike) -> NDArray[np.float64]:
         """Deflection of the pin in the housing at times t (s, any shape), m.
@@ -193,12 +287,14 @@ class PinScan:
         strikes = abs(position) == drive.rigid_travel and position * velocity > 0.0
         # under a falling touch skin also slips under a pin at rest, and keeps a stretch
         grips = (last.finger == 0 or strikes or velocity == 0.0) and not drive.finger.rigid
+        _, on, pending = self.core.control(self.number)
+        switched = bool(self.commands.on(self.end))
         return PinState(
             position=position,
             velocity=0.0 if strikes else None if last.plate == 0 else velocity,
             skin_stretch=self.motion.stretch(lasts, "left") if grips else None,
-            coil=self.coil,
-            decision=self.decision,
+            coil=self.current.state,
+            decision=Decision(on, switched, tuple(pending)),
         )
 
 
@@ -217,16 +313,37 @@ class SlotRoom:
 class Scan(lazy.NotebookHtml):
     """Motion of a device that a hand moved over a scene."""
 
-    device: Device
-    scene: Scene
-    path: HandPath
+    inputs: ScanInputs
     pins: tuple[PinScan, ...]
+    core: _core.Scan = field(repr=False, compare=False)
     max_angle: float
     """Between motion and drive axis beyond which a warning is given, rad."""
-    touch: float | Profile | None = None
-    """Touch force on each pin over the path's clock, N; None: that of the drive."""
     criteria: Criteria | None = None
-    """Criteria of `evaluate` unless given; None: values of the literature."""
+    """Criteria of the device file, for `evaluate`."""
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle the inputs of the scan, which is repeated."""
+        return followed, (self.inputs, self.max_angle, self.criteria)
+
+    @property
+    def device(self) -> Device:
+        """The device."""
+        return self.inputs.device
+
+    @property
+    def scene(self) -> Scene:
+        """The page."""
+        return self.inputs.scene
+
+    @property
+    def path(self) -> HandPath:
+        """Path of the hand."""
+        return self.inputs.path
+
+    @property
+    def touch(self) -> float | Profile | None:
+        """Touch force of the finger on each pin, N, over the time of the scan."""
+        return self.inputs.touch
 
     def __repr__(self) -> str:
         """Return the scanned page, the duration and the number of pins in a line."""
@@ -439,86 +556,53 @@ def scan(
     workers = worker_count(threads)
     if touch is None and described is not None:
         touch = described.touch
-    pins = prepare(whole, scene, path, start, touch)
-    segments = 0
-    pool = ThreadPoolExecutor(max_workers=min(workers, len(pins)))
-    try:
-        for done, motion in enumerate(pool.map(lambda pin: pin.motion, pins), 1):
-            segments += motion.segment_count
-            budgets.SEGMENTS.check(segments, f"after {done} of {len(pins)} pins")
-            if progress:
-                progress(done, len(pins))
-    finally:  # after an error or Ctrl-C no further pin begins
-        pool.shutdown(wait=False, cancel_futures=True)
-    return Scan(
-        device=whole,
-        scene=scene,
-        path=path,
-        pins=tuple(pins),
-        max_angle=angle,
-        touch=None if touch is None else input_of("touch", touch),
-        criteria=None if described is None else described.criteria,
+    given = ScanInputs(
+        whole,
+        scene,
+        path,
+        None if start is None else tuple(start),
+        None if touch is None else input_of("touch", touch),
     )
+    criteria = None if described is None else described.criteria
+    return followed(given, angle, criteria, workers, progress)
 
 
-def prepare(
-    device: Device,
-    scene: Scene,
-    path: HandPath,
-    start: Sequence[PinState] | None = None,
-    touch: float | str | Profile | None = None,
-) -> list[PinScan]:
-    """Read the scene under each spot and switch the coils; nothing moves yet.
+def followed(
+    given: ScanInputs,
+    max_angle: float,
+    criteria: Criteria | None,
+    threads: int = 1,
+    progress: Progress | None = None,
+) -> Scan:
+    """Simulate the pins of a scan; arguments and errors as for `scan`."""
+    core = energised(given)
+    pins = tuple(PinScan(number=i, inputs=given, core=core) for i in range(len(given.states)))
+    segments, done = core.simulate(threads, int(budgets.SEGMENTS.most), progress)
+    budgets.SEGMENTS.check(segments, f"after {done} of {len(pins)} pins")
+    for i in range(len(pins)):
+        if (status := Status(core.motion(i).status)) != Status.ok:
+            raise SimulationError(f"pin {i}", status)
+    return Scan(inputs=given, core=core, pins=pins, max_angle=max_angle, criteria=criteria)
 
-    Arguments and errors as for `scan`.
+
+def energised(given: ScanInputs) -> _core.Scan:
+    """Sample the page under each spot and switch the coils; nothing moves yet.
+
+    Raises:
+        ValueError: There is more to do than the budgets allow, or the touch force does not fit.
     """
-    check_work(device, scene, path)
-    sample_times = device.control.sample_times(path.begin, path.end)
-    plate_velocity = path.plate_velocity(device.array.axis)
-    across_velocity = path.across_velocity(device.array.axis)
-    pressed = finger_load(device.drive, touch, path.begin)
-    states = [PinState()] * len(device.array) if start is None else start
-    prepared: list[PinScan] = []
-    rows = switchings = 0
-    for number, state in enumerate(states):
-        luminance = _seen(device, scene, path, sample_times, number)
-        decide = device.control.decide
-        commands, decision = decide(luminance, sample_times, path.end, state.decision)
-        before = CoilState(path.begin) if state.coil is None else state.coil
-        current = device.magnet.current(commands, before, path.begin, path.end)
-        switchings += len(current.begins) - 1
-        budgets.SWITCHINGS.check(switchings, f"up to pin {number} of {len(states)}")
-        load, coil = _load(device, commands, current, before, path)
-        loads = (load, pressed)
-        rows += sum(len(given.times) if isinstance(given, Profile) else 1 for given in loads)
-        rows += len(path.times)
-        budgets.INPUT_ROWS.check(rows, f"up to pin {number} of {len(states)}")
-        prepared.append(
-            PinScan(
-                number=number,
-                drive=device.drive,
-                begin=path.begin,
-                end=path.end,
-                sample_times=sample_times,
-                luminance=luminance,
-                commands=commands,
-                current=current,
-                release=Release(
-                    plate_velocity,
-                    state.position,
-                    state.velocity,
-                    load,
-                    None
-                    if state.skin_stretch is None
-                    else held_stretch(state.skin_stretch, device.drive.finger, pressed),
-                    across_velocity=across_velocity,
-                    finger_load=pressed,
-                ),
-                coil=coil,
-                decision=decision,
-            )
-        )
-    return prepared
+    check_work(given.device, given.scene, given.path)
+    core = given.core()
+    most = int(budgets.SWITCHINGS.most), int(budgets.INPUT_ROWS.most)
+    switchings, rows, pins = core.energise(*most)
+    of = f"up to pin {pins - 1} of {len(given.device.array)}"
+    budgets.SWITCHINGS.check(switchings, of)
+    budgets.INPUT_ROWS.check(rows, of)
+    return core
+
+
+def _pin_of(given: ScanInputs, number: int) -> PinScan:
+    return followed(given, 0.0, None).pins[number]
 
 
 def check_work(device: Device, scene: Scene, path: HandPath) -> None:
@@ -533,44 +617,7 @@ def check_work(device: Device, scene: Scene, path: HandPath) -> None:
     budgets.SAMPLES_OF_PAGE.check(pins * (len(path.times) + FINER * length / scene.pixel), of)
 
 
-def _load(
-    device: Device, commands: Commands, current: Current, before: CoilState, path: HandPath
-) -> tuple[float | Profile, CoilState]:
-    """The load on the plate's friction over the time since the path's begin, and how it ends."""
-    if not current.on.any() and before.flux == 0.0:
-        return device.load(device.magnet.residual), before
-    times, pull = device.magnet.pull_rows(current, path.end, before.pull)
-    spans = commanded_spans(commands, before, path.begin, path.end)
-    last = max(0, int(np.searchsorted(current.begins, path.end)) - 1)  # the gap may open later
-    since = float(current.begins[last])
-    after = CoilState(
-        since,
-        bool(current.on[last]),
-        float(current.starts[last]),
-        float(pull[np.searchsorted(times, since)]),
-        float(current.warmings[last]),
-        float(current.levels[last]),
-        spans[-1][0] if spans else before.commanded,
-    )
-    gone = max(0, int(np.searchsorted(times, path.begin, "right")) - 1)
-    load = device.load(pull[gone:])
-    if len(load) == 1:
-        return float(load[0]), after
-    return Profile((times[gone:] - path.begin).tolist(), load.tolist()), after
-
-
 def _spot(device: Device, path: HandPath, pin: int, t: ArrayLike) -> NDArray[np.float64]:
     """Return the spot of one pin on the page at the times t (s, shape (n,)), m, shape (n, 2)."""
     hand = np.stack(path.position(t), axis=-1)
     return np.asarray(hand + device.array.on_page(device.array.spots[pin : pin + 1]))
-
-
-def _seen(
-    device: Device, scene: Scene, path: HandPath, sample_times: NDArray[np.float64], pin: int
-) -> NDArray[np.float64]:
-    """Return the luminance samples at one pin's spot, shape (samples,)."""
-    luminance = np.empty_like(sample_times)
-    for begin in range(0, len(sample_times), AT_ONCE):
-        part = slice(begin, begin + AT_ONCE)
-        luminance[part] = scene.at(*_spot(device, path, pin, sample_times[part]).T)
-    return luminance

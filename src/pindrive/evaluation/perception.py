@@ -30,7 +30,7 @@ which the plate passes under the mouse while the line is read.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import nan
@@ -39,9 +39,9 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from pindrive import _core, lazy
+from pindrive import lazy
 from pindrive.device.device import Criteria
-from pindrive.device.scanning import PinScan, Scan
+from pindrive.device.scanning import Scan
 from pindrive.evaluation.line_crossings import (
     CUES,
     FATES,
@@ -225,37 +225,24 @@ def evaluate(scan: Scan, criteria: Criteria | None = None) -> Evaluation:
     """
     limits = criteria or Criteria()
     lines = printed_lines(scan.device, scan.path, scan.scene)
-    table, _ = evaluated(scan, list(zip(scan.pins, lines, strict=True)), limits)
+    table, _ = evaluated(scan, lines, limits)
     return Evaluation(scan=scan, criteria=limits, table=table)
 
 
 def evaluated(
-    scan: Scan, pins: list[tuple[PinScan, PrintedLines]], criteria: Criteria
+    scan: Scan, lines: Sequence[PrintedLines], criteria: Criteria
 ) -> tuple[dict[str, NDArray[Any]], list[NDArray[np.float64]]]:
-    """Evaluate pins of a scan.
+    """Evaluate the pins of a scan.
 
     Args:
         scan: The scan.
-        pins: Pins of the scan, each with the lines printed along its way.
+        lines: Lines printed along the way of each pin.
         criteria: Criteria of a felt line.
 
     Returns:
         Columns of the lines and the false lines; of each pin, the time of its lowest position
         before each motion by its magnet, s since the begin of the scan.
     """
-    device, path = scan.device, scan.path
-    spots = device.array.on_page(device.array.spots)
-    given = [
-        (
-            pin.number,
-            float(spots[pin.number, 0]),
-            float(spots[pin.number, 1]),
-            pin.motion.core,
-            np.array(pin.energised, np.float64).reshape(-1, 2),
-            (lines.begin, lines.end, lines.whole),
-        )
-        for pin, lines in pins
-    ]
     limits = (
         criteria.felt,
         criteria.direction,
@@ -263,14 +250,7 @@ def evaluated(
         criteria.direction_speed,
         criteria.false_line,
     )
-    found = _core.evaluate(
-        path.rows,
-        device.array.axis,
-        device.control.latency,
-        device.load(device.magnet.residual),
-        limits,
-        given,
-    )
+    found = scan.core.evaluate(limits, [(line.begin, line.end, line.whole) for line in lines])
     found["latency_on"] = found["begin_response"] - found["begin_time"]
     found["latency_off"] = found["end_response"] - found["end_time"]
     found["smear_time"] = found["settled"] - found["release"]

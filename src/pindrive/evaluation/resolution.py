@@ -419,12 +419,12 @@ def _pass(
     done = scan(
         replace(device, array=phases), page, path, start=[steady(device)] * PHASES, threads=1
     )
-    pins = []
-    for pin, shift in zip(done.pins, shifts, strict=True):
+    lines = []
+    for shift in shifts:
         times = (np.array(begins) - begin - shift) / speed
         whole = np.ones(len(times), np.uint8)
-        pins.append((pin, PrintedLines(times, times + width / speed, whole)))
-    table, dips = evaluated(done, pins, criteria)
+        lines.append(PrintedLines(times, times + width / speed, whole))
+    table, dips = evaluated(done, lines, criteria)
     columns = {name: column for name, column in table.items() if not name.startswith("false_line")}
     shape = PHASES, len(begins)
     return {name: column.reshape(shape) for name, column in columns.items()}, dips

@@ -11,6 +11,12 @@ Rows = Sequence[tuple[float, float]]
 ContactNumbers = tuple[float, float, float, Rows]
 
 
+DriveNumbers = tuple[
+    float, float, float, ContactNumbers, ContactNumbers, tuple[float, float, float]
+]
+"""Mass, stiffness, damping; plate, finger; travel, stiffness and damping of the end stops."""
+
+
 CoreNumbers = tuple[
     float,
     float,

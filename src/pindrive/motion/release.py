@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields
 from math import inf, nan
 from typing import Any, Final
 
-from pindrive.motion.core_numbers import CoreNumbers, Rows
+from pindrive.motion.core_numbers import CoreNumbers, DriveNumbers, Rows
 from pindrive.motion.drive import (
     Drive,
     check_stretch,
@@ -145,6 +145,28 @@ def check_fits(drive: Drive, release: Release) -> None:
 
 def core_numbers(drive: Drive, release: Release, duration: float | None) -> CoreNumbers:
     """A drive, a release and a duration (s; None: until the ending is seen) as the core has it."""
+    mass, stiffness, damping, plate, finger, stops = drive_numbers(drive)
+    return (
+        mass,
+        stiffness,
+        damping,
+        plate,
+        finger,
+        rows_of(release.mouse_velocity),
+        rows_of(release.plate_load),
+        release.displacement,
+        release.initial_velocity,
+        nan if release.skin_stretch is None else release.skin_stretch,
+        rows_of(release.force),
+        rows_of(release.across_velocity),
+        rows_of(release.finger_load),
+        stops,
+        inf if duration is None else duration,
+    )
+
+
+def drive_numbers(drive: Drive) -> DriveNumbers:
+    """A drive as the core has it."""
     plate, finger = drive.plate, drive.finger
     return (
         drive.mass,
@@ -152,16 +174,7 @@ def core_numbers(drive: Drive, release: Release, duration: float | None) -> Core
         drive.damping,
         (plate.kinetic, plate.static_friction, plate.stiffness, plate.curve or ()),
         (finger.kinetic, finger.static_friction, finger.stiffness, finger.curve or ()),
-        _rows(release.mouse_velocity),
-        _rows(release.plate_load),
-        release.displacement,
-        release.initial_velocity,
-        nan if release.skin_stretch is None else release.skin_stretch,
-        _rows(release.force),
-        _rows(release.across_velocity),
-        _rows(release.finger_load),
         stop_numbers(drive),
-        inf if duration is None else duration,
     )
 
 
@@ -174,7 +187,7 @@ def stop_numbers(drive: Drive) -> tuple[float, float, float]:
     )
 
 
-def _rows(given: float | Profile) -> Rows:
+def rows_of(given: float | Profile) -> Rows:
     """An input as rows (time, value): one row is a constant."""
     if not isinstance(given, Profile):
         return [(0.0, given)]

@@ -1,0 +1,176 @@
+/// Coil of one pin over time: commands to voltage, flux and the lines of a piecewise-linear pull.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "pindrive/device/electromagnet.hpp"
+
+namespace pindrive::device {
+
+/// State of a coil: its last change of voltage, gap or resistance, and the position since then.
+struct CoilState {
+  double since{0};      ///< time of that change, s
+  double flux{0};       ///< flux linkage then
+  double pull{0};       ///< pull then, as its rows have it, N
+  double warming{0};    ///< above 20 °C then, K
+  double level{1};      ///< voltage while it is on
+  double commanded{0};  ///< time of the command to switch on, s
+  bool on{false};       ///< voltage across it
+  bool command{false};
+};
+
+/// Coil that is simulated from change to change: next() is the time of the next one, pass() goes
+/// beyond. Between changes the pull is a line.
+class Coil {
+ public:
+  /// A coil without current, switched off.
+  Coil(const Electromagnet& magnet, double time) : magnet_(&magnet) {
+    state_.since = time;
+    state_.pull = magnet.pull(0);
+    begin_piece();
+  }
+  /// A coil in a state that was kept; pass_rows() goes to the present line of the pull.
+  Coil(const Electromagnet& magnet, const CoilState& state) : magnet_(&magnet), state_(state) {
+    begin_piece();
+  }
+
+  const CoilState& state() const { return state_; }
+  const FluxPiece& piece() const { return piece_; }
+
+  /// Follows a command; a command that is in force changes nothing.
+  void command(bool on, double time) {
+    if (on == state_.command) return;
+    state_.command = on;
+    if (!on) {
+      if (state_.on) change(false, 1, time);
+      return;
+    }
+    state_.commanded = time;
+    if (!magnet_->steps().empty())
+      change(true, magnet_->steps()[0].level, time);
+    else if (!magnet_->pulses() || time < pulse_end())
+      change(true, 1, time);
+  }
+
+  /// Time at which the present line of the pull ends, s; infinite without a change to come.
+  double next() const { return std::min({next_row(), closing_, heating_, next_voltage()}); }
+
+  /// Goes beyond all changes until a time.
+  void pass(double until) {
+    for (double time = next(); time <= until; time = next()) pass_next(time);
+  }
+
+  /// Begin of the present line of the pull, s.
+  double line_begin() const { return rows_[row_].time; }
+  /// Time of the next row of the pull, s; infinite after the last.
+  double next_row() const { return row_ + 1 < rows_.size() ? rows_[row_ + 1].time : infinity; }
+  double next_pull() const { return rows_[row_ + 1].pull; }  ///< at that row, N
+  /// Goes to the line of the pull that holds until a time, without a change.
+  void pass_rows(double time) {
+    while (next_row() < time) ++row_;
+  }
+
+  double pull(double time) const {
+    const Row& from = rows_[row_];
+    return from.pull + rate() * (time - from.time);
+  }
+  /// Rate of the pull, N/s.
+  double rate() const {
+    if (row_ + 1 >= rows_.size()) return 0;
+    const Row &from = rows_[row_], &to = rows_[row_ + 1];
+    return to.time > from.time ? (to.pull - from.pull) / (to.time - from.time) : 0;
+  }
+  /// Flux linkage; at a closing or opening of the gap that of the change, to the bit.
+  double flux(double time) const {
+    return time == closing_ ? magnet_->given().closing_flux
+                            : piece_.flux_after(time - piece_.begin);
+  }
+  /// Current, a part of the full one.
+  double current(double time) const { return piece_.current(flux(time)); }
+  /// Warming above 20 °C, K; 0 where the temperature is not simulated.
+  double warming(double time) const { return magnet_->warming_after(piece_, time - piece_.begin); }
+
+ private:
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+  struct Row {
+    double time, pull;
+  };
+
+  /// Time from which the present voltage follows: the command or the last change.
+  double reference() const { return std::max(state_.since, state_.commanded); }
+  /// Number of the pulse that began last at that time: pulses begin at multiples of the period.
+  double pulse() const {
+    const double frequency = magnet_->given().pulse_frequency, time = reference();
+    const double number = std::floor(time * frequency);
+    if ((number + 1) / frequency <= time) return number + 1;  // rounded down
+    return number / frequency <= time ? number : number - 1;
+  }
+  double pulse_end() const {
+    return (pulse() + magnet_->given().pulse_duty) / magnet_->given().pulse_frequency;
+  }
+  /// Index of the next voltage step.
+  std::size_t next_step() const {
+    const std::vector<VoltageStep>& steps = magnet_->steps();
+    std::size_t next = 1;
+    while (next < steps.size() && state_.commanded + steps[next].time <= reference()) ++next;
+    return next;
+  }
+
+  double next_voltage() const {
+    if (!state_.command) return infinity;
+    if (const std::vector<VoltageStep>& steps = magnet_->steps(); !steps.empty()) {
+      const std::size_t next = next_step();
+      return next < steps.size() ? state_.commanded + steps[next].time : infinity;
+    }
+    if (!magnet_->pulses()) return infinity;
+    return state_.on ? pulse_end() : (pulse() + 1) / magnet_->given().pulse_frequency;
+  }
+
+  void pass_next(double time) {
+    const double voltage = next_voltage(), own = std::min(closing_, heating_);
+    if (time < std::min(voltage, own)) {
+      ++row_;
+    } else if (own < voltage) {
+      change(state_.on, state_.level, own);
+    } else if (!magnet_->steps().empty()) {
+      change(true, magnet_->steps()[next_step()].level, time);
+    } else {
+      change(!state_.on, 1, time);
+    }
+  }
+
+  /// Begins a piece: the pull continues from its line, the flux from its value.
+  void change(bool on, double level, double time) {
+    const double pulling = pull(time), linked = flux(time), warm = warming(time);
+    state_.since = time;
+    state_.flux = linked;
+    state_.pull = pulling;
+    state_.warming = warm;
+    state_.on = on;
+    state_.level = level;
+    begin_piece();
+  }
+  void begin_piece() {
+    const CoilState& s = state_;
+    piece_ = magnet_->piece(s.since, s.flux, s.warming, s.on, s.level);
+    closing_ = s.since + magnet_->closing_after(piece_);
+    heating_ = s.since + magnet_->heating_after(piece_);
+    row_ = 0;
+    rows_.assign(1, {s.since, s.pull});
+    magnet_->rows(piece_,
+                  [&](double after, double pulls) { rows_.push_back({s.since + after, pulls}); });
+  }
+
+  const Electromagnet* magnet_;
+  CoilState state_;
+  FluxPiece piece_{};
+  double closing_{infinity}, heating_{infinity};  ///< times of the next change by itself, s
+  std::size_t row_{0};                            ///< present row of the pull
+  std::vector<Row> rows_;                         ///< of the pull since the begin of the piece
+};
+
+}  // namespace pindrive::device

@@ -1,0 +1,131 @@
+"""Page, control block and coil of random devices equal the replaced ones in Python."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from oracle.coil_course import ReferenceMagnet, decide
+from pindrive.device import Coil, CoilState, Commands, Electromagnet, HandPath, Scene, scan
+from random_scans import RandomScan
+
+PARTS = ("begins", "starts", "targets", "constants", "inductances")
+
+
+def random_magnet(rng: np.random.Generator) -> Electromagnet | None:
+    """By times or by a coil, with pulses, voltage steps and a gap that opens; None: impossible."""
+
+    def between(low: float, high: float) -> float:
+        return float(np.exp(rng.uniform(np.log(low), np.log(high))))
+
+    given: dict[str, Any] = {
+        "residual": float(rng.choice([0.0, 0.005])),
+        "deviation": between(1e-5, 1e-2),
+    }
+    if rng.random() < 0.5:
+        given |= {"pwm_frequency": between(100.0, 3000.0), "pwm_duty": rng.uniform(0.1, 0.9)}
+    if rng.random() < 0.3:
+        return Electromagnet(
+            hold_force=between(0.1, 20.0),
+            rise_constant=between(1e-4, 1e-2),
+            fall_constant=between(1e-4, 1e-2),
+            saturation=float(rng.choice([1.0, rng.uniform(0.1, 1.0)])),
+            **given,
+        )
+    opens = rng.random() < 0.5
+    coil = Coil(
+        turns=250,
+        pole_area=between(1e-6, 5e-6),
+        gap=between(2e-5, 2e-4),
+        wire_diameter=between(4e-5, 2e-4),
+        turn_length=0.0088,
+        supply_voltage=between(0.5, 10.0),
+        release_resistance=float(rng.choice([0.0, between(1.0, 100.0)])),
+        lift=between(1e-5, 1e-4) if opens else None,
+        closing_force=0.02 if opens else None,
+    )
+    volts = coil.supply_voltage
+    steps = [(0.0, volts), (0.003, 0.5 * volts), (0.02, 0.7 * volts)]
+    voltage = None if "pwm_duty" in given or rng.random() < 0.5 else steps
+    try:
+        return Electromagnet.from_coil(coil, voltage=voltage, **given)
+    except ValueError:  # the gap would never close, or never open
+        return None
+
+
+def test_currents_and_pulls_of_random_magnets() -> None:
+    rng, compared = np.random.default_rng(5), 0
+    for _ in range(200):
+        magnet = random_magnet(rng)
+        if magnet is None:
+            continue
+        commands = Commands(np.sort(rng.uniform(0.0, 0.2, rng.integers(1, 12))))
+        reference = ReferenceMagnet(magnet)
+        expected = reference.current(commands, CoilState(), 0.0, 0.2)
+        found = magnet.current(commands, CoilState(), 0.0, 0.2)
+        within = expected.begins < 0.2
+        for part in PARTS:
+            np.testing.assert_allclose(
+                getattr(found, part), getattr(expected, part)[within], rtol=1e-12, atol=1e-15
+            )
+        times, pulls = reference.pull_rows(expected, 0.2)
+        np.testing.assert_allclose(found.rows[0], times, rtol=1e-12, atol=1e-15)
+        np.testing.assert_allclose(found.rows[1], pulls, rtol=1e-11, atol=1e-13)
+        compared += 1
+    assert compared > 120
+
+
+def luminance(scene: Scene, x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.float64]:
+    """`Scene.at` by NumPy."""
+    (rows, columns), (x0, y0) = scene.luminance.shape, scene.origin
+
+    def between(place: NDArray[np.float64], count: int) -> tuple[NDArray[Any], ...]:
+        middle = np.clip(place - 0.5, 0.0, count - 1.0)
+        i = np.minimum(middle.astype(np.intp), max(count - 2, 0))
+        return i, np.minimum(i + 1, count - 1), middle - i
+
+    inside = scene.contains(x, y)
+    i, i1, u = between((x - x0) / scene.pixel, columns)
+    j, j1, w = between((y - y0) / scene.pixel, rows)
+    above = scene.luminance[j, i] * (1.0 - u) + scene.luminance[j, i1] * u
+    below = scene.luminance[j1, i] * (1.0 - u) + scene.luminance[j1, i1] * u
+    return np.where(inside, above * (1.0 - w) + below * w, 1.0)
+
+
+def position(path: HandPath, t: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
+    """`HandPath.position` by NumPy."""
+    i = np.clip(np.searchsorted(path.times, t, "right") - 1, 0, len(path.times) - 2)
+    since = t - path.times[i]
+    part = since / (path.times[i + 1] - path.times[i])
+    return tuple(
+        place[i] + since * (v[i] + 0.5 * ((v[i + 1] - v[i]) * part))
+        for place, v in ((path.x, path.vx), (path.y, path.vy))
+    )
+
+
+@pytest.mark.parametrize("kind", ["plain", "oblique"])
+def test_commands_and_loads_of_random_scans(kind: str) -> None:
+    """Luminance and commands to the bit, the load to the last digits."""
+    switchings = 0
+    for seed in range(40):
+        case = RandomScan.of(seed, oblique=kind == "oblique")
+        (pin,) = scan(case.device, case.scene, case.path).pins
+        x, y = position(case.path, pin.sample_times)
+        (dx, dy), *_ = case.device.array.on_page(case.device.array.spots)
+        np.testing.assert_array_equal(pin.luminance, luminance(case.scene, x + dx, y + dy))
+        control = case.device.control
+        commands, decision = decide(control, pin.luminance, pin.sample_times, case.path.end)
+        np.testing.assert_array_equal(pin.commands.times, commands.times)
+        assert pin.state.decision == decision
+        reference = ReferenceMagnet(case.device.magnet)
+        current = reference.current(commands, CoilState(pin.begin), pin.begin, pin.end)
+        times, pulls = reference.pull_rows(current, pin.end)
+        if len(commands.times):
+            rows, load = pin.core.load(0)
+            np.testing.assert_allclose(rows, times - pin.begin, rtol=1e-12, atol=1e-15)
+            np.testing.assert_allclose(load, case.device.load(pulls), rtol=1e-12)
+        switchings += len(commands.times)
+    assert switchings > 100
