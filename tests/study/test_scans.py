@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import json
-import multiprocessing
-import os
-import signal
 from collections.abc import Mapping
 from io import StringIO
 from math import nan
@@ -29,7 +26,6 @@ from pindrive.device.reading import Reading
 from pindrive.evaluation import Evaluation
 from pindrive.evaluation import evaluate as evaluate_scan
 from pindrive.files.keys import NUMERIC_KEYS
-from pindrive.files.output import OutputError
 from pindrive.plot.sensitivity import plot_sobol_indices
 from pindrive.plot.slices import plot_study
 from pindrive.study.distributions import Sample
@@ -311,20 +307,10 @@ def test_stopped_and_resumed_is_the_same_file() -> None:
     assert Path("study.nc").read_bytes() == Path("whole.nc").read_bytes()
 
 
-@pytest.mark.skipif(os.name == "nt", reason="its processes are killed by a signal")
-def test_processes_change_nothing_and_their_death_loses_nothing() -> None:
+def test_threads_change_nothing() -> None:
     plan = study(GRID)
     sweep(plan, Path("whole.nc"), work=on_threads(1))
-
-    def kill(done: int, total: int) -> None:
-        if done:
-            for process in multiprocessing.active_children():
-                os.kill(process.pid or 0, signal.SIGKILL)
-
-    with pytest.raises(OutputError, match="died; finished chunks are kept, `resume=True`"):
-        sweep(plan, Path("study.nc"), work=on_threads(2), progress=kill)
-    result = sweep(plan, Path("study.nc"), work=on_threads(2), resume=True)
-    assert result.worked_out < result.points
+    sweep(plan, Path("study.nc"), work=on_threads(2))
     assert Path("study.nc").read_bytes() == Path("whole.nc").read_bytes()
     columns = plan.columns(0, plan.size)
     one, two = (evaluate(plan, columns, plan.size, SCAN_OUTPUTS, threads) for threads in (1, 2))

@@ -52,10 +52,8 @@ def main() -> None:
         print(f"standard output: cannot be written: {error.strerror}", file=sys.stderr)
         sys.exit(2)
     if status == INTERRUPTED:
-        from pindrive.study.workers import stop_at_once
-
         gc.collect()  # close what the exception holds, so that no file is left half written
-        stop_at_once(INTERRUPTED)  # threads and processes at work would be waited for
+        os._exit(INTERRUPTED)  # threads at work would be waited for
     sys.exit(status)
 
 

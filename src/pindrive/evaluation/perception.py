@@ -34,6 +34,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import nan
+from statistics import median
 from typing import Any, Final
 
 import numpy as np
@@ -189,10 +190,10 @@ class Evaluation(lazy.NotebookHtml):
         """
         shown = self.table["fate"] == FATES.index("shown")
         values = self.table[name.partition(".")[2]][shown]
-        known = values[~np.isnan(values)]
-        if not known.size:
+        known = sorted(values[~np.isnan(values)].tolist())
+        if not known:
             return nan, nan, nan
-        return float(known.min()), float(np.median(known)), float(known.max())
+        return known[0], median(known), known[-1]
 
     @property
     def numbers(self) -> dict[str, float]:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Container, Iterable, Mapping
 from dataclasses import dataclass
+from functools import cache
 from math import inf
 from typing import Any, Final
 
@@ -182,8 +183,15 @@ def _rows(value: object, quantity: Quantity, key: str, place: str) -> Rows:
 
 def table_of(values: Mapping[str, Value], table: str) -> dict[str, Any]:
     """The values of one table, by the names of its keys."""
-    parts = ((key.partition("."), value) for key, value in values.items())
-    return {name: value for (where, _, name), value in parts if where == table}
+    return {name: values[key] for key, name in _names_of(table) if key in values}
+
+
+@cache
+def _names_of(table: str) -> tuple[tuple[str, str], ...]:
+    """The keys of one table, with their names in it."""
+    return tuple(
+        (key, key.partition(".")[2]) for key in NUMERIC_KEYS if key.startswith(f"{table}.")
+    )
 
 
 def contact_of(values: Mapping[str, Value], table: str) -> Contact:

@@ -20,7 +20,7 @@ from pindrive.quantities.budgets import worker_count
 from pindrive.study.distributions import Linked, with_links
 from pindrive.study.evaluate import evaluate, exist, is_slow
 from pindrive.study.outputs import DESIGN_OUTPUTS, NUMBERS, Constraint
-from pindrive.study.workers import Cluster, standing
+from pindrive.study.workers import Cluster, spread
 
 if TYPE_CHECKING:
     from pindrive.study.study import Study
@@ -290,15 +290,13 @@ class DesignSpace:
             )
             for i, guess in enumerate(near)
         ]
-        processes = worker_count(self.threads)
-        each = min(PORTION, -(-len(requested) // processes)) or 1
+        threads = worker_count(self.threads)
+        each = min(PORTION, -(-len(requested) // threads)) or 1
         portions = [requested[i : i + each] for i in range(0, len(requested), each)]
         if self.crew is not None:
             rows = [*self.crew.spread(self.line_speeds, self.study, portions)]
-        elif processes == 1 or len(portions) == 1:
-            rows = [self.line_speeds(self.study, portion) for portion in portions]
         else:
-            rows = standing(processes).spread(self.line_speeds, self.study, portions)
+            rows = spread(self.line_speeds, self.study, portions, threads)
         every = [row for portion in rows for row in portion]
         self.count.scans += sum(trials for _, trials in every)
         return np.array([speed for speed, _ in every])

@@ -26,7 +26,7 @@ from pindrive.quantities.refusal import Refusal, message_of, refused_by
 from pindrive.quantities.status import End, SimulationError, Status
 from pindrive.study.design import Columns, Ranges
 from pindrive.study.outputs import MEASURED, SCANNED, variables
-from pindrive.study.workers import standing
+from pindrive.study.workers import spread
 
 if TYPE_CHECKING:
     from pindrive.study.study import Study
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 Row = dict[str, Any]
 
 _PORTION: Final = 8
-"""Points that a process takes at a time, at most."""
+"""Points that a thread takes at a time, at most."""
 
 
 def scan_numbers(study: Study, at: Mapping[str, float]) -> dict[str, float]:
@@ -56,7 +56,7 @@ def scan_numbers(study: Study, at: Mapping[str, float]) -> dict[str, float]:
 
 
 def _evaluate_scans(
-    study: Study, columns: Columns, count: int, outputs: Sequence[str], processes: int | None = 1
+    study: Study, columns: Columns, count: int, outputs: Sequence[str], threads: int | None = 1
 ) -> dict[str, Any]:
     """The outputs at `count` points; arguments as for `evaluate`.
 
@@ -67,13 +67,10 @@ def _evaluate_scans(
     study.page.check()
     every = {key: np.broadcast_to(values, (count,)) for key, values in columns.items()}
     points = [{key: float(values[i]) for key, values in every.items()} for i in range(count)]
-    processes = worker_count(processes)
-    portion = min(_PORTION, -(-count // (2 * processes)))
+    threads = worker_count(threads)
+    portion = min(_PORTION, -(-count // (2 * threads)))
     portions = [points[i : i + portion] for i in range(0, count, portion)]
-    if processes == 1 or len(portions) == 1:
-        done = [_rows(study, portion) for portion in portions]
-    else:
-        done = standing(processes).spread(_rows, study, portions)
+    done = spread(_rows, study, portions, threads)
     rows = [row for portion in done for row in portion]
     kinds = {"reason": object}
     return {name: np.array([row[name] for row in rows], kinds.get(name)) for name in outputs}
@@ -126,7 +123,7 @@ def evaluate(
         count: Number of points.
         outputs: Names of variables; `reason` among them is text: what is refused of a point that
             cannot exist, the same for points that are refused alike, and empty where it exists.
-        threads: Number of threads for `simulate_batch`, or of processes for scans; None: all cores.
+        threads: Number of threads; None: all cores.
     """
     if study.page:
         return _evaluate_scans(study, columns, count, outputs, threads)

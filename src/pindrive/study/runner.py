@@ -6,8 +6,7 @@ import json
 import os
 import shutil
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, Future, wait
-from concurrent.futures.process import BrokenProcessPool
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -44,7 +43,7 @@ from pindrive.study.store import (
     lay_out,
 )
 from pindrive.study.study import Study
-from pindrive.study.workers import DIED, check_installed, cluster_executor, workers
+from pindrive.study.workers import check_installed, cluster_executor
 
 Work = Callable[["Study", list[int]], Iterator[tuple[int, list[Piece]]]]
 """Computes chunks of a study, and yields each when it is done, in any order."""
@@ -170,21 +169,13 @@ def sweep(
 
 
 def on_threads(threads: int | None = None) -> Work:
-    """Compute chunks in parallel on the cores of this machine, one per thread at a time.
-
-    Scans are computed by as many processes instead: a script that sweeps them does so under
-    `if __name__ == "__main__":`, as all that begin processes.
-    """
+    """Compute chunks in parallel on the cores of this machine, one per thread at a time."""
     count = worker_count(threads)
 
     def work(study: Study, chunks: list[int]) -> Iterator[tuple[int, list[Piece]]]:
-        pool = workers(min(count, len(chunks) or 1), processes=study.page is not None)
+        pool = ThreadPoolExecutor(min(count, len(chunks) or 1))
         try:
             yield from in_flight(chunks, count + 1, lambda k: pool.submit(work_out, study, k))
-        except BrokenProcessPool:
-            raise OutputError(
-                f"{DIED}; finished chunks are kept, `resume=True` continues"
-            ) from None
         finally:
             pool.shutdown(wait=False, cancel_futures=True)
 

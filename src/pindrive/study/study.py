@@ -297,9 +297,6 @@ class Study:
     ) -> xr.Dataset:
         """Simulate every point.
 
-        Scans are shared out among processes: a script that sweeps them does so under
-        `if __name__ == "__main__":`, as all that begin processes.
-
         Args:
             path: A NetCDF file that keeps the points; an interrupted run continues from it. None: a
                 temporary file.

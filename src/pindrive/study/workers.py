@@ -1,23 +1,15 @@
-"""Workers of a study: threads for the core, processes for Python, or a Dask cluster."""
+"""Workers of a study: threads of this process, or a Dask cluster."""
 
 from __future__ import annotations
 
 import json
-import os
-import signal
-import sys
-import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
+from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import contextmanager
-from functools import cache
-from multiprocessing import active_children, parent_process
-from multiprocessing.context import SpawnContext, SpawnProcess
+from functools import partial
 from pathlib import Path
-from threading import Thread
 from time import monotonic, sleep
-from typing import Any, Final, NoReturn, TypeVar
+from typing import Any, Final, TypeVar
 
 from pindrive.files.output import OutputError
 from pindrive.quantities.refusal import refusal
@@ -25,92 +17,19 @@ from pindrive.quantities.refusal import refusal
 Shared = TypeVar("Shared")
 Given = TypeVar("Given")
 Done = TypeVar("Done")
-DIED = "a process that worked on the study died"
 
 
-def workers(count: int, *, processes: bool) -> Executor:
-    """Return the given number of workers. A single worker is a thread of this process."""
-    return _processes(count) if processes and count > 1 else ThreadPoolExecutor(count)
-
-
-class Standing:
-    """Processes that wait for batches of points."""
-
-    def __init__(self, count: int) -> None:
-        """Begin them at the first batch."""
-        self._pool = _processes(count)
-
-    def spread(
-        self, work: Callable[[Shared, Given], Done], shared: Shared, portions: Sequence[Given]
-    ) -> list[Done]:
-        """Compute each portion, in order; `shared` is passed to all portions."""
-        try:
-            return list(self._pool.map(work, [shared] * len(portions), portions))
-        except BrokenProcessPool:
-            standing.cache_clear()
-            raise OutputError(DIED) from None
-
-
-@cache
-def standing(count: int) -> Standing:
-    """The processes of this process, as long as it lives."""
-    return Standing(count)
-
-
-def stop_at_once(status: int) -> NoReturn:
-    """End this process without waiting for what is under way."""
-    if "multiprocessing.synchronize" not in sys.modules:  # nothing is shared with processes
-        os._exit(status)
-    # Errors of pools without their processes, during work and at the end of this process.
-    threading.excepthook = lambda _: None
-    sys.unraisablehook = lambda _: None
-    for process in active_children():
-        process.kill()
-    sys.exit(status)  # so that what they shared is given back
-
-
-@contextmanager
-def _held_back() -> Iterator[None]:
-    """Ctrl-C comes after this, and never to a process that is started meanwhile."""
-    if not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT,))
+def spread(
+    work: Callable[[Shared, Given], Done], shared: Shared, portions: Sequence[Given], threads: int
+) -> list[Done]:
+    """Compute each portion on threads, in order; `shared` is passed to all portions."""
+    if threads == 1 or len(portions) == 1:
+        return [work(shared, portion) for portion in portions]
+    pool = ThreadPoolExecutor(min(threads, len(portions)))
     try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-class _Worker(SpawnProcess):
-    """A process that takes no Ctrl-C from its first instruction on: its asker ends it."""
-
-    def start(self) -> None:
-        with _held_back():
-            super().start()
-
-
-class _Context(SpawnContext):
-    """Processes begun anew, not forked: a process with threads cannot be forked safely."""
-
-    Process = _Worker
-
-
-def _processes(count: int) -> ProcessPoolExecutor:
-    return ProcessPoolExecutor(count, _Context(), initializer=_attend)
-
-
-def _attend() -> None:
-    """End with the process that asked, however that ends; leave Ctrl-C to it."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    asker = parent_process()
-    if asker:
-
-        def end() -> None:
-            asker.join()
-            os._exit(1)
-
-        Thread(target=end, daemon=True).start()
+        return list(pool.map(partial(work, shared), portions))
+    finally:  # after an error or Ctrl-C no further portion begins
+        pool.shutdown(wait=False, cancel_futures=True)
 
 
 # ---- a Dask scheduler ----------------------------------------------------------------------------
