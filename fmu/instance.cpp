@@ -291,7 +291,8 @@ pindrive_error Instance::step(double from, double size, bool may_end_early, bool
     if (!error)
       error = pindrive_stepper_step(stepper_.get(), next, may_end_early, nullptr, nullptr);
     if (!error) error = instant(at);
-    happens = !error && (at.plate_event != PINDRIVE_NONE || at.finger_event != PINDRIVE_NONE);
+    happens = !error && (at.plate_event != PINDRIVE_NONE || at.finger_event != PINDRIVE_NONE ||
+                         at.stop_event != PINDRIVE_NONE);
   } while (!error && at.time < until && !(may_end_early && happens));
   return error;
 }
