@@ -9,15 +9,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pindrive import Motion, Release, simulate
+from pindrive import Contact, Motion, Release, simulate
 from pindrive.cli.scan_tables import (
     evaluation_report,
     scan_report,
     speed_report,
     verdict_words,
 )
-from pindrive.cli.tables import device_words, ending, motion_report, regime
-from pindrive.device import Criteria, Device, PinArray, Scene, lines, scan
+from pindrive.cli.tables import device_words, ending, motion_report, path_words, regime
+from pindrive.device import Criteria, Device, HandPath, PinArray, Scene, lines, scan
 from pindrive.device.dataset import numbers as pin_numbers
 from pindrive.evaluation import Evaluation, evaluate
 from pindrive.evaluation.line_crossings import CUES, FATES, Cue
@@ -215,3 +215,11 @@ def test_speeds() -> None:
     assert one[4] == "lets the pin return by 25%, is distinct again at 300.0-400.0 mm/s"
     assert other[:4] == ["4.000", "1.500", "10.00 to > 1000", "-"]
     assert "Tried: 5.000 mm/s to 1000 mm/s" in printed(speed_report(limits, 0.5, Criteria()))
+
+
+def test_a_hand_exactly_along_the_axis_is_named() -> None:
+    """Static friction of the plate counts for it alone."""
+    path = HandPath([0.0, 1.0], [0.05] * 2, [0.0] * 2, (0.0, 0.0))
+    assert "any real hand is oblique" in path_words(path, 0.0, Contact(0.02, 0.03))
+    for axis, plate in ((1e-4, Contact(0.02, 0.03)), (0.0, Contact(0.02)), (0.0, None)):
+        assert "oblique" not in path_words(path, axis, plate)

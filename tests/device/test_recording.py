@@ -52,7 +52,7 @@ def test_a_raw_recording_of_a_mouse_is_the_hand_that_made_it(tmp_path: Path) -> 
     t, paths = mouse(truth())
     file = write(tmp_path / "raw.csv", "time [s], dx [count], dy [count]", t, paths, 0.0 * paths)
     recording = HandRecording.read(file)
-    assert recording.raw()
+    assert recording.raw
     assert recording.resolved == pytest.approx(STEP)
     assert recording.rate == pytest.approx(1000.0, rel=0.05)
     assert recording.peak_speed() > 1.2 * SPEED
@@ -137,15 +137,38 @@ def test_only_recordings_in_coarse_steps_are_raw() -> None:
     still = 0.0 * t
 
     def raw(place: Values, every: int = 1) -> bool:
-        return HandRecording(t[::every], place[::every], still[::every]).raw()
+        return HandRecording(t[::every], place[::every], still[::every]).raw
 
     counts = np.round(x / STEP)
     assert raw(STEP * counts)
     assert raw(np.round(1e3 * STEP * counts, 3) * 1e-3), "written with three decimals"
     assert not raw(x)
     assert not raw(SPEED * t), "a constant speed"
-    assert not raw(STEP * counts, every=20), "a step within 20 ms is no acceleration of note"
+    assert not raw(STEP * counts, every=20), "a step within 20 ms is no speed of note"
+    assert raw(np.round(STEP * counts, 5)), "counts written in hundredths of a millimetre"
     assert not raw(np.round(x, 7)), "steps of 0.1 µm"
+
+
+@pytest.mark.parametrize("angle", [0.0, 8.0, 40.0])
+def test_the_data_and_not_the_unit_decide_on_smoothing(angle: float, tmp_path: Path) -> None:
+    """One hand, written in counts, in millimetres to three decimals and to two."""
+    t = np.arange(1500) / 1000.0
+    way = truth().position(t)[0]
+    way = way - way[0]
+    x, y = (
+        np.round(way * f / STEP) for f in (np.cos(np.radians(angle)), np.sin(np.radians(angle)))
+    )
+    peaks = []
+    for unit, scale, digits in (("count", 1.0, 0), ("mm", 1e3 * STEP, 3), ("mm", 1e3 * STEP, 2)):
+        columns = np.round(scale * x, digits), np.round(scale * y, digits)
+        file = write(tmp_path / "hand.csv", f"time [s], x [{unit}], y [{unit}]", t, *columns)
+        recording = HandRecording.read(file)
+        assert recording.raw
+        peaks.append(recording.path().peak_speed)
+        rough = recording.path(1e3, smooth=False)
+        assert rough.about.endswith("without smoothing.") and rough.peak_speed > peaks[-1]
+    assert peaks == pytest.approx([peaks[0]] * 3, rel=2e-3)
+    assert peaks[0] == pytest.approx(truth().peak_speed, rel=0.03)
 
 
 def test_a_smooth_recording_is_followed_as_it_is() -> None:
@@ -215,7 +238,7 @@ def test_check_reports_a_recording(tmp_path: Path) -> None:
     recording, path = result.output.splitlines()
     before, after = HandRecording.read(file).peak_speed(), read_csv(file).peak_speed
     assert f"The recording: {len(t)} rows over " in recording
-    assert " Hz, in steps of 0.0254 mm (1000 dpi); peak speed " in recording
+    assert " Hz, in steps of 0.0254 mm (1000 dpi); noise of the speed " in recording
     assert f"{1e3 * before:.2f} mm/s from row to row, {1e3 * after:.2f} mm/s smoothed." in recording
     assert (
         "Butterworth of 2nd order forwards and backwards, -3 dB at 20 Hz; it takes 1%" in recording

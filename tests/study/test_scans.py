@@ -36,6 +36,7 @@ from pindrive.study.runner import on_threads, sweep
 from pindrive.study.sensitivity import sobol
 from pindrive.study.slices import Slice
 from pindrive.study.spec import load_study
+from pindrive.study.workers import spread
 from scan_studies import COILED, DEVICE, GRATING, study, swept
 
 AROUND = ("control", "array", "scan", "criteria")
@@ -489,3 +490,8 @@ def test_the_example_is_a_study_of_scans() -> None:
     evaluated = evaluate_scan(scan(device, scene, reading.strokes(scene, device.array)))
     for name, value in numbers(evaluated).items():
         assert found[name][1] == value, name
+
+
+def test_portions_are_spread_in_order_and_may_be_none() -> None:
+    assert spread(pow, 2, [3, 1, 2], 2) == [8, 2, 4]
+    assert spread(pow, 2, [], 2) == []

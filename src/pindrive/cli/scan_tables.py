@@ -95,7 +95,7 @@ def _words(scan: Scan) -> list[str]:
     worst = max(pin.motion.certificate().worst for pin in scan.pins)
     doubt = "" if worst <= TRUSTED else " Do not trust this scan."
     return [
-        path_words(path, device.array.axis),
+        path_words(path, device.array.axis, device.drive.plate),
         *([path.about] if path.about else []),
         *gap_words(scan),
         *device_words(device),

@@ -13,6 +13,7 @@ from rich.text import Text
 
 from pindrive.device.geometry import COPPER, IRON, doubts, heaviest
 from pindrive.motion.coefficients import Coefficients
+from pindrive.motion.drive import Contact
 from pindrive.motion.profile import Profile
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import Rows, counted, significant
@@ -285,13 +286,23 @@ def trust(motion: Motion) -> str:
     return f"Laws checked without the solver: largest relative residual {worst:.1e}.{doubt}"
 
 
-def path_words(path: HandPath, axis: float) -> str:
-    """Return duration and speed of the hand, and its largest angle to the drive axis (rad)."""
+def path_words(path: HandPath, axis: float, plate: Contact | None = None) -> str:
+    """Return duration and speed of the hand, and its largest angle to the drive axis (rad).
+
+    With the plate of a device, also whether static friction depends on that angle.
+    """
     largest, _ = path.angles(axis)
     speed = QUANTITIES["hand_speed"].text(path.peak_speed)
-    return (
+    words = (
         f"The hand's path takes {path.end - path.begin:.4g} s, at {speed} at the most, up to "
         f"{degrees(largest):.3g} deg off the drive axis."
+    )
+    straight = path.across_velocity(axis) == 0.0
+    if plate is None or not straight or plate.static_friction == plate.kinetic:
+        return words
+    return (
+        f"{words} It is exactly along that axis, where static friction of the plate counts: any "
+        "real hand is oblique, and even 0.01 deg off the plate has its kinetic friction alone."
     )
 
 

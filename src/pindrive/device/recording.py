@@ -1,8 +1,10 @@
 """Recorded hand motion: what a recording is, how a raw one is smoothed, and the path through it.
 
 A mouse reports whole steps (counts), 1000 to the inch, about a thousand times a second. Between two
-reports a speed of 60 mm/s is 2 or 3 steps, so that differences of such places are no speed. A raw
-recording is therefore smoothed:
+reports a speed of 60 mm/s is 2 or 3 steps, so that differences of such places are no speed. A
+recording is **raw** if its data say so, whatever the unit of its header: if neighbouring places
+scatter independently, as rounded or noisy ones do, and that scatter is more than a hundredth of the
+peak speed. A raw recording is smoothed:
 
 - Its places are taken at even times, the median interval apart: linear between reports, and
   unchanged while none came, as a mouse that rests reports nothing.
@@ -43,8 +45,10 @@ PEAK_LOSS: Final = 384.0 * (sqrt(2.0) - 1.0) / (2.0 * pi) ** 4
 """0.102: what of a minimum-jerk peak is lost, times (f_c T)^4; its fourth derivative over it."""
 LOST: Final = 0.01
 """The part of a peak that a report calls lost."""
-ROUGH: Final = 0.2
-"""A step within one interval that is so much of the largest acceleration of a hand hides it."""
+WHITE: Final = 1.3
+"""Fourth over third differences of independent errors, at least; of 1.87 on average."""
+NOISY: Final = 0.01
+"""Part of the peak speed beyond which errors of the speed make a recording raw."""
 SMALL_STEPS: Final = 20.5
 GRID: Final = 0.15
 """So far from whole numbers of steps, of up to `SMALL_STEPS`, is no recording in steps."""
@@ -175,21 +179,38 @@ class HandRecording:
         whole = np.abs(counts - np.round(counts)) < GRID
         return step if whole.all() and len(counts) > 0.5 * len(steps) else None
 
-    def raw(self, acceleration: float = default("hand_acceleration")) -> bool:
-        """True for steps so coarse that differences of places are no speed.
+    @cached_property
+    def speed_noise(self) -> float:
+        """Standard deviation of difference quotients by independent errors of the places, m/s.
 
-        A recording in counts is raw. So is one whose positions are all whole numbers of one step,
-        if that step within an interval is at least a fifth of the acceleration of a hand (m/s²).
+        From fourth differences over even rows, to which the motion of a hand adds little; 0 if
+        these are no larger than third differences make a smooth motion.
         """
-        if self.step is not None:
-            return True
-        step = self.resolved
-        if step is None or step < ROUGH * acceleration * self.interval**2:
+        even = np.diff(self.t) < HOLE * self.interval
+        windows = np.lib.stride_tricks.sliding_window_view
+        found = 0.0
+        for place in (self.x, self.y):
+            if len(place) < 5:
+                break
+            fives = windows(place, 5)[windows(even, 4).all(axis=1)]
+            fives = fives[np.ptp(fives, axis=1) > 0.0]  # a hand at rest shows no errors
+            if not len(fives):
+                continue
+            third, fourth = (
+                sqrt(float(np.mean(np.diff(fives, order, axis=1) ** 2))) for order in (3, 4)
+            )
+            if fourth > WHITE * third:
+                found = max(found, fourth / sqrt(70.0))
+        return sqrt(2.0) * found / self.interval
+
+    @property
+    def raw(self) -> bool:
+        """True for places with such errors that their differences are no speed."""
+        over_four = [np.abs(place[4:] - place[:-4]) for place in (self.x, self.y)]
+        if not over_four[0].size:
             return False
-        ripple = max(
-            float(np.abs(np.diff(place, 2)).max(initial=0.0)) for place in (self.x, self.y)
-        )
-        return ripple > 0.5 * step
+        fastest = float(np.max(np.hypot(*over_four) / (self.t[4:] - self.t[:-4])))
+        return self.speed_noise > NOISY * fastest
 
     def peak_speed(self) -> float:
         """The largest difference quotient of its places, m/s."""
@@ -227,17 +248,24 @@ class HandRecording:
         self,
         acceleration: float = default("hand_acceleration"),
         cutoff: float = default("smoothing_cutoff"),
+        smooth: bool | None = None,
     ) -> HandPath:
-        """The hand's path: through its places or, of a raw recording, smoothed at `cutoff` (Hz).
+        """The hand's path through its places, smoothed or not.
+
+        Args:
+            acceleration: Largest acceleration of the hand, m/s²; more is refused as a jump.
+            cutoff: Cut-off frequency of the smoothing, Hz.
+            smooth: True to smooth, False to use the places as they are. None: `raw` decides.
 
         Raises:
             ValueError: The recording is invalid, as for `through` and `smoothed`.
         """
-        about = self.words(acceleration, cutoff)
-        if not self.raw(acceleration):
+        smooth = self.raw if smooth is None else smooth
+        about = self.words(cutoff, smooth)
+        if not smooth:
             return self.through(acceleration, about)
-        smooth = replace(self.smoothed(cutoff), where=f"{self.where}, smoothed")
-        return smooth.through(acceleration, about)
+        even = replace(self.smoothed(cutoff), where=f"{self.where}, smoothed")
+        return even.through(acceleration, about)
 
     def through(self, most: float, about: str = "") -> HandPath:
         """The path through its places, as the function `through` makes it.
@@ -273,19 +301,17 @@ class HandRecording:
         vx, vy = (column[keep] for column in columns)
         return HandPath(nodes[keep], vx, vy, (float(self.x[0]), float(self.y[0])), about)
 
-    def words(
-        self,
-        acceleration: float = default("hand_acceleration"),
-        cutoff: float = default("smoothing_cutoff"),
-    ) -> str:
+    def words(self, cutoff: float, smooth: bool) -> str:
         """Return the recording and its processing in one or two sentences."""
         step, speed = self.resolved, QUANTITIES["hand_speed"]
         lasts = float(self.t[-1] - self.t[0])
         said = f"The recording: {len(self.t)} rows over {lasts:.4g} s, {self.rate:.4g} Hz"
         if step is not None:
             said += f", in steps of {1e3 * step:.4g} mm ({INCH / step:.4g} dpi)"
+        if self.speed_noise > 0.0:
+            said += f"; noise of the speed {speed.text(self.speed_noise)}"
         said += f"; peak speed {speed.text(self.peak_speed())} from row to row"
-        if not self.raw(acceleration):
+        if not smooth:
             return f"{said}. It is used without smoothing."
         left = self.smoothed(cutoff).peak_speed()
         shortest = (PEAK_LOSS / LOST) ** 0.25 / cutoff
@@ -302,6 +328,7 @@ def read_csv(
     acceleration: float | str = default("hand_acceleration"),
     resolution: float | str = default("mouse_resolution"),
     cutoff: float | str = default("smoothing_cutoff"),
+    smooth: bool | None = None,
 ) -> HandPath:
     """A recorded path from a CSV; a raw recording of a mouse is smoothed.
 
@@ -309,11 +336,12 @@ def read_csv(
         path: The file, as for `HandRecording.read`.
         acceleration: m/s²; more is taken for a jump of the hand's speed, and refused.
         resolution: Resolution of a mouse with positions in counts, 1/m.
-        cutoff: Cut-off frequency of the smoothing of a raw recording, Hz.
+        cutoff: Cut-off frequency of the smoothing, Hz.
+        smooth: True to smooth, False not to. None: `HandRecording.raw` decides.
 
     Raises:
         ValueError: The recording is invalid, as for `HandRecording.read` and `HandRecording.path`.
     """
     recording = HandRecording.read(path, check("mouse_resolution", resolution, label="resolution"))
     most = check("hand_acceleration", acceleration, label="acceleration")
-    return recording.path(most, check("smoothing_cutoff", cutoff))
+    return recording.path(most, check("smoothing_cutoff", cutoff), smooth)

@@ -2,7 +2,7 @@
 
 Two lines, black, stand `pitch` apart; an even hand goes straight over them, at the angle of the
 drive axis (`array.axis`) to the drive. Two lines are **distinct** at a speed if, whatever the phase
-of the control block's samples (`PHASES` of them are tried),
+of the control block's samples,
 
 - between them the pin comes back at least `part` of its way from its highest place to where spring
   and dragging plate balance, before the second line takes it along, and
@@ -11,6 +11,11 @@ of the control block's samples (`PHASES` of them are tried),
 
 The lines are **settled** if, in addition, the transient after the first line alone is over before
 the second line takes the pin along. Every trial is an exact simulation.
+
+An even hand makes the motion depend on that phase only by the numbers of samples on the lines and
+between them: another phase with the same numbers shifts the whole motion in time. The numbers
+change where a sample meets an edge, so that one phase between each two of the four edges stands
+for all of them. With pulses, their own phase counts too, and is that of one hand.
 
 Distinct speeds need not be one interval: a swing may fit by chance, and a slow hand may leave the
 pin where the finger's friction holds it. Therefore a geometric grid of speeds is evaluated first,
@@ -49,6 +54,7 @@ from pindrive.quantities.value import concise, equal_by_value
 Band = tuple[float, float]
 
 PHASES: Final = 4
+"""Largest number of phases: one between each two edges of two lines."""
 TRIED: Final = 32
 """Speeds in the grid."""
 _TRIALS: Final = 3 * TRIED
@@ -80,6 +86,8 @@ class Trial:
     """Displacement of the skin by the fainter line, m."""
     until: tuple[float, ...]
     """Time at which the second line takes the pin along, per phase, s since the trial's begin."""
+    ahead: tuple[float, ...] = ()
+    """Phases: distance by which the spot is ahead, m."""
 
     def distinct(self, part: float, direction: float) -> bool:
         """Return True if two lines are felt; direction is in m."""
@@ -359,7 +367,7 @@ def _limit(
 def two_lines(
     device: Device, pitch: float, width: float, speed: float, criteria: Criteria
 ) -> Trial:
-    """Go over two lines at an even speed, once for each phase of the control block's samples.
+    """Go over two lines at an even speed, with each sequence of samples of the control block.
 
     Args:
         device: Device of which one pin is evaluated.
@@ -369,12 +377,13 @@ def two_lines(
         criteria: Criteria of a felt line.
     """
     after = _clear(device) + 4.0 * pi / device.drive.natural_frequency
-    table, dips = _pass(device, (0.0, pitch), pitch, width, speed, after, criteria)
+    ahead = _phases(device, (0.0, pitch), pitch, width, speed)
+    table, dips = _pass(device, (0.0, pitch), pitch, width, speed, after, criteria, ahead)
     merged = (table["fate"] == FATES.index("merged")).any(axis=1)
     back = np.where(merged, 0.0, _back(device, table["height"][:, 0], table["returned"][:, 0]))
     skin = np.nan_to_num(np.fmax(table["skin_on"], table["skin_off"]))
     until = tuple(float(each[1]) if len(each) > 1 else 0.0 for each in dips)
-    return Trial(speed, float(back.min()), float(skin.min()), until)
+    return Trial(speed, float(back.min()), float(skin.min()), until, ahead)
 
 
 def settles(device: Device, pitch: float, width: float, trial: Trial, criteria: Criteria) -> bool:
@@ -388,8 +397,39 @@ def settles(device: Device, pitch: float, width: float, trial: Trial, criteria: 
         criteria: Criteria of the trial.
     """
     after = _clear(device) + _followed(device.drive)
-    alone, _ = _pass(device, (0.0,), pitch, width, trial.speed, after, criteria)
+    alone, _ = _pass(device, (0.0,), pitch, width, trial.speed, after, criteria, trial.ahead)
     return bool((alone["settled"][:, 0] <= trial.until).all())
+
+
+def _begin(device: Device, speed: float) -> float:
+    """Place of the hand at the begin of a trial, m: the first line begins at 0."""
+    return -speed * (MOMENT + 1.0 / device.control.sample_rate)
+
+
+def _phases(
+    device: Device, begins: Sequence[float], pitch: float, width: float, speed: float
+) -> tuple[float, ...]:
+    """Return one phase for each sequence of samples: distances by which a spot is ahead, m."""
+    step, control = speed / device.control.sample_rate, device.control
+    pixel = min(width, pitch - width) / FINE
+    page = _page(begins, width, -4.0 * pixel, begins[-1] + width + 4.0 * pixel, pixel)
+    row = page.luminance[0]
+    middles = np.asarray(page.origin[0] + pixel * (np.arange(len(row)) + 0.5), np.float64)
+    edges = [
+        *_passes(middles, -row, 0.5 * control.hysteresis - control.threshold),
+        *_passes(middles, row, control.threshold + 0.5 * control.hysteresis),
+    ]
+    met = np.sort(np.mod(np.array(edges) - _begin(device, speed), step))
+    met = met[np.diff(met, prepend=-step) > 1e-9 * step]  # edges that one sample meets together
+    if not met.size:
+        return (0.0,)
+    return tuple(np.mod(0.5 * (met + np.append(met[1:], met[0] + step)), step).tolist())
+
+
+def _passes(x: NDArray[np.float64], y: NDArray[np.float64], level: float) -> NDArray[np.float64]:
+    """Return the places at which a piecewise-linear function rises above a level."""
+    i = np.flatnonzero((y[:-1] <= level) & (y[1:] > level))
+    return x[i] + (level - y[i]) / (y[i + 1] - y[i]) * (x[i + 1] - x[i])
 
 
 def _pass(
@@ -400,6 +440,7 @@ def _pass(
     speed: float,
     after: float,
     criteria: Criteria,
+    ahead: Sequence[float],
 ) -> tuple[Columns, list[NDArray[np.float64]]]:
     """Go evenly over lines that begin at these places (m), once for each phase, and `after` (s).
 
@@ -407,27 +448,25 @@ def _pass(
         Columns of the lines of shape (phases, lines); the times before each motion, as `evaluated`.
     """
     interval = 1.0 / device.control.sample_rate
-    begin, end = -speed * (MOMENT + interval), begins[-1] + width + speed * after
+    begin, end = _begin(device, speed), begins[-1] + width + speed * after
     pixel = min(width, pitch - width) / FINE
-    shifts = [speed * interval * i / PHASES for i in range(PHASES)]
-    axis = device.array.axis
-    spots = [(s * cos(axis), -s * sin(axis)) for s in shifts]  # s ahead along the hand's way
-    phases = PinArray([(0.0, float(i)) for i in range(PHASES)], spots, axis)
+    axis, count = device.array.axis, len(ahead)
+    spots = [(s * cos(axis), -s * sin(axis)) for s in ahead]  # s ahead along the hand's way
+    phases = PinArray([(0.0, float(i)) for i in range(count)], spots, axis)
     page = _page(begins, width, begin - pixel, end + speed * interval + pixel, pixel)
     lasts = (end - begin) / speed
     path = HandPath([0.0, lasts], [speed] * 2, [0.0] * 2, (begin, 0.5 * pixel))
     done = scan(
-        replace(device, array=phases), page, path, start=[steady(device)] * PHASES, threads=1
+        replace(device, array=phases), page, path, start=[steady(device)] * count, threads=1
     )
     lines = []
-    for shift in shifts:
+    for shift in ahead:
         times = (np.array(begins) - begin - shift) / speed
         whole = np.ones(len(times), np.uint8)
         lines.append(PrintedLines(times, times + width / speed, whole))
     table, dips = evaluated(done, lines, criteria)
     columns = {name: column for name, column in table.items() if not name.startswith("false_line")}
-    shape = PHASES, len(begins)
-    return {name: column.reshape(shape) for name, column in columns.items()}, dips
+    return {name: column.reshape(count, len(begins)) for name, column in columns.items()}, dips
 
 
 def _clear(device: Device) -> float:

@@ -23,7 +23,7 @@ def spread(
     work: Callable[[Shared, Given], Done], shared: Shared, portions: Sequence[Given], threads: int
 ) -> list[Done]:
     """Compute each portion on threads, in order; `shared` is passed to all portions."""
-    if threads == 1 or len(portions) == 1:
+    if threads == 1 or len(portions) < 2:
         return [work(shared, portion) for portion in portions]
     pool = ThreadPoolExecutor(min(threads, len(portions)))
     try:
