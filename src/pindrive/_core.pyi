@@ -144,6 +144,11 @@ def plate_velocity(path: tuple[Annotated[NDArray[numpy.float64], dict(shape=(Non
     Times since the begin; velocity along and across the axis; whether across it moves.
     """
 
+def closest_approaches(motions: Sequence[Motion], pairs: Sequence[tuple[int, int]], duration: float) -> tuple:
+    """
+    Smallest x(behind) - x(ahead) of each pair of motions, m, and its time, s.
+    """
+
 def coil_course(magnet: tuple[Sequence[float], Sequence[tuple[float, float]]], state: tuple[float, float, float, float, float, float, bool, bool], switchings: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], begin: float, end: float, most: int) -> tuple:
     """
     Pieces of a coil under commands, rows of its pull (times, N), and its state at the end.

@@ -19,6 +19,7 @@
 #include "arrays.hpp"
 #include "interrupt.hpp"
 #include "owned_motion.hpp"
+#include "pindrive/device/closest_approach.hpp"
 #include "pindrive/device/evaluation.hpp"
 #include "pindrive/device/hand_path.hpp"
 #include "pindrive/device/pin_evaluation.hpp"
@@ -298,6 +299,27 @@ class Scan {
   std::vector<std::unique_ptr<pd::StoredMotion<double>>> motions_;
 };
 
+/// Smallest difference of the positions of each pair of motions, by their indices, and its time.
+nb::tuple closest_approaches(const std::vector<const pd::StoredMotion<double>*>& motions,
+                             const std::vector<std::pair<std::size_t, std::size_t>>& pairs,
+                             double duration) {
+  auto both = interruptible([&](auto go_on) {
+    std::vector<device::BoundedPieces> pieces;
+    for (const auto* const motion : motions)
+      if (go_on(1U << 10)) pieces.emplace_back(motion->view(), duration);
+    std::pair<std::vector<double>, std::vector<double>> found;
+    for (const auto& [behind, ahead] : pairs) {
+      if (!go_on(1U << 12)) break;
+      const device::Approach closest =
+          device::ClosestApproach(pieces.at(behind), pieces.at(ahead), duration).found();
+      found.first.push_back(closest.difference);
+      found.second.push_back(closest.time);
+    }
+    return found;
+  });
+  return nb::make_tuple(to_array(std::move(both.first)), to_array(std::move(both.second)));
+}
+
 // ---- evaluation ----------------------------------------------------------------------------------
 
 using Lines =
@@ -463,6 +485,8 @@ void bind_device(nb::module_& m) {
       },
       "path"_a, "axis"_a,
       "Times since the begin; velocity along and across the axis; whether across it moves.");
+  m.def("closest_approaches", &closest_approaches, "motions"_a, "pairs"_a, "duration"_a,
+        "Smallest x(behind) - x(ahead) of each pair of motions, m, and its time, s.");
   m.def("coil_course", &coil_course, "magnet"_a, "state"_a, "switchings"_a, "begin"_a, "end"_a,
         "most"_a,
         "Pieces of a coil under commands, rows of its pull (times, N), and its state at the end.");

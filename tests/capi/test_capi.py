@@ -169,6 +169,7 @@ OF_THE_DEVICE = {
     "printed_lines",
     "plate_velocity",
     "coil_course",
+    "closest_approaches",
     "Scan",
 }
 """Names of the device layer, which has no functions in C yet."""

@@ -36,6 +36,7 @@ LAYERS = (
 PUBLIC = {
     "certificate": {"certificate", "certify"},
     "device": {
+        "closest_approach",
         "coil",
         "coil_course",
         "controller",

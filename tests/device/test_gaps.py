@@ -45,7 +45,7 @@ def drive(
 
 def closest(behind: Motion, ahead: Motion) -> tuple[float, float]:
     """The least x(behind) - x(ahead) and when, of pins that stand at one place."""
-    (gap,) = smallest_gaps([Neighbours(0, 1, 0.0)], [behind, ahead], 0.0)
+    (gap,) = smallest_gaps([Neighbours(0, 1, 0.0)], [behind.core, ahead.core], 0.0, behind.duration)
     return gap.size, gap.time
 
 

@@ -417,6 +417,90 @@ MUTANTS = (
         "if (!(begin < end)) continue;",
         "if (!(begin < end)) return skin_motion_in_touch(skin, from, to);",
     ),
+    Mutant(
+        "a coil does not warm in a piece",
+        "device/electromagnet.hpp",
+        "return most > 0 ? now + 0.5",
+        "return most > 1e9 ? now + 0.5",
+    ),
+    Mutant(
+        "a warming coil is one piece",
+        "device/electromagnet.hpp",
+        "return rate > 0 ? resistance_step / (copper_rise * rate) : infinity;",
+        "return infinity;",
+    ),
+    Mutant(
+        "rows of a pull are twice as far apart",
+        "device/electromagnet.hpp",
+        "std::sqrt(8 * tolerance_ / curvature(c))",
+        "2 * std::sqrt(8 * tolerance_ / curvature(c))",
+    ),
+    Mutant(
+        "the flux decides nothing at the closing",
+        "device/electromagnet.hpp",
+        "const bool closed = start > edge || (start == edge && target > edge);",
+        "const bool closed = start > edge;",
+    ),
+    Mutant(
+        "a pulse begins where rounding has it",
+        "device/coil.hpp",
+        "if ((number + 1) / frequency <= time) return number + 1;  // rounded down",
+        "",
+    ),
+    Mutant(
+        "a voltage step is counted from zero",
+        "device/coil.hpp",
+        "return next < steps.size() ? state_.commanded + steps[next].time : infinity;",
+        "return next < steps.size() ? steps[next].time : infinity;",
+    ),
+    Mutant(
+        "a command after the pulse at its time",
+        "device/coil_course.hpp",
+        "for (double time = coil.next(); time < to && !full(); time = coil.next()) {",
+        "for (double time = coil.next(); time <= to && !full(); time = coil.next()) {",
+    ),
+    Mutant(
+        "a sample at the end",
+        "device/controller.hpp",
+        "if (begin <= time && time < end && !visit(time)) return;",
+        "if (begin <= time && time <= end && !visit(time)) return;",
+    ),
+    Mutant(
+        "no hysteresis",
+        "device/controller.hpp",
+        "return on && !(luminance > threshold + 0.5 * hysteresis);",
+        "return false;",
+    ),
+    Mutant(
+        "two gaps are one",
+        "device/magnet_construction.hpp",
+        "return magnetic_constant * turns * turns * pole_area / (2 * gap);",
+        "return magnetic_constant * turns * turns * pole_area / gap;",
+    ),
+    Mutant(
+        "a switching that is due is forgotten",
+        "device/scan.hpp",
+        "std::vector<double> due = from.pending;",
+        "std::vector<double> due;",
+    ),
+    Mutant(
+        "skin keeps any stretch",
+        "device/scan.hpp",
+        "    return std::copysign(finger.kinetic * pressed / finger.stiffness, stretch);",
+        "    return stretch;",
+    ),
+    Mutant(
+        "an acceleration is bounded by its begin",
+        "device/closest_approach.hpp",
+        "return detail::hypot(now, jerk / std::sqrt(oscillator.omega0_squared())) * growth;",
+        "return std::abs(now) * growth;",
+    ),
+    Mutant(
+        "a closest approach is at a knot",
+        "device/closest_approach.hpp",
+        "    visit(middle, value);\n",
+        "",
+    ),
 )
 
 

@@ -1,36 +1,20 @@
 """Feasibility of a device: fits, masses, and clearances of the pins.
 
-The smallest gaps of neighbouring pins along the drive axis have a proven bound.
-
-The gap of two pins is their clearance at rest less how far one runs into the other,
-x(ahead) - x(behind): x is counted against the drive axis. Between the events of both pins and the
-rows of their inputs each x is, as a rule, one closed form, whose acceleration y obeys
-
-    m y'' + c y' + κ y = 0,    so that    |y|, as long as that lasts, <= sqrt(y² + (y'/ω)²) now
-
-with ω² = κ/m (times exp(|c| t/m) where friction that falls with speed makes c negative). Where c
-changes within a piece, as that of a friction curve under a changing load, the piece is a step of a
-power series, and |y| stays below the largest of the Bernstein coefficients of its acceleration
-(docs/theory.md, section 15). With |y| of both together below A, a gap is nowhere in a time h more
-than A h²/8 below both its ends. Times in which it might become smaller than what was found so far
-are cut into pieces until there are none: no smaller gap is missed by more than `CLOSE`.
+The gap of two pins along the drive axis is their clearance at rest less how far one runs into the
+other, x(ahead) - x(behind): x is counted against the drive axis. The core finds the smallest with a
+proven bound (include/pindrive/device/closest_approach.hpp).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
-from math import hypot, inf, nan, pi
+from math import hypot, pi
 from typing import Final
 
-import numpy as np
-from numpy.typing import NDArray
-
+from pindrive import _core
 from pindrive.device.device import Device
 from pindrive.device.pin_array import Neighbours
-from pindrive.motion.motion import Motion
-from pindrive.motion.profile import Profile
 from pindrive.quantities.table import QUANTITIES
 
 IRON: Final = 7870.0
@@ -109,12 +93,6 @@ def _apart(places: Sequence[tuple[float, float]], behind: int, ahead: int) -> fl
 # ---- how close neighbouring pins come ------------------------------------------------------------
 
 
-CLOSE: Final = 1e-12
-"""The smallest gap is found to within that, m."""
-CUTS: Final = 8
-"""Number of parts into which a piece is cut at once."""
-
-
 @dataclass(frozen=True, slots=True)
 class Gap:
     """The smallest gap between two neighbouring pins in a scan."""
@@ -129,150 +107,22 @@ class Gap:
 
 
 def smallest_gaps(
-    neighbours: Sequence[Neighbours], motions: Sequence[Motion], begin: float
+    neighbours: Sequence[Neighbours],
+    motions: Sequence[_core.Motion],
+    begin: float,
+    duration: float,
 ) -> tuple[Gap, ...]:
     """The smallest gap of each pair of neighbours.
 
     Args:
         neighbours: Neighbours of each pin in the array.
-        motions: Motion of each pin, by its number, over one duration.
+        motions: Motion of each pin, by its number, as the core has it.
         begin: Begin of the motions on the clock of the path, s.
+        duration: Duration of the search, s.
     """
-    pieces = {i: _Pieces(motions[i]) for pair in neighbours for i in (pair.behind, pair.ahead)}
-    found = []
-    for pair in neighbours:
-        approach, time = _closest(pieces[pair.behind], pieces[pair.ahead])
-        found.append(Gap(pair.behind, pair.ahead, pair.clearance + approach, begin + time))
-    return tuple(found)
-
-
-def _closest(behind: _Pieces, ahead: _Pieces) -> tuple[float, float]:
-    """The smallest x(behind) - x(ahead), m, and when."""
-    knots = np.union1d(behind.knots, ahead.knots)
-    low, high = knots[:-1], knots[1:]
-    apart = behind.position(knots) - ahead.position(knots)
-    first, last = apart[:-1], apart[1:]
-    i = int(np.argmin(apart))
-    smallest, time = float(apart[i]), float(knots[i])
-    while low.size:
-        lasts = high - low
-        swing = behind.largest_acceleration(low, lasts) + ahead.largest_acceleration(low, lasts)
-        least = np.minimum(first, last) - 0.125 * swing * lasts**2
-        open_ = (
-            (least < smallest - CLOSE) & (low < 0.5 * (low + high)) & (0.5 * (low + high) < high)
-        )
-        low, high = low[open_], high[open_]
-        if not low.size:
-            break
-        t = low[:, np.newaxis] + (high - low)[:, np.newaxis] * np.arange(CUTS + 1) / CUTS
-        t[:, -1] = high
-        apart = behind.position(t) - ahead.position(t)
-        if apart.min() < smallest:
-            i = int(np.argmin(apart))
-            smallest, time = float(apart.flat[i]), float(t.flat[i])
-        low, high = t[:, :-1].ravel(), t[:, 1:].ravel()
-        first, last = apart[:, :-1].ravel(), apart[:, 1:].ravel()
-    return smallest, time
-
-
-class _Pieces:
-    """Pieces of a motion, each with a closed form or a step of a series."""
-
-    def __init__(self, motion: Motion) -> None:
-        self.motion = motion
-        self.position = motion.position
-
-    @cached_property
-    def knots(self) -> NDArray[np.float64]:
-        """Begin of each piece, and end of the last, s."""
-        duration = self.motion.duration
-        ends = np.array([segment.end for segment in self.motion.segments])
-        if ends[-1] < duration:  # the segments of a cycle cover one period
-            period = self.motion.ending.period
-            round_ = ends[ends > ends[-1] - period]
-            shifts = period * np.arange(1.0, np.ceil((duration - ends[-1]) / period) + 1.0)
-            ends = np.concatenate([ends, np.add.outer(shifts, round_).ravel()])
-        return np.unique(np.concatenate([[0.0], ends[ends < duration], [duration]]))
-
-    @cached_property
-    def _segments(self) -> NDArray[np.int64]:
-        """The segment of which each piece is a part, or a later round."""
-        segments, period = self.motion.segments, self.motion.ending.period
-        middle, known = 0.5 * (self.knots[:-1] + self.knots[1:]), segments[-1].end
-        if known < inf:
-            later = known - period + np.mod(middle - known, period)
-            middle = np.where(middle < known, middle, later)
-        return np.searchsorted([segment.begin for segment in segments], middle, "right") - 1
-
-    @cached_property
-    def _bounds(self) -> NDArray[np.float64]:
-        """Bounds of |x''| of each piece, m/s²; NaN for a closed form."""
-        return self.motion.acceleration_bounds[self._segments]
-
-    @cached_property
-    def _closed_forms(self) -> NDArray[np.float64]:
-        """Coefficients of each piece in closed form: c/m, κ/m, slope g of its force over m.
-
-        Shape (4, pieces), the last 0 where the pin is stuck; all NaN of a step of a series.
-        """
-        motion, drive = self.motion, self.motion.drive
-        closed = np.flatnonzero(np.isnan(self._bounds))
-        begin, end = self.knots[closed], self.knots[closed + 1]
-        middle = 0.5 * (begin + end)
-        modes = [motion.segments[i] for i in self._segments[closed]]
-        finger = np.array([mode.finger == 0 for mode in modes], np.bool_)
-        stuck = np.array([mode.plate == 0 for mode in modes], np.bool_)
-        rigid = drive.finger.rigid
-        if rigid:
-            stuck |= finger
-        stiffness = drive.stiffness + np.where(finger & (not rigid), drive.finger.stiffness, 0.0)
-        velocity = motion.velocity(middle)
-        damping = drive.damping + _slope(drive.finger.curve, np.abs(velocity))
-        if drive.stop_stiffness is not None:  # elastic end stops, where they push
-            pushed = motion.force("stop", middle) != 0.0
-            stiffness = stiffness + np.where(pushed, drive.stop_stiffness, 0.0)
-            damping = damping + np.where(pushed, drive.stop_damping or 0.0, 0.0)
-        if drive.plate.curved:  # under a load that stays: else there is a bound
-            load = motion.release.plate_load
-            factor = load(middle) if isinstance(load, Profile) else load
-            speed = np.abs(velocity - motion.plate_velocity(middle))
-            damping = damping + factor * _slope(drive.plate.curve, speed)
-        c, k = damping / drive.mass, stiffness / drive.mass
-        changes = [
-            of(end, "left") - of(begin)
-            for of in (motion.acceleration, motion.velocity, motion.position)
-        ]
-        slope = (changes[0] + c * changes[1] + k * changes[2]) / (end - begin)
-        found = np.full((4, len(self._bounds)), nan)
-        found[:, closed] = c, k, slope, ~stuck
-        return found
-
-    def largest_acceleration(
-        self, t: NDArray[np.float64], lasts: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
-        """A bound on |x''| from `t` on for as long as `lasts`, s, within a piece, m/s²."""
-        i = np.searchsorted(self.knots, t, "right") - 1
-        found = self._bounds[i]
-        closed = np.isnan(found)
-        t, lasts, i = t[closed], lasts[closed], i[closed]
-        c, k, g, swings = self._closed_forms[:, i]
-        now = self.motion.acceleration(t)
-        jerk = g - c * now - k * self.motion.velocity(t)
-        growth = np.exp(np.maximum(-c, 0.0) * lasts)
-        found[closed] = np.where(swings, np.hypot(now, jerk / np.sqrt(k)) * growth, np.abs(now))
-        return found
-
-
-def _slope(
-    curve: Sequence[tuple[float, float]] | None, speed: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Return the slope of friction over sliding speed (m/s), N·s/m; constant beyond the last point.
-
-    A bound that has fallen to zero stays zero.
-    """
-    if curve is None or len(curve) < 2:
-        return np.zeros_like(speed)
-    speeds, forces = np.array(curve).T
-    i = np.clip(np.searchsorted(speeds, speed, "right") - 1, 0, len(speeds) - 2)
-    slope = (np.diff(forces) / np.diff(speeds))[i]
-    return np.where(forces[i] + slope * (speed - speeds[i]) < 0.0, 0.0, slope)
+    pairs = [(pair.behind, pair.ahead) for pair in neighbours]
+    found = zip(*_core.closest_approaches(motions, pairs, duration), strict=True)
+    return tuple(
+        Gap(pair.behind, pair.ahead, pair.clearance + float(approach), begin + float(time))
+        for pair, (approach, time) in zip(neighbours, found, strict=True)
+    )

@@ -13,7 +13,7 @@ from functools import cached_property
 from math import nan
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -51,6 +51,8 @@ from pindrive.quantities.status import SimulationError, Status
 from pindrive.quantities.table import check, default
 from pindrive.quantities.value import concise, equal_by_value
 
+_POSITION: Final = 0
+"""Position among the quantities of the core."""
 Progress = Callable[[int, int], None]
 """Called after each part of a computation: how many are done, of how many."""
 
@@ -274,7 +276,9 @@ class PinScan:
     @property
     def peak_displacement(self) -> float:
         """Largest deflection of the pin in either direction, m."""
-        return float(np.abs(self.motion.extrema("position").value).max())
+        motion, lasts = self.core.motion(self.number), self.end - self.begin
+        _, values = motion.extrema(_POSITION, lasts, int(budgets.TURNS.most))
+        return float(np.abs(values).max())
 
     @property
     def state(self) -> PinState:
@@ -406,8 +410,9 @@ class Scan(lazy.NotebookHtml):
         device = self.device
         pairs = {(p.behind, p.ahead) for p in device.array.neighbours + device.magnet_neighbours}
         together = [Neighbours(*pair, 0.0) for pair in sorted(pairs)]
-        motions = [pin.motion for pin in self.pins]
-        found = smallest_gaps(together, motions, self.path.begin)
+        motions = [self.core.motion(pin.number) for pin in self.pins]
+        begin, end = self.path.begin, self.path.end
+        found = smallest_gaps(together, motions, begin, end - begin)
         return {(gap.behind, gap.ahead): gap for gap in found}
 
     @cached_property
