@@ -101,7 +101,7 @@ def times_of(package: Path | None, repeats: int) -> dict[str, float]:
 
 def print_stages(repeats: int) -> None:
     """The stages of each case."""
-    from pindrive.device.scanning import energised
+    from pindrive.device.pin_scan import energised
 
     print(f"{'processor time, ms':22}{'reading':>10}{'motions':>10}{'evaluation':>12}{'all':>10}")
     for name, scanned in cases().items():

@@ -102,10 +102,12 @@ void outcomes() {
   expect(partial.lines().size() == 1, "a line that is not whole is left out");
   Scan faint;
   faint.setting.criteria.felt = 1;
-  expect(faint.lines()[0].outcome == device::LineOutcome::faint, "one below the criterion is faint");
+  expect(faint.lines()[0].outcome == device::LineOutcome::faint,
+         "one below the criterion is faint");
   const Scan lifted(infinity, {0, 0.008, 0.009, 0.2}, {1, 1, 0, 0});
-  expect(lifted.lines()[0].outcome == device::LineOutcome::faint && lifted.lines()[0].begin.skin == 0,
-         "a lifted finger feels nothing");
+  expect(
+      lifted.lines()[0].outcome == device::LineOutcome::faint && lifted.lines()[0].begin.skin == 0,
+      "a lifted finger feels nothing");
 }
 
 void false_lines() {

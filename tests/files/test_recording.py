@@ -101,7 +101,7 @@ def test_smoothing_of_a_raw_recording_is_reported() -> None:
     assert max(smooth.values) == pytest.approx(0.0625, rel=3e-3)  # type: ignore[union-attr]
     for command in ("simulate", "check"):
         said = run(command, str(path)).output
-        assert "(1000 dpi); peak speed " in said
+        assert "(1000 dpi); noise of the speed " in said
         assert "Smoothing: Butterworth of 2nd order forwards and backwards, -3 dB at 20 Hz" in said
     assert "more rows" in run("check", str(path)).output
     said = run("simulate", str(path), "--set", "smoothing_cutoff=12 Hz").output

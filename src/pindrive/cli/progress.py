@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from pindrive.lazy import rich_console, rich_progress
 
 if TYPE_CHECKING:
-    from pindrive.device.scanning import Progress
+    from pindrive.device.pin_scan import Progress
 
 
 @contextmanager

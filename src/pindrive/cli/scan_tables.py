@@ -28,7 +28,8 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from pindrive.device.device import Criteria
-    from pindrive.device.scanning import PinScan, Scan
+    from pindrive.device.pin_scan import PinScan
+    from pindrive.device.scanning import Scan
     from pindrive.evaluation.page_speed import PageSpeeds
     from pindrive.evaluation.perception import Evaluation
     from pindrive.evaluation.resolution import Band, SpeedLimit

@@ -20,7 +20,7 @@ from .reading import Reading as Reading
 from .recording import HandRecording as HandRecording
 from .recording import read_csv as read_csv
 from .recording import through as through
-from .scanning import PinScan as PinScan
-from .scanning import PinState as PinState
+from .pin_scan import PinScan as PinScan
+from .pin_scan import PinState as PinState
 from .scanning import Scan as Scan
 from .scanning import scan as scan

@@ -15,7 +15,8 @@ from pindrive.device.coil import Coil
 from pindrive.device.geometry import doubts
 from pindrive.device.hand import HandPath
 from pindrive.device.page import AT_ONCE
-from pindrive.device.scanning import PinScan, Scan
+from pindrive.device.pin_scan import PinScan
+from pindrive.device.scanning import Scan
 from pindrive.lazy import xr
 from pindrive.motion.dataset import columns
 from pindrive.motion.profile import Profile

@@ -14,8 +14,9 @@ import pindrive
 from pindrive import lazy
 from pindrive.device.device import Criteria, Device
 from pindrive.device.page_description import Page
+from pindrive.device.pin_scan import Progress
 from pindrive.device.reading import Reading
-from pindrive.device.scanning import Progress, scan
+from pindrive.device.scanning import scan
 from pindrive.evaluation.perception import evaluate
 from pindrive.evaluation.resolution import check_tried
 from pindrive.lazy import mpl_figure, xr

@@ -39,7 +39,8 @@ from pindrive.device.device import Criteria, Device
 from pindrive.device.hand import HandPath
 from pindrive.device.page import Scene
 from pindrive.device.pin_array import PinArray
-from pindrive.device.scanning import PinState, Progress, scan
+from pindrive.device.pin_scan import PinState, Progress
+from pindrive.device.scanning import scan
 from pindrive.device.trajectory import brackets, check_vibration
 from pindrive.evaluation.line_crossings import FATES, PrintedLines
 from pindrive.evaluation.perception import Columns, evaluated

@@ -19,7 +19,8 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from pindrive.device.scanning import PinScan, Scan
+from pindrive.device.pin_scan import PinScan
+from pindrive.device.scanning import Scan
 from pindrive.files.dataset import finite
 from pindrive.files.device import DeviceFile
 from pindrive.files.output import (

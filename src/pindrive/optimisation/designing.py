@@ -11,7 +11,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from pindrive.device.scanning import Progress
+from pindrive.device.pin_scan import Progress
 from pindrive.files.device import DeviceFile
 from pindrive.lazy import qmc
 from pindrive.optimisation.design_space import (

@@ -34,7 +34,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from pindrive.device.hand import HandPath
-    from pindrive.device.scanning import Progress, Scan
+    from pindrive.device.pin_scan import Progress
+    from pindrive.device.scanning import Scan
     from pindrive.evaluation.perception import Evaluation
 
 

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from matplotlib.gridspec import SubplotSpec
     from numpy.typing import NDArray
 
-    from pindrive.device.scanning import PinScan
+    from pindrive.device.pin_scan import PinScan
     from pindrive.evaluation.line_crossings import Line
     from pindrive.evaluation.perception import Evaluation
 

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from pindrive.device.scanning import Progress, scan
+from pindrive.device.pin_scan import Progress
+from pindrive.device.scanning import scan
 from pindrive.files.device import DeviceFile
 from pindrive.files.keys import variable
 from pindrive.files.ratios import scaled_rows

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from pindrive import lazy
-from pindrive.device.scanning import Progress
+from pindrive.device.pin_scan import Progress
 from pindrive.files.keys import variable
 from pindrive.files.output import (
     STUDY_NETCDF,

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pindrive import lazy
-from pindrive.device.scanning import Progress
+from pindrive.device.pin_scan import Progress
 from pindrive.lazy import mpl_figure, qmc, xr
 from pindrive.quantities import budgets
 from pindrive.quantities.quantity import counted
