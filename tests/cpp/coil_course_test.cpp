@@ -74,6 +74,15 @@ void cuts() {
   expect(differing == 0, "a course that is cut keeps its rows");
 }
 
+void a_command_at_the_begin_of_a_pulse() {
+  const device::Electromagnet magnet(parameters());
+  const double switchings[]{0, 1.0 / 400};
+  device::CoilCourse course;
+  course.follow(magnet, {0, 0, 0.05}, switchings, 2, 0, 0.01, unlimited);
+  expect(course.pieces.size() == 2 && course.pieces[1].begin == 0.6 / 400,
+         "a command to switch off comes before the pulse that begins then");
+}
+
 void limits() {
   const device::Electromagnet magnet(parameters());
   const double on = 0;
@@ -98,6 +107,7 @@ void limits() {
 int main() {
   equal_to_steps();
   cuts();
+  a_command_at_the_begin_of_a_pulse();
   limits();
   return check::status();
 }

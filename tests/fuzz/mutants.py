@@ -531,7 +531,12 @@ def judged(mutant: Mutant, count: int, folder: Path) -> str:
         test, program = ROOT / "tests" / "cpp" / f"{name}_test.cpp", folder / "test"
         flags.append(f"-I{ROOT / 'tests' / 'fuzz'}")
         subprocess.run([compiler, *flags, str(test), "-o", str(program)], check=True)
-        result = subprocess.run([program], capture_output=True, text=True, timeout=300, check=False)
+        try:
+            result = subprocess.run(
+                [program], capture_output=True, text=True, timeout=60, check=False
+            )
+        except subprocess.TimeoutExpired:
+            return "its test does not end"
         failed = [line for line in result.stdout.splitlines() if line.startswith("FAIL")]
         return "; ".join(failed) or (f"status {result.returncode}" if result.returncode else "")
     program = ROOT / "tests" / "fuzz" / "fuzz.cpp"
