@@ -23,7 +23,7 @@ pindrive_error make_magnet(const Given& given, double time, Magnet& magnet) {
   magnet = {};
   const pindrive_error error = read_magnet(given, magnet.electromagnet);
   if (error || !magnet.electromagnet) return error;
-  magnet.coil.emplace(*magnet.electromagnet, time);
+  magnet.coil = std::make_unique<pindrive::device::Coil>(*magnet.electromagnet, time);
   magnet.normal_force = given.plate_normal_force().value;
   return PINDRIVE_OK;
 }
@@ -347,10 +347,10 @@ pindrive_error Instance::go_back(const State& state) {
   if (magnet.present()) {
     if (!possible(state.coil))
       return fail(PINDRIVE_BAD_VALUE, "the bytes must be those of a state of this unit");
-    magnet.coil.emplace(*magnet.electromagnet, state.coil);
+    magnet.coil = std::make_unique<pindrive::device::Coil>(*magnet.electromagnet, state.coil);
     pindrive_instant now;
-    if (stepper && !(error = pindrive_stepper_now(stepper.get(), &now)))
-      magnet.coil->pass_rows(now.time);
+    if (stepper) error = pindrive_stepper_now(stepper.get(), &now);
+    if (stepper && !error) magnet.coil->pass_rows(now.time);
   }
   if (error) return error;
   values_ = state.values;

@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "pindrive.h"
@@ -21,10 +20,10 @@ using Stepper = std::unique_ptr<pindrive_stepper, FreeStepper>;
 /// Magnet of a unit and its coil; without one, neither.
 struct Magnet {
   std::unique_ptr<const pindrive::device::Electromagnet> electromagnet;
-  std::optional<pindrive::device::Coil> coil;
+  std::unique_ptr<pindrive::device::Coil> coil;
   double normal_force{0};  ///< of the plate without a pull, N
 
-  bool present() const { return coil.has_value(); }
+  bool present() const { return coil != nullptr; }
   double load(double time) const { return 1 + coil->pull(time) / normal_force; }
   double load_rate() const { return coil->rate() / normal_force; }
 };

@@ -194,7 +194,8 @@ void read_voltage(Checks& checks, std::vector<device::VoltageStep>& steps) {
   for (std::size_t i = 0; i < times.size() && !checks.error; ++i) {
     const device::VoltageStep step{times[i].value, volts[i].value / full};
     const bool later = i == 0 ? step.time == 0 : step.time > steps[i - 1].time;
-    if (!later || !(step.level >= 0 && step.level <= 1))
+    const bool within = step.level >= 0 && step.level <= 1;
+    if (!later || !within)
       checks.error = fail(
           PINDRIVE_BAD_VALUE,
           "magnet.voltage must begin at 0 s, its times increase, and be from 0 V to %.17g V", full);

@@ -28,9 +28,8 @@ struct Rows {
   }
 };
 
-const Rows curved({0, 0.1, 0.3, 0.4, 0.6}, {0, 0.2, -0.1, -0.1, 0}, {0.1, 0.05, 0.1, -0.2, 0});
-
 void places_are_the_integral_of_velocities() {
+  const Rows curved({0, 0.1, 0.3, 0.4, 0.6}, {0, 0.2, -0.1, -0.1, 0}, {0.1, 0.05, 0.1, -0.2, 0});
   const device::HandPath path = curved.path();
   constexpr int count = 60000;
   double x = 0, y = 0, length = 0, worst = 0;

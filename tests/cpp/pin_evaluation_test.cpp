@@ -21,7 +21,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 struct Scan {
   scanned::Pin pin;
   std::vector<double> times{0, 0.2}, vx{0.08, 0.08}, vy{0, 0}, x{0, 0.016}, y{0, 0};
-  std::vector<double> turnings{};
+  std::vector<double> turnings;
   pd::Motion<double> motion;
   device::Way way;
   device::ScanSetting setting;

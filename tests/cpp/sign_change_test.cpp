@@ -27,7 +27,8 @@ void neighbours_have_different_signs() {
     };
     const double found = sign_change(f, -2.0, 1.5);
     most = std::max(most, calls);
-    wrong += !(f(found) >= 0 && f(std::nextafter(found, -3)) < 0);
+    const bool changes = f(found) >= 0 && f(std::nextafter(found, -3)) < 0;
+    wrong += !changes;
   }
   expect(wrong == 0, "no number in between");
   expect(most < 90, "within a few steps");

@@ -318,8 +318,8 @@ MUTANTS = (
     Mutant(
         "a sign change is found to half a bracket",
         "device/sign_change.hpp",
-        "if (!(low < half && half < high)) return high;",
-        "if (!(low + 1e-9 < half && half < high)) return high;",
+        "const bool neighbours = half <= low || high <= half;",
+        "const bool neighbours = half <= low + 1e-9 || high <= half;",
     ),
     Mutant(
         "lines are where it is bright",

@@ -138,7 +138,8 @@ class ClosestApproach {
     const double lasts = high - low, bound = behind_.bound(i_) + ahead_.bound(j_);
     const double least = std::min(first, last) - 0.125 * bound * lasts * lasts;
     const double middle = low + 0.5 * lasts;
-    if (!(least < found_.difference - close && low < middle && middle < high)) return;
+    const bool open = least < found_.difference - close && low < middle && middle < high;
+    if (!open) return;
     const double value = behind_.position(i_, middle) - ahead_.position(j_, middle);
     visit(middle, value);
     refine(low, middle, first, value);

@@ -248,7 +248,8 @@ class MonotonePieces {
     const Segment<double>& segment = *knot.segment;
     const bool still = segment.flow.velocity.start == 0 && segment.flow.acceleration().start == 0;
     const bool held = segment.mode.stuck() || segment.mode.stop != StopState::apart;
-    if (!(segment.mode.finger == ContactState::stick || (held && still))) return false;
+    const bool resting = segment.mode.finger == ContactState::stick || (held && still);
+    if (!resting) return false;
     return motion_->value(segment, t - knot.segment_begin, Quantity::velocity) == 0;
   }
 

@@ -47,7 +47,8 @@ class PinEvaluation {
       bool seen = false;
       for (std::size_t k = 0; k < pulls_.size(); ++k) {
         const double on = pulls_[k].on - setting_.latency, off = pulls_[k].off - setting_.latency;
-        if (!(on <= line.end && off >= line.begin)) continue;
+        const bool during = on <= line.end && off >= line.begin;
+        if (!during) continue;
         seen = true;
         last = &pulls_[k];
         if (!first && !assigned[k]) first = last;
@@ -148,8 +149,8 @@ class PinEvaluation {
     }
     if (last) evaluate_return(*last, x, found);
     const bool felt = found.begin.cue != Cue::none || found.end.cue != Cue::none;
-    if (found.outcome == LineOutcome::shown && !(felt && !std::isnan(found.begin.response)))
-      found.outcome = LineOutcome::faint;
+    const bool answered = felt && !std::isnan(found.begin.response);
+    if (found.outcome == LineOutcome::shown && !answered) found.outcome = LineOutcome::faint;
     return found;
   }
 

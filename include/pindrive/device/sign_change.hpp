@@ -18,12 +18,14 @@ double sign_change(Function&& f, double low, double high) {
   int moved_low = 0;  // times in a row
   for (int step = 0;; ++step) {
     const double half = low + 0.5 * (high - low);
-    if (!(low < half && half < high)) return high;
+    const bool neighbours = half <= low || high <= half;
+    if (neighbours) return high;
     double middle = step % 3 == 2 ? half : low + (high - low) * (below / (below - above));
     const double ulp = 2 * std::numeric_limits<double>::epsilon() * std::abs(high);
     middle = std::max(middle, std::min(low + ulp, half));
     middle = std::min(middle, std::max(high - ulp, half));
-    if (!(low < middle && middle < high)) middle = half;
+    const bool inside = low < middle && middle < high;  // false for NaN
+    if (!inside) middle = half;
     const double found = f(middle);
     if (found < 0) {
       low = middle;
