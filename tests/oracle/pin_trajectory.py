@@ -6,16 +6,16 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from math import nan
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pindrive.device.hand import HandPath
+from pindrive.device.trajectory import roots
 from pindrive.motion.motion import Motion
 from pindrive.quantities.status import Side
 
-PIECES: Final = 64
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
 
 
@@ -151,49 +151,6 @@ class Trajectory:
     @cached_property
     def _ends(self) -> NDArray[np.float64]:
         return np.array([segment.end for segment in self.motion.segments])
-
-
-def roots(
-    f: Callable[[Any], NDArray[np.float64]],
-    low: NDArray[np.float64],
-    high: NDArray[np.float64],
-    sign: NDArray[np.float64],
-) -> NDArray[np.float64]:
-    """The first times at which f no longer has its sign, shape (n,); see `brackets`."""
-    return brackets(f, low, high, sign, max(2, PIECES // max(1, low.size)), 0.0)[1]
-
-
-def brackets(
-    f: Callable[[Any], NDArray[np.float64]],
-    low: NDArray[np.float64],
-    high: NDArray[np.float64],
-    sign: NDArray[np.float64],
-    pieces: int,
-    precision: float,
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The last places where f has its sign and the first where not, by cutting brackets.
-
-    SciPy's brentq takes fewer steps, but loading scipy.optimize takes longer than a usual scan.
-
-    Args:
-        f: Function of positions of shape (n, k), such as times.
-        low: Lower ends of the brackets, shape (n,); f changes its sign once in each.
-        high: Upper ends of the brackets, shape (n,).
-        sign: Sign of f at the lower ends, 1 or -1, shape (n,).
-        pieces: Number of pieces into which each bracket is cut at once.
-        precision: Largest width of a bracket at the end, as a part of its first width; 0:
-            neighbouring floats.
-    """
-    grid, row = np.arange(pieces + 1) / pieces, np.arange(low.size)
-    while (high - low > precision * low).any():
-        t = low[:, None] + (high - low)[:, None] * grid
-        t[:, -1] = high
-        first = np.argmax(sign[:, None] * f(t[:, 1:]) <= 0.0, axis=1) + 1
-        before, after = t[row, first - 1], t[row, first]
-        if not ((low < before) | (after < high)).any():
-            break
-        low, high = before, after
-    return low, high
 
 
 def root(f: Callable[[Any], NDArray[np.float64]], low: float, high: float) -> float:

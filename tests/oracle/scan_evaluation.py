@@ -1,7 +1,8 @@
 """Evaluation of scans in Python: the reference of include/pindrive/device, which replaced it.
 
 Printed lines, trajectories between turning points, and each pin's lines and false lines, by NumPy
-over the interface of `Motion`: nothing is shared with the evaluation in C++ but the motions.
+over the interface of `Motion`. It shares motions, `Scene.at` and `HandPath.position` with the
+evaluation in C++; tests/device/test_reference.py compares the latter two with NumPy.
 """
 
 from __future__ import annotations
@@ -14,13 +15,14 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from oracle.pin_trajectory import Signal, Trajectory, Way, roots
+from oracle.pin_trajectory import Signal, Trajectory, Way
 from pindrive.device.device import Criteria, Device
 from pindrive.device.hand import HandPath
 from pindrive.device.page import Scene
 from pindrive.device.pin_scan import PinScan
 from pindrive.device.scanning import Scan
 from pindrive.device.touch import spans
+from pindrive.device.trajectory import roots
 from pindrive.evaluation.line_crossings import CUES, Cue, Edge, FalseLine, Fate, Line
 from pindrive.motion.profile import Profile
 
