@@ -235,13 +235,6 @@ class MonotonePieces {
     return found;
   }
 
-  /// Largest size of the deflection, m.
-  double largest_deflection() const {
-    double most = 0;
-    for (const Knot& knot : knots_) most = std::max(most, std::abs(knot.after.x));
-    return most;
-  }
-
   /// True if the finger holds the pin at rest just before a time.
   bool rests(double t) const {
     const Knot& knot = knots_[place(t, Side::left)];

@@ -70,8 +70,7 @@ class Coil:
 
     def __post_init__(self) -> None:
         """Validate what follows from them."""
-        # Each value is in range, but their quotient is not.
-        # Each value is in range, but their quotient is not.
+        # Each value is in range, but a quotient of values may be out of its own.
         for name in ("resistance", "inductance", "current", "field", "power"):
             TABLE.check(f"coil.{name}", getattr(self, name))
         if (self.lift is None) != (self.closing_force is None):
