@@ -56,6 +56,7 @@ struct PlateVelocity {
   bool oblique{false};
 
   PlateVelocity(const HandPath& path, const Axis& axis) {
+    // Part of the speed to which the product with the direction of the axis is rounded.
     constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
     double fastest = 0, most = 0;
     for (std::size_t i = 0; i < path.count; ++i) {
