@@ -13,6 +13,7 @@ from oracle.scan_evaluation import evaluated, printed
 from pindrive import Contact, Drive, Profile
 from pindrive.device import Criteria, Scan, scan
 from pindrive.evaluation.line_crossings import printed_lines
+from pindrive.quantities.results import LINE
 from random_scans import RandomScan
 
 
@@ -37,6 +38,10 @@ def check(done: Scan) -> int:
             for value in flat(astuple(one))
         ]
         assert flat(astuple(other)) == expected
+    shown = found.columns()
+    for quantity in LINE:
+        each = [line.numbers[quantity.name] for line in found.lines]
+        np.testing.assert_array_equal(shown[quantity.variable], each, quantity.name)
     for those, columns in zip(
         printed(done.device, done.path, done.scene),
         printed_lines(done.device, done.path, done.scene),
