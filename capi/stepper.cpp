@@ -34,7 +34,7 @@ using State = pd::Stepper<double>::State;
 
 // ---- bytes -------------------------------------------------------------------------------------
 
-constexpr std::uint32_t magic = 0x70647332;  // "pds2"
+constexpr std::uint32_t magic = 0x70647333;  // "pds3"
 
 /// Goes over everything that bytes hold, in one order for writing and reading.
 template <class Bytes, class Numbers>
@@ -70,7 +70,7 @@ void exchange(Bytes& bytes, Numbers& at, State& s) {
   for (auto* input :
        {&s.mouse_velocity, &s.plate_load, &s.across_velocity, &s.force, &s.finger_load})
     held(*input);
-  number(s.event.plate, s.event.finger, s.event.stop);
+  number(s.horizon, s.event.plate, s.event.finger, s.event.stop);
 }
 
 class Counting {

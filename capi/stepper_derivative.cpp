@@ -46,6 +46,7 @@ StateOfDual lifted(const State& s) {
           held(s.across_velocity),
           held(s.force),
           held(s.finger_load),
+          s.horizon,
           s.event};
 }
 

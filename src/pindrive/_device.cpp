@@ -179,7 +179,9 @@ class Scan {
         touch_(touch, touch),
         device_{drive_of(drive),        normal_force,       magnet_of(magnet),
                 controller_of(control), device::Axis(axis), spots_of(spots)},
-        inputs_(device_, raster_of(raster_), path_of(path_), touch_.profile()) {
+        velocity_(path_of(path_), device_.axis),
+        inputs_{device_,   raster_of(raster_), path_of(path_),
+                velocity_, touch_.profile(),   path_of(path_).begin()} {
     for (const auto& [position, velocity, stretch, coil, decision, pending] : states)
       states_.push_back({position, velocity, stretch, coil_of(coil), decision, pending});
     runs_.resize(states_.size());
@@ -293,6 +295,7 @@ class Scan {
   pd::OwnedContact<double> plate_, finger_;
   pd::OwnedRows<double> touch_;
   device::Device device_;
+  device::PlateVelocity velocity_;
   device::ScanInputs inputs_;
   std::vector<device::PinState> states_;
   std::vector<device::PinRun> runs_;
@@ -481,7 +484,7 @@ void bind_device(nb::module_& m) {
         const device::PlateVelocity found(path_of(path), device::Axis(axis));
         return nb::make_tuple(to_array(std::vector<double>(found.times)),
                               to_array(std::vector<double>(found.along)),
-                              to_array(std::vector<double>(found.across)), found.oblique);
+                              to_array(std::vector<double>(found.across)), found.oblique());
       },
       "path"_a, "axis"_a,
       "Times since the begin; velocity along and across the axis; whether across it moves.");

@@ -17,6 +17,15 @@ int main() {
   constexpr double never = std::numeric_limits<double>::infinity();
   expect(pd::detail::falling_load(2.0, 1.0, -4.0).ends == 2.25, "a falling load ends at zero");
   expect(!(pd::detail::falling_load(2.0, 1.0, 4.0).ends < never), "a growing load does not end");
+  Held slows(1, Line{0.3, -2}), turns(1, Line{0.3, -2});
+  pd::detail::end_at(slows, 1.0, 1.15);
+  pd::detail::end_at(turns, 1.0, 1.2);
+  expect(slows.ends == 1.15 && !(turns.ends < never), "a velocity ends where it reaches zero");
+  pd::detail::end_at(slows, 1.05, 1.1);
+  expect(!(slows.ends < never), "a horizon before that is not its end");
+  pd::detail::end_at(slows, 1.1, 1.15);
+  pd::detail::end_at(slows, 1.15, 1.3);
+  expect(slows.ends == 1.15, "an end that is reached remains");
 
   const Held held(1, Line{0.3, 2});
   expect(!pd::detail::differs(Line{0.5, 2}, held, 1.1), "an input within rounding is continued");

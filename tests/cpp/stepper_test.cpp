@@ -162,6 +162,59 @@ void the_same_as_in_one_run() {
   expect(worst.differing == 0 && across.differing == 0, "a kept state gives the same bits");
 }
 
+/// Segments of a pin whose inputs are set row by row, each until the next; steps in between if `cut`.
+std::vector<pd::Segment<double>> segments_of(const Case& c, bool cut) {
+  std::vector<pd::Segment<double>> found;
+  const auto sink = [&](const pd::Segment<double>& segment) { found.push_back(segment); };
+  pd::Stepper<double> stepper(c.drive, start_of(c));
+  for (std::size_t row = 0; row < c.times.size(); ++row) {
+    const bool last = row + 1 == c.times.size();
+    const double end = last ? c.duration : c.times[row + 1];
+    stepper.set(c.from(c.times[row]), last ? infinity : end, sink);
+    if (cut)
+      for (double part : {0.3, 0.31, 0.9})
+        stepper.step(c.times[row] + part * (end - c.times[row]), false, {}, sink);
+    stepper.step(end, false, {}, sink);
+  }
+  found.push_back(stepper.segment_until_now());
+  return found;
+}
+
+void segments_between_rows() {
+  Random random(17);
+  int differing = 0, cut_differing = 0, count = 0;
+  // Steps of a series may end elsewhere.
+  const auto with_events = [](std::vector<pd::Segment<double>> segments) {
+    segments.erase(std::remove_if(segments.begin(), segments.end(),
+                                  [](const auto& segment) { return !segment.event.any(); }),
+                   segments.end());
+    return segments;
+  };
+  for (int i = 0; i < cases(500); ++i) {
+    const Case c(random);
+    const Whole whole(c);
+    if (whole.outcome.status != pd::Status::ok) continue;
+    const auto found = segments_of(c, false), again = segments_of(c, true);
+    const auto alike = [](const pd::Segment<double>& one, const pd::Segment<double>& other) {
+      return std::abs(one.end - other.end) < 1e-10 && pd::same_mode(one.mode, other.mode) &&
+             one.event.plate == other.event.plate && one.event.finger == other.event.finger &&
+             one.event.stop == other.event.stop;
+    };
+    const auto equal = [](const pd::Segment<double>& one, const pd::Segment<double>& other) {
+      return one.begin == other.begin && one.end == other.end &&
+             one.flow.position.start == other.flow.position.start &&
+             one.moved.gain == other.moved.gain;
+    };
+    const auto events = with_events(found), expected = with_events(whole.segments);
+    count += static_cast<int>(events.size());
+    differing += !std::equal(events.begin(), events.end(), expected.begin(), expected.end(), alike);
+    cut_differing += !std::equal(found.begin(), found.end(), again.begin(), again.end(), equal);
+  }
+  std::printf("%d events between rows, of %d motions other than in one run\n", count, differing);
+  expect(differing == 0, "events between rows are those of one run");
+  expect(cut_differing == 0, "to the bit wherever steps end");
+}
+
 /// A released pin that comes to rest on the finger.
 const pd::Drive<double> drive{0.010, 100, 0.40, {0.020, 0.020}, {0.005, 0.005}};
 const pd::Inputs<double> release{{0, {0.10, 0}}, 1.5e-3, 0.10, infinity, {0, {1, 0}}};
@@ -347,6 +400,7 @@ void event_times_do_not_drift() {
 int main() {
   event_times_do_not_drift();
   the_same_as_in_one_run();
+  segments_between_rows();
   events();
   at_the_stops();
   a_jump();

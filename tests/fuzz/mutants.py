@@ -485,9 +485,21 @@ MUTANTS = (
     ),
     Mutant(
         "skin keeps any stretch",
-        "device/scan.hpp",
+        "device/scan_inputs.hpp",
         "    return std::copysign(finger.kinetic * pressed / finger.stiffness, stretch);",
         "    return stretch;",
+    ),
+    Mutant(
+        "switchings that are due are foreseen",
+        "device/pin_follower.hpp",
+        "const double horizon = std::min(coil_.next() - begin_, scan.next_row(passed_));",
+        "const double horizon = next(scan);",
+    ),
+    Mutant(
+        "the coil that a pin kept is at its first row",
+        "device/pin_follower.hpp",
+        "    while (coil_.next() - begin_ <= passed_) coil_.pass(coil_.next());\n",
+        "",
     ),
     Mutant(
         "an acceleration is bounded by its begin",

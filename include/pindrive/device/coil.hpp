@@ -38,6 +38,22 @@ class Coil {
     begin_piece();
   }
 
+  /// A coil at a time, from a state before. A last change after that time, as on another clock, counts as one
+  /// at the time.
+  static Coil begun(const Electromagnet& magnet, CoilState from, double time) {
+    from.since = std::min(from.since, time);
+    from.commanded = std::min(from.commanded, time);
+    const bool ends = from.on && !from.command;  // the command ends at that time
+    from.command = from.command || ends;
+    Coil coil(magnet, from);
+    coil.pass(time);
+    if (ends) {
+      coil.command(false, time);
+      coil.pass(time);
+    }
+    return coil;
+  }
+
   const CoilState& state() const { return state_; }
   const FluxPiece& piece() const { return piece_; }
 

@@ -32,19 +32,11 @@ struct CoilCourse {
               std::size_t count, double begin, double until, std::size_t most) {
     most_ = most;
     from.since = std::min(from.since, begin);
-    from.commanded = std::min(from.commanded, begin);
     pieces.clear();
     times.clear();
     pulls.clear();
-    Coil coil(magnet, from);
-    add(coil);
-    if (from.on && !from.command) {  // the command ends with the begin
-      coil = Coil(magnet, commanded(from));
-      coil.pass(begin);
-      coil.command(false, begin);
-      add(coil);
-    }
-    coil.pass(begin);
+    add(Coil(magnet, from));
+    Coil coil = Coil::begun(magnet, from, begin);
     add(coil);
     times.assign(1, coil.line_begin());
     pulls.assign(1, coil.pull(coil.line_begin()));
@@ -61,10 +53,6 @@ struct CoilCourse {
 
  private:
   bool full() const { return pieces.size() > most_ || times.size() > most_; }
-  static CoilState commanded(CoilState state) {
-    state.command = true;
-    return state;
-  }
 
   /// A change at the time itself comes after a command at that time.
   void pass_before(Coil& coil, double to) {

@@ -7,40 +7,14 @@
 #include <limits>
 #include <vector>
 
-#include "pindrive/device/coil.hpp"
 #include "pindrive/device/coil_course.hpp"
 #include "pindrive/device/controller.hpp"
-#include "pindrive/device/electromagnet.hpp"
 #include "pindrive/device/evaluation.hpp"
-#include "pindrive/device/hand_path.hpp"
-#include "pindrive/device/raster.hpp"
-#include "pindrive/events/simulate.hpp"
+#include "pindrive/device/pin_follower.hpp"
+#include "pindrive/device/scan_inputs.hpp"
 #include "pindrive/model/model.hpp"
 
 namespace pindrive::device {
-
-/// Device whose pins are alike.
-struct Device {
-  Drive<double> drive;
-  double normal_force;  ///< normal force of the plate without a pull, N
-  Electromagnet magnet;
-  Controller controller;
-  Axis axis;
-  std::vector<Place> spots;  ///< offset of the spot of each pin from the hand, m
-
-  /// Factor of the plate friction under a pull, N.
-  double load(double pull) const { return 1 + pull / normal_force; }
-};
-
-/// State of a pin, its coil and its control block at the begin of a scan.
-struct PinState {
-  double position{0};                                        ///< m
-  double velocity{0};                                        ///< m/s; NaN: carried by the plate
-  double stretch{std::numeric_limits<double>::quiet_NaN()};  ///< skin stretch, m; NaN: not kept
-  CoilState coil{};
-  bool decision{false};         ///< last decision of the control block
-  std::vector<double> pending;  ///< times of the switchings that are due, s
-};
 
 /// Input with rows over time; a constant where all rows have one value.
 inline Profile<double> profile_of(const std::vector<double>& times,
@@ -49,45 +23,6 @@ inline Profile<double> profile_of(const std::vector<double>& times,
   if (std::none_of(values.begin(), values.end(), differs)) return {values[0]};
   return {times.data(), values.data(), values.size()};
 }
-
-/// Velocity of the plate under the mouse, over the time since the begin of a path.
-struct PlateVelocity {
-  std::vector<double> times, along, across;
-  bool oblique{false};
-
-  PlateVelocity(const HandPath& path, const Axis& axis) {
-    // Part of the speed to which the product with the direction of the axis is rounded.
-    constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
-    double fastest = 0, most = 0;
-    for (std::size_t i = 0; i < path.count; ++i) {
-      const Vector v{path.vx[i], path.vy[i]};
-      times.push_back(path.times[i] - path.begin());
-      along.push_back(axis.along(v));
-      across.push_back(axis.across(v));
-      fastest = std::max(fastest, detail::hypot(v.x, v.y));
-      most = std::max(most, std::abs(across.back()));
-    }
-    oblique = most > rounding * fastest;
-  }
-};
-
-/// Inputs of a scan that all pins share. Owns no memory but that of its rows.
-struct ScanInputs {
-  const Device& device;
-  Raster raster;
-  HandPath path;
-  PlateVelocity plate;
-  Profile<double> finger_load;  ///< over the time since the begin of the path
-
-  ScanInputs(const Device& with, const Raster& page, const HandPath& along,
-             const Profile<double>& pressed)
-      : device(with), raster(page), path(along), plate(path, device.axis), finger_load(pressed) {}
-
-  /// Luminance under the spot of a pin.
-  double luminance(std::size_t pin, double t) const {
-    return raster.at(path.position(t) + device.spots[pin]);
-  }
-};
 
 /// One pin of a scan: decisions of its control block, course of its coil, and its motion.
 struct PinRun {
@@ -156,32 +91,24 @@ struct PinRun {
     Inputs<double> found{profile_of(plate.times, plate.along), from.position, velocity,
                          plate.times.back()};
     found.plate_load = profile_of(load_times, loads);
-    found.skin_stretch = held_stretch(scan, from.stretch);
-    if (plate.oblique) found.across_velocity = profile_of(plate.times, plate.across);
+    found.skin_stretch = scan.held_stretch(from.stretch);
+    found.across_velocity = profile_of(plate.times, plate.across);
     found.finger_load = scan.finger_load;
     return found;
   }
 
-  /// Simulates the motion; go_on() is called after each segment.
+  /// Simulates the motion; go_on() is called after each event and row.
   template <class GoOn>
-  void simulate(const ScanInputs& scan, const PinState& from, GoOn&& go_on) {
+  void simulate(const ScanInputs& scan, PinState from, GoOn&& go_on) {
     segments.clear();
-    outcome = pindrive::simulate(scan.device.drive, inputs(scan, from),
-                                 [&](const Segment<double>& segment) {
-                                   segments.push_back(segment);
-                                   return go_on();
-                                 });
-  }
-
- private:
-  /// Stretch that the skin keeps as a load begins, m: beyond static friction it slips.
-  static double held_stretch(const ScanInputs& scan, double stretch) {
-    const Contact<double>& finger = scan.device.drive.finger;
-    const double pressed = scan.finger_load.from(0).value;
-    if (std::isnan(stretch) ||
-        std::abs(stretch) <= finger.static_limit * pressed / finger.stiffness)
-      return stretch;
-    return std::copysign(finger.kinetic * pressed / finger.stiffness, stretch);
+    from.pending = switchings;
+    PinFollower follower(scan, from);
+    const auto sink = [&](const Segment<double>& segment) { segments.push_back(segment); };
+    const bool whole = follower.advance(scan, scan.path.end(), go_on, sink);
+    segments.push_back(follower.stepper().segment_until_now());
+    outcome = {follower.stepper().status()};
+    outcome.until = segments.back().end;
+    if (!whole && outcome.status == Status::ok) outcome.status = Status::stopped;
   }
 };
 

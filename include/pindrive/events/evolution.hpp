@@ -92,6 +92,15 @@ class Evolution {
     if (!pin.stop.is_holding()) pin.stop.add_guards(selected.guards, pin.state, segment.flow);
   }
 
+  /// Transitions from the mode before to the selected one.
+  Event transitions(const Mode& before) const {
+    const Mode after = pin.mode();
+    Event event{change(before.plate, after.plate), change(before.finger, after.finger),
+                change(before.stop, after.stop, struck)};
+    if (pin.finger.start.shortens_skin) event.finger = Transition::slip;
+    return event;
+  }
+
   /// Time to the next turning point of a pin over a plate that slides across, under constant
   /// inputs; infinite elsewhere. Such a pin may oscillate for ever without an event, and a cycle is
   /// closed at its turning points.

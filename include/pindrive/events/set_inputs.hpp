@@ -22,6 +22,18 @@ Held<T> falling_load(T now, T value, T rate) {
   return load;
 }
 
+/// Ends a velocity at a horizon at which it reaches zero within rounding.
+template <class T>
+void end_at(Held<T>& velocity, const T& now, const T& horizon) {
+  constexpr T never = std::numeric_limits<T>::infinity();
+  const Line<T>& line = velocity.line;
+  const T lasts = horizon - velocity.since;
+  if (now >= velocity.ends) return;
+  const bool ends = horizon < never && line.rate != 0 &&
+                    abs(line.at(lasts)) <= rounding<T> * (abs(line.value) + abs(line.rate * lasts));
+  velocity.ends = ends ? horizon : never;
+}
+
 /// Inputs without an end, whose falling loads stop at zero.
 template <class T>
 Inputs<T> without_end(Inputs<T> inputs) {

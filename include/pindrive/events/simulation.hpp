@@ -39,10 +39,7 @@ class Simulation {
         if (turn < event) pin.state.v = T(0);
         select();
         const Mode after = pin.mode();
-        segment.event = {change(segment.mode.plate, after.plate),
-                         change(segment.mode.finger, after.finger)};
-        segment.event.stop = change(segment.mode.stop, after.stop, evolution_.struck);
-        if (pin.finger.start.shortens_skin) segment.event.finger = Transition::slip;
+        segment.event = evolution_.transitions(segment.mode);
         const bool changes = segment.event.any() || !same_mode(segment.mode, after);
         if (!(evolution_.next_breakpoint < never) && (changes || turn < event))
           cycles_.visit(segment, after, pin.time, evolution_.time_error, pin.state, outcome_);

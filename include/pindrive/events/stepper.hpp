@@ -21,6 +21,7 @@ namespace pindrive {
 template <class T>
 class Stepper {
   using ContactMode = detail::ContactMode<T>;
+  static constexpr T never = std::numeric_limits<T>::infinity();
 
  public:
   /// Complete state: a stepper constructed from this state gives identical bits.
@@ -39,7 +40,8 @@ class Stepper {
     Line<T> plate_velocity;        ///< plate velocity from that time on
     /// Inputs as set.
     Held<T> mouse_velocity{}, plate_load{}, across_velocity{}, force{}, finger_load{};
-    Event event{};  ///< transitions of contacts and stops now
+    T horizon{never};  ///< time at which the inputs are set next at the latest, s
+    Event event{};     ///< transitions of contacts and stops now
   };
 
   /// Release at the time `begin`, s. The duration of the inputs is ignored. The friction curves of
@@ -50,7 +52,7 @@ class Stepper {
         evolution_(drive_, inputs_, begin),
         now_(begin),
         before_(evolution_.pin.mode()) {
-    select();
+    select(false, Unattended{});
   }
   Stepper(const Drive<T>& drive, const State& state)
       : drive_(drive),
@@ -58,9 +60,10 @@ class Stepper {
                                         state.plate_load, std::numeric_limits<T>::quiet_NaN(),
                                         state.force, state.across_velocity, state.finger_load})),
         evolution_(drive_, inputs_, state.since),
-        now_(state.now) {
+        now_(state.now),
+        horizon_(state.horizon) {
     restore(state);
-    select();
+    select(false, Unattended{});
     event_ = state.event;
   }
   Stepper(const Stepper&) = delete;
@@ -74,26 +77,27 @@ class Stepper {
     found.across_velocity = inputs_.across_velocity.held();
     found.force = inputs_.force.held();
     found.finger_load = inputs_.finger_load.held();
+    found.horizon = horizon_;
     found.event = event_;
     return found;
   }
 
   /// Advances to the time `until` (s, >= now) or, with `stop_at_event`, to the first contact event
-  /// before. `go_on` is called after each event.
+  /// before. `go_on` is called after each event, and `sink` with each segment that ends. With a horizon,
+  /// `until` is not beyond it.
   ///
   /// Returns false if the step is incomplete: `status` is not ok, or go_on() returned false, and
   /// now() is the time of the last event; the next step continues from there.
-  template <class GoOn = Unattended>
-  bool step(T until, bool stop_at_event = false, GoOn go_on = {}) {
+  template <class GoOn = Unattended, class Sink = Unattended>
+  bool step(T until, bool stop_at_event = false, GoOn go_on = {}, Sink&& sink = {}) {
     int standing = 0;
     bool stopped = false;
-    while (status() == Status::ok && !stopped && !(next() > until)) {
+    while (status() == Status::ok && !stopped && !(next() > until) && next() < horizon_) {
       const bool together = !(tau_ > 0);
       if (stop_at_event && !together && happens_after(now_)) break;
       before_ = segment_.mode;
       evolution_.jump(segment_, tau_);
-      select();
-      const Event event = event_now();
+      const Event event = select(true, sink);
       if (!together || event.plate != Transition::none) event_.plate = event.plate;
       if (!together || event.finger != Transition::none) event_.finger = event.finger;
       if (!together || event.stop != Transition::none) event_.stop = event.stop;
@@ -113,7 +117,11 @@ class Stepper {
   /// A jump of the mouse velocity moves the housing in no time: the pin keeps its velocity relative
   /// to the housing, which no finite force could change. A jump of the transverse velocity acts
   /// likewise. A value that differs from the continued input by rounding changes nothing.
-  void set(const InputLines<T>& given) {
+  ///
+  /// `horizon` is the time (s) at which the inputs are set next at the latest: events are not sought
+  /// beyond it, as if the inputs had a breakpoint there. `sink` is called with the segment that ends.
+  template <class Sink = Unattended>
+  void set(const InputLines<T>& given, T horizon = never, Sink&& sink = {}) {
     Held<T>&velocity = inputs_.mouse_velocity.held(), &load = inputs_.plate_load.held();
     Held<T>&across = inputs_.across_velocity.held(), &force = inputs_.force.held();
     Held<T>& touch = inputs_.finger_load.held();
@@ -122,31 +130,36 @@ class Stepper {
     const bool drifts = detail::differs(given.across_velocity, across, now_),
                pushes = detail::differs(given.force, force, now_);
     const bool touches = detail::differs(given.finger_load, touch, now_);
-    if (!turns && !loads && !drifts && !pushes && !touches) return;
+    if (!turns && !loads && !drifts && !pushes && !touches && horizon == horizon_) return;
+    horizon_ = horizon;
     const T jump = detail::change_to(given.plate_velocity.value, velocity, now_);
     const bool across_jumps =
         plain(detail::change_to(given.across_velocity.value, across, now_)) != 0;
-    if (turns) velocity = {now_, {velocity.from(now_).value, given.plate_velocity.rate}};
+    const T from = detail::is_zero(jump) ? given.plate_velocity.value : velocity.from(now_).value;
+    if (turns) velocity = {now_, {from, given.plate_velocity.rate}};
     if (loads) load = detail::falling_load(now_, given.plate_load.value, given.plate_load.rate);
     if (drifts) across = {now_, given.across_velocity};
     if (pushes) force = {now_, given.force};
     if (touches)
       touch = detail::falling_load(now_, given.finger_load.value, given.finger_load.rate);
-    restart();
+    for (Held<T>* each : {&velocity, &across}) detail::end_at(*each, now_, horizon);
+    const bool ends = restart();
     if (!detail::is_zero(jump)) {
       velocity.line.value = detail::moved(velocity.line.value, jump, given.plate_velocity.value);
       detail::shift(evolution_, jump, velocity.line.value);
     }
     if (across_jumps) detail::turn(evolution_.pin.plate, evolution_.pin.state.v);
-    select();
-    event_ = event_now();
+    event_ = select(ends, sink);
   }
 
   Status status() const { return status_; }
   T now() const { return now_; }  ///< s
   /// Time until which no contact changes if the inputs continue unchanged, s; infinite if none ever
   /// changes.
-  T next() const { return evolution_.time_after(tau_); }
+  T next() const {
+    const bool at_breakpoint = tau_ == evolution_.until_breakpoint();
+    return at_breakpoint ? evolution_.next_breakpoint : evolution_.time_after(tau_);
+  }
   const Event& event() const { return event_; }  ///< transitions of the contacts now
   Mode mode() const { return segment_.mode; }    ///< mode of the contacts from now on
   const Drive<T>& drive() const { return drive_; }
@@ -158,6 +171,13 @@ class Stepper {
 
   /// Present segment, its duration until now, and its inputs from its begin on.
   const Segment<T>& segment() const { return segment_; }
+  /// Present segment, ended now.
+  Segment<T> segment_until_now() const {
+    Segment<T> found = segment_;
+    found.end = now_;
+    found.moved = found.flow.after(tau());
+    return found;
+  }
   T tau() const { return std::min(std::max(now_ - segment_.begin, T(0)), tau_); }
   /// State of the pin now, without the tension of slipping skin.
   detail::State<T> pin() const {
@@ -176,16 +196,7 @@ class Stepper {
   }
 
  private:
-  static constexpr T never = std::numeric_limits<T>::infinity();
-
   bool happens_after(const T& time) const { return event_.any() && evolution_.pin.time > time; }
-
-  /// Transitions at the begin of the present segment.
-  Event event_now() const {
-    const Mode& after = segment_.mode;
-    return {change(before_.plate, after.plate), change(before_.finger, after.finger),
-            detail::change(before_.stop, after.stop, evolution_.struck)};
-  }
 
   void restore(const State& state) {
     evolution_.pin.time = state.since;
@@ -215,8 +226,8 @@ class Stepper {
   }
 
   /// Advances the pin to now, where an input has a breakpoint; an event within the time resolution
-  /// of now happens now.
-  void restart() {
+  /// of now happens now. True if the present segment ends.
+  bool restart() {
     using std::abs;
     if (abs(now_ - evolution_.pin.time) <= detail::rounding<T> * abs(now_)) {
       restore(last_);
@@ -226,15 +237,17 @@ class Stepper {
       take_inputs(now_);
       evolution_.pin.stick_limit_side = 0;
       if (evolution_.pin.stop.rigid()) evolution_.pin.stop.released = false;  // the push may jump
-    } else {
-      evolution_.next_breakpoint = now_;
-      before_ = segment_.mode;
-      evolution_.jump(segment_, evolution_.until_breakpoint());
+      return false;
     }
+    evolution_.next_breakpoint = now_;
+    before_ = segment_.mode;
+    evolution_.jump(segment_, evolution_.until_breakpoint());
+    return true;
   }
 
-  /// Begins the next segment.
-  void select() {
+  /// Begins the next segment; the present one `ends`. Returns the transitions.
+  template <class Sink>
+  Event select(bool ends, Sink&& sink) {
     const auto &plate = evolution_.pin.plate, &finger = evolution_.pin.finger;
     last_ = {now_,
              evolution_.pin.time,
@@ -256,11 +269,17 @@ class Stepper {
                         evolution_.pin.force.rate == 0;
     evolution_.next_breakpoint = std::min({inputs_.plate_load.next_breakpoint(evolution_.pin.time),
                                            inputs_.finger_load.next_breakpoint(evolution_.pin.time),
-                                           steady ? never : evolution_.pin.time + far_});
+                                           steady ? never : evolution_.pin.time + far_, horizon_});
     if (!evolution_.select()) status_ = Status::inconsistent;
+    const Event event = evolution_.transitions(before_);
+    if (ends) {
+      segment_.event = event;
+      goes_on(sink, segment_);
+    }
     evolution_.begin(segment_);
     tau_ = evolution_.earliest(segment_.flow);
     if (evolution_.series.used()) segment_.end = evolution_.pin.time + tau_;
+    return event;
   }
 
   static T far_for(const Drive<T>& drive) {
@@ -272,9 +291,10 @@ class Stepper {
   T far_{far_for(drive_)};  ///< s
   Inputs<T> inputs_;
   detail::Evolution<T> evolution_;
-  T now_;          ///< s
-  Mode before_{};  ///< mode until the last event
-  State last_;     ///< state at the last event, before the mode was selected
+  T now_;             ///< s
+  T horizon_{never};  ///< time at which the inputs are set next at the latest, s
+  Mode before_{};     ///< mode until the last event
+  State last_;        ///< state at the last event, before the mode was selected
   Segment<T> segment_;
   T tau_;  ///< duration of the segment if the inputs continue, s
   Event event_{};

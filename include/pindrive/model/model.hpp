@@ -361,9 +361,13 @@ struct Outcome {
 };
 
 /// Progress function that never interrupts. A progress function is called during long computations;
-/// if it returns false, the computation ends early and its result is meaningless.
+/// if it returns false, the computation ends early and its result is meaningless. Also a sink that ignores
+/// all it is given.
 struct Unattended {
-  constexpr bool operator()() const { return true; }
+  template <class... Arguments>
+  constexpr bool operator()(const Arguments&...) const {
+    return true;
+  }
 };
 
 /// Calls a function that may return false to request no further calls; true to continue.

@@ -1,0 +1,96 @@
+/// Whole device under a hand that is given as it moves.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "pindrive/device/live_hand.hpp"
+#include "pindrive/device/pin_follower.hpp"
+#include "pindrive/device/raster.hpp"
+#include "pindrive/device/scan_inputs.hpp"
+#include "pindrive/model/model.hpp"
+
+namespace pindrive::device {
+
+/// State of a device at a time: a stream constructed from it gives identical bits.
+struct DeviceState {
+  double now;  ///< s
+  LiveHand hand;
+  std::vector<PinFollower::State> pins;
+};
+
+/// Pins of a device over a page, advanced from time to time. The times at which the caller pauses do not change a
+/// bit. The device is referenced; the raster may change between calls.
+class DeviceStream {
+ public:
+  /// Pins at their states, one each, under a hand at rest or moving at a place.
+  DeviceStream(const Device& device, const LiveHand::Row& first, Place place,
+               std::vector<PinState> states)
+      : device_(device),
+        now_(first.time),
+        hand_(first, place, device.axis),
+        states_(std::move(states)) {}
+  DeviceStream(const Device& device, const Raster& raster, const DeviceState& state)
+      : device_(device), now_(state.now), hand_(state.hand) {
+    for (const PinFollower::State& pin : state.pins)
+      pins_.push_back(std::make_unique<PinFollower>(inputs(raster), pin));
+  }
+
+  /// State now, after the second row of the hand.
+  DeviceState state() const {
+    DeviceState found{now_, hand_, {}};
+    for (const auto& pin : pins_) found.pins.push_back(pin->state());
+    return found;
+  }
+
+  /// Gives the next row of the hand, later than the last one.
+  void move(const Raster& raster, const LiveHand::Row& row) {
+    hand_.add(row, device_.axis);
+    if (!pins_.empty()) return;
+    for (const PinState& state : states_)
+      pins_.push_back(std::make_unique<PinFollower>(inputs(raster), state));
+  }
+
+  /// Advances all pins to a time (s) from now() to hand().end(). `sink(pin, segment)` is called with each segment
+  /// that ends, and `go_on` after each event and row. False if the advance is incomplete: status() is not ok, or
+  /// go_on() returned false; the next call continues from there.
+  template <class GoOn = Unattended, class Sink = Unattended>
+  bool advance(const Raster& raster, double until, GoOn go_on = {}, Sink&& sink = {}) {
+    const ScanInputs given = inputs(raster);
+    for (std::size_t i = 0; i < pins_.size(); ++i) {
+      pins_[i]->sample(given, i, until);
+      if (!pins_[i]->advance(given, until, go_on,
+                             [&](const Segment<double>& segment) { sink(i, segment); }))
+        return false;
+    }
+    now_ = until;
+    hand_.forget(now_);
+    return true;
+  }
+
+  double now() const { return now_; }  ///< s
+  const LiveHand& hand() const { return hand_; }
+  const Device& device() const { return device_; }
+  std::size_t size() const { return pins_.size(); }  ///< pins; none before the second row
+  const PinFollower& pin(std::size_t i) const { return *pins_[i]; }
+  /// First status of a pin that is not ok.
+  Status status() const {
+    for (const auto& pin : pins_)
+      if (pin->stepper().status() != Status::ok) return pin->stepper().status();
+    return Status::ok;
+  }
+
+ private:
+  ScanInputs inputs(const Raster& raster) const {
+    return {device_, raster, hand_.path(), hand_.plate(), hand_.finger_load(), hand_.begin()};
+  }
+
+  const Device& device_;
+  double now_;
+  LiveHand hand_;
+  std::vector<PinState> states_;  ///< at the begin
+  std::vector<std::unique_ptr<PinFollower>> pins_;
+};
+
+}  // namespace pindrive::device

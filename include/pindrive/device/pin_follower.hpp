@@ -1,0 +1,146 @@
+/// One pin under a moving hand: its control block, its coil and its motion, advanced from row to row of
+/// the inputs.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "pindrive/device/coil.hpp"
+#include "pindrive/device/controller.hpp"
+#include "pindrive/device/scan_inputs.hpp"
+#include "pindrive/events/stepper.hpp"
+#include "pindrive/model/model.hpp"
+
+namespace pindrive::device {
+
+/// Pin that follows a hand of which only the way so far is known. The times at which the caller pauses do not
+/// change a bit.
+class PinFollower {
+ public:
+  /// Complete state: a follower constructed from this state gives identical bits.
+  struct State {
+    Stepper<double>::State motion;
+    CoilState coil;
+    double sampled;               ///< time until which the page is sampled, s
+    double passed;                ///< time of the last row of an input, s since the begin
+    bool decision;                ///< last decision of the control block
+    std::vector<double> pending;  ///< times of the switchings that are due, s
+  };
+
+  PinFollower(const ScanInputs& scan, const PinState& from)
+      : device_(&scan.device),
+        begin_(scan.begin),
+        coil_(Coil::begun(device_->magnet, from.coil, begin_)),
+        sampled_(begin_),
+        decision_(from.decision),
+        pending_(from.pending),
+        stepper_(device_->drive, release(scan, from)) {
+    pass(scan, 0, Unattended{});
+  }
+  PinFollower(const ScanInputs& scan, const State& state)
+      : device_(&scan.device),
+        begin_(scan.begin),
+        coil_(device_->magnet, state.coil),
+        sampled_(state.sampled),
+        passed_(state.passed),
+        decision_(state.decision),
+        pending_(state.pending),
+        stepper_(device_->drive, state.motion) {
+    while (coil_.next() - begin_ <= passed_) coil_.pass(coil_.next());
+  }
+
+  State state() const {
+    return {stepper_.state(), coil_.state(), sampled_, passed_, decision_, pending_};
+  }
+
+  /// Samples the page under the spot of the pin before a time, s.
+  void sample(const ScanInputs& scan, std::size_t pin, double until) {
+    const Controller& controller = device_->controller;
+    controller.each_sample(sampled_, until, [&](double time) {
+      const bool on = controller.decides(decision_, scan.luminance(pin, time));
+      if (on != decision_) pending_.push_back(time + controller.latency);
+      decision_ = on;
+      return true;
+    });
+    sampled_ = until;
+  }
+
+  /// Advances the pin to a time until which it is sampled, s; false as for `Stepper::step`. Rows and
+  /// switchings at that time itself wait for the next call. `go_on` is called after each event and row.
+  template <class GoOn = Unattended, class Sink = Unattended>
+  bool advance(const ScanInputs& scan, double until, GoOn go_on = {}, Sink&& sink = {}) {
+    const double end = until - begin_;
+    for (double row = next(scan); row < end; row = next(scan)) {
+      const double time = std::max(row, stepper_.now());
+      if (!stepper_.step(time, false, go_on, sink) || !go_on()) return false;
+      pass(scan, time, sink);
+    }
+    return stepper_.step(end, false, go_on, sink);
+  }
+
+  const Stepper<double>& stepper() const { return stepper_; }  ///< time since the begin
+  const Coil& coil() const { return coil_; }
+  bool decision() const { return decision_; }  ///< last decision of the control block
+
+ private:
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+
+  /// Release with the inputs at the begin.
+  Inputs<double> release(const ScanInputs& scan, const PinState& from) const {
+    const PlateVelocity& plate = scan.plate;
+    const Line<double> along = plate.profile(plate.along).from(0);
+    Inputs<double> inputs{
+        {0, along}, from.position,     std::isnan(from.velocity) ? along.value : from.velocity,
+        infinity,   {0, load(begin_)}, scan.held_stretch(from.stretch)};
+    inputs.across_velocity = {0, plate.profile(plate.across).from(0)};
+    inputs.finger_load = {0, scan.finger_load.from(0)};
+    return inputs;
+  }
+  Line<double> load(double time) const {
+    return {device_->load(coil_.pull(time)), coil_.rate() / device_->normal_force};
+  }
+
+  double command() const { return pending_.empty() ? infinity : pending_.front(); }
+  /// Time of the next row or switching, s since the begin.
+  double next(const ScanInputs& scan) const {
+    return std::min(std::min(command(), coil_.next()) - begin_, scan.next_row(passed_));
+  }
+
+  /// Sets the inputs from their rows until a time, s since the begin. A change of the coil comes after a command
+  /// at the same time.
+  template <class Sink>
+  void pass(const ScanInputs& scan, double time, Sink&& sink) {
+    InputLines<double> lines = stepper_.inputs();
+    for (double at; (at = std::min(command(), coil_.next())) - begin_ <= time;) {
+      if (at == command()) {
+        coil_.command(!coil_.state().command, at);
+        pending_.erase(pending_.begin());
+      } else {
+        coil_.pass(at);
+      }
+      lines.plate_load = load(at);
+    }
+    if (scan.next_row(passed_) <= time) {
+      const PlateVelocity& plate = scan.plate;
+      lines.plate_velocity = plate.profile(plate.along).from(time);
+      lines.across_velocity = plate.profile(plate.across).from(time);
+      lines.finger_load = scan.finger_load.from(time);
+    }
+    passed_ = time;
+    // A switching that is due may be known or not, by the times at which the caller pauses.
+    const double horizon = std::min(coil_.next() - begin_, scan.next_row(passed_));
+    stepper_.set(lines, horizon, sink);
+  }
+
+  const Device* device_;
+  double begin_;  ///< of the scan, s
+  Coil coil_;
+  double sampled_, passed_{0};
+  bool decision_;
+  std::vector<double> pending_;
+  Stepper<double> stepper_;
+};
+
+}  // namespace pindrive::device

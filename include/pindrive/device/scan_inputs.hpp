@@ -1,0 +1,98 @@
+/// Inputs of a scan: device, page, hand and touch, and the state of each pin at the begin.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "pindrive/device/coil.hpp"
+#include "pindrive/device/controller.hpp"
+#include "pindrive/device/electromagnet.hpp"
+#include "pindrive/device/hand_path.hpp"
+#include "pindrive/device/raster.hpp"
+#include "pindrive/model/model.hpp"
+
+namespace pindrive::device {
+
+/// Device whose pins are alike.
+struct Device {
+  Drive<double> drive;
+  double normal_force;  ///< normal force of the plate without a pull, N
+  Electromagnet magnet;
+  Controller controller;
+  Axis axis;
+  std::vector<Place> spots;  ///< offset of the spot of each pin from the hand, m
+
+  /// Factor of the plate friction under a pull, N.
+  double load(double pull) const { return 1 + pull / normal_force; }
+};
+
+/// State of a pin, its coil and its control block at the begin of a scan.
+struct PinState {
+  double position{0};                                        ///< m
+  double velocity{0};                                        ///< m/s; NaN: carried by the plate
+  double stretch{std::numeric_limits<double>::quiet_NaN()};  ///< skin stretch, m; NaN: not kept
+  CoilState coil{};
+  bool decision{false};         ///< last decision of the control block
+  std::vector<double> pending;  ///< times of the switchings that are due, s
+};
+
+/// Velocity of the plate under the mouse, over the time since the begin of a path. A component across the
+/// axis that is rounding of the speed is zero.
+struct PlateVelocity {
+  std::vector<double> times, along, across;
+
+  PlateVelocity() = default;
+  PlateVelocity(const HandPath& path, const Axis& axis) {
+    for (std::size_t i = 0; i < path.count; ++i)
+      add(path.times[i] - path.begin(), {path.vx[i], path.vy[i]}, axis);
+  }
+  void add(double time, Vector v, const Axis& axis) {
+    // Part of the speed to which the product with the direction of the axis is rounded.
+    constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
+    const double aside = axis.across(v);
+    times.push_back(time);
+    along.push_back(axis.along(v));
+    across.push_back(std::abs(aside) > rounding * detail::hypot(v.x, v.y) ? aside : 0);
+  }
+
+  bool oblique() const {
+    return std::any_of(across.begin(), across.end(), [](double w) { return w != 0; });
+  }
+  Profile<double> profile(const std::vector<double>& values) const {
+    return {times.data(), values.data(), times.size()};
+  }
+};
+
+/// Inputs of a scan that all pins share. Owns no memory.
+struct ScanInputs {
+  const Device& device;
+  Raster raster;
+  HandPath path;
+  const PlateVelocity& plate;
+  Profile<double> finger_load;  ///< over the time since the begin
+  double begin;                 ///< of the scan, s
+
+  /// Luminance under the spot of a pin.
+  double luminance(std::size_t pin, double t) const {
+    return raster.at(path.position(t) + device.spots[pin]);
+  }
+  /// Time of the next row of the hand or the touch after a time, s since the begin.
+  double next_row(double after) const {
+    return std::min(plate.profile(plate.along).next_breakpoint(after),
+                    finger_load.next_breakpoint(after));
+  }
+  /// Stretch that the skin keeps as a load begins, m: beyond static friction it slips.
+  double held_stretch(double stretch) const {
+    const Contact<double>& finger = device.drive.finger;
+    const double pressed = finger_load.from(0).value;
+    if (std::isnan(stretch) ||
+        std::abs(stretch) <= finger.static_limit * pressed / finger.stiffness)
+      return stretch;
+    return std::copysign(finger.kinetic * pressed / finger.stiffness, stretch);
+  }
+};
+
+}  // namespace pindrive::device
