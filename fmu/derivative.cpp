@@ -74,9 +74,11 @@ pindrive_error Instance::derivative(std::size_t unknown, const unsigned* knowns,
   }
   if (which >
       next_event_time) {  // load of the magnet: no input changes it; initially the residual pull alone
-    value = which == magnet_pull
-                ? Given(variables_, values_.start.data(), along.data()).of("magnet.residual").slope
-                : 0;
+    value = which == magnet_pull ? Given(variables_, values_.start.data(), along.data())
+                                       .parameters()
+                                       .of("magnet.residual")
+                                       .slope
+                                 : 0;
     return PINDRIVE_OK;
   }
   const Given given(variables_, values_.start.data(), along.data());
@@ -109,12 +111,12 @@ pindrive_error Instance::derivative(std::size_t unknown, const unsigned* knowns,
   }
   const Drive drive(pindrive_drive_new());
   const Release release(pindrive_release_new());
-  error = fill(drive.get(), release.get(), given, &Number::value);
+  error = given.fill(drive.get(), release.get(), &Number::value);
   const Drive of_drive(pindrive_drive_rate_new(drive.get()));
   const Release of_release(pindrive_release_rate_new(release.get()));
-  if (!error) error = fill(of_drive.get(), of_release.get(), given, &Number::slope);
+  if (!error) error = given.fill(of_drive.get(), of_release.get(), &Number::slope);
   if (error) return error;
-  if (magnet_.present()) now.plate_load.value.slope = residual_load(given).slope;
+  if (magnet_.present()) now.plate_load.value.slope = given.parameters().residual_load().slope;
   pd::Numbers at = pindrive_c::numbers_of(*drive, *release);
   pd::Numbers changes = pindrive_c::numbers_of(*of_drive, *of_release);
   pindrive_c::start(at, changes);

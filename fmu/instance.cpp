@@ -9,6 +9,7 @@
 #include <limits>
 #include <utility>
 
+#include "bytes.hpp"
 #include "interface.hpp"
 #include "parameters.hpp"
 
@@ -21,10 +22,10 @@ using pindrive_c::fail;
 /// Makes the magnet of the parameters, without a current.
 pindrive_error make_magnet(const Given& given, double time, Magnet& magnet) {
   magnet = {};
-  const pindrive_error error = read_magnet(given, magnet.electromagnet);
+  const pindrive_error error = given.parameters().read(magnet.electromagnet);
   if (error || !magnet.electromagnet) return error;
   magnet.coil = std::make_unique<pindrive::device::Coil>(*magnet.electromagnet, time);
-  magnet.normal_force = given.plate_normal_force().value;
+  magnet.normal_force = given.parameters().plate_normal_force().value;
   return PINDRIVE_OK;
 }
 
@@ -72,9 +73,10 @@ pindrive_error Instance::make(Stepper& stepper, Magnet& magnet) const {
   const Given given(variables_, values, nullptr);
   pindrive_stepper* made = nullptr;
   pindrive_error error = make_magnet(given, values_.begin, magnet);
-  if (!error) error = fill(drive.get(), release.get(), given, &Number::value);
+  if (!error) error = given.fill(drive.get(), release.get(), &Number::value);
   if (!error && magnet.present())
-    error = pindrive_release_set(release.get(), "plate_load", residual_load(given).value);
+    error =
+        pindrive_release_set(release.get(), "plate_load", given.parameters().residual_load().value);
   if (!error) error = pindrive_stepper_new(drive.get(), release.get(), values_.begin, &made);
   if (error) return error;
   stepper.reset(made);
@@ -359,17 +361,6 @@ pindrive_error Instance::go_back(const State& state) {
   return PINDRIVE_OK;
 }
 
-namespace {
-
-/// FNV-1a: tells bytes that were damaged.
-std::uint64_t checksum(const unsigned char* bytes, std::size_t size) {
-  std::uint64_t hash = 14695981039346656037U;
-  for (std::size_t i = 0; i < size; ++i) hash = (hash ^ bytes[i]) * 1099511628211U;
-  return hash;
-}
-
-}  // namespace
-
 /// The numbers as they stand in memory, whether it is initialised, the magnet, the stepper if there is one, and a
 /// checksum of all.
 pindrive_error Instance::write(const State& state, std::vector<unsigned char>& bytes) {
@@ -388,7 +379,7 @@ pindrive_error Instance::write(const State& state, std::vector<unsigned char>& b
     bytes.resize(before + size);
     error = pindrive_stepper_write(state.stepper.get(), &bytes[before], size);
   }
-  add(checksum(bytes.data(), bytes.size()));
+  add(pindrive_c::checksum(bytes.data(), bytes.size()));
   return error;
 }
 
@@ -404,7 +395,7 @@ pindrive_error Instance::read(const unsigned char* bytes, std::size_t size,
   if (size < numbers + sizeof said) return refused();
   size -= sizeof said;
   std::memcpy(&said, bytes + size, sizeof said);
-  if (said != checksum(bytes, size)) return refused();
+  if (said != pindrive_c::checksum(bytes, size)) return refused();
   auto found = std::make_unique<State>();
   Values& values = found->values;
   values.start.resize(variables_.size());

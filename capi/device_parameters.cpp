@@ -1,0 +1,246 @@
+// Parameters of a device by the keys of a device file.
+#include "device_parameters.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "interface.hpp"
+#include "pindrive/device/magnet_construction.hpp"
+
+namespace pindrive_c {
+
+namespace {
+
+constexpr double gravity = 9.80665;  // m/s^2, as in the Python package
+
+bool begins(const char* text, const char* with) {
+  return std::strncmp(text, with, std::strlen(with)) == 0;
+}
+
+/// A key of a contact, "plate.kinetic".
+struct Key {
+  Key(const char* contact, const char* name) {
+    std::snprintf(text, sizeof text, "%s.%s", contact, name);
+  }
+  char text[48];
+};
+
+/// Setters of a contact: each force, or the coefficient of a force.
+struct Friction {
+  const char *kinetic, *limit, *speeds, *values;
+};
+constexpr Friction by_force = {"kinetic", "static", "curve.speed", "curve.force"};
+constexpr Friction by_coefficient = {"coefficient", "static_coefficient", "coefficient_curve.speed",
+                                     "coefficient_curve.coefficient"};
+
+}  // namespace
+
+using Number = DeviceParameters::Number;
+
+std::size_t DeviceParameters::find(const char* key) const {
+  std::size_t i = 0;
+  while (i < rows_.size() && std::strcmp(rows_[i].first, key) != 0) ++i;
+  return i;
+}
+
+Number DeviceParameters::of(const char* key, Number otherwise) const {
+  const std::size_t i = find(key);
+  return i < rows_.size() ? rows_[i].second : otherwise;
+}
+
+std::vector<Number> DeviceParameters::list(const char* key) const {
+  std::vector<Number> found;
+  for (const auto& [name, value] : rows_)
+    if (begins(name, key) && name[std::strlen(key)] == '[') found.push_back(value);
+  return found;
+}
+
+Number DeviceParameters::plate_normal_force() const {
+  return of("drive.mass") * gravity + of("plate.preload");
+}
+
+Number DeviceParameters::residual_load() const {
+  return 1 + of("magnet.residual") / plate_normal_force();
+}
+
+/// Sets the friction of a contact: kinetic friction before static friction, which it sets.
+pindrive_error DeviceParameters::fill_friction(pindrive_drive* drive, const char* contact,
+                                               Number normal_force, double Number::* part) const {
+  const bool coefficients = has(Key(contact, by_coefficient.kinetic).text) ||
+                            has(Key(contact, by_coefficient.limit).text);
+  const Friction& names = coefficients ? by_coefficient : by_force;
+  const Number factor = coefficients ? normal_force : Number(1);
+  std::vector<double> speeds, values;
+  for (const Number speed : list(Key(contact, names.speeds).text)) speeds.push_back(speed.*part);
+  for (const Number value : list(Key(contact, names.values).text))
+    values.push_back((value * factor).*part);
+  const Number kinetic = of(Key(contact, names.kinetic).text) * factor;
+  pindrive_error error =
+      speeds.empty()
+          ? pindrive_drive_set(drive, Key(contact, "kinetic").text, kinetic.*part)
+          : pindrive_drive_set_curve(drive, contact, speeds.data(), values.data(), speeds.size());
+  const Key limit(contact, names.limit), stiffness(contact, "stiffness");
+  if (!error && has(limit.text))
+    error = pindrive_drive_set(drive, Key(contact, "static").text, (of(limit.text) * factor).*part);
+  if (!error && has(stiffness.text))
+    error = pindrive_drive_set(drive, stiffness.text, of(stiffness.text).*part);
+  return error;
+}
+
+pindrive_error DeviceParameters::fill(pindrive_drive* drive, double Number::* part) const {
+  pindrive_error error = fill_friction(drive, "plate", plate_normal_force(), part);
+  if (!error) error = fill_friction(drive, "finger", of("finger.touch_force"), part);
+  constexpr const char table[] = "drive.";
+  for (const auto& [key, value] : rows_) {
+    if (error || !begins(key, table)) continue;
+    if (std::strcmp(key, "drive.damping_ratio") == 0)
+      error = pindrive_drive_set(
+          drive, "damping",
+          (2 * value * sqrt(of("drive.mass")) * sqrt(of("drive.stiffness"))).*part);
+    else
+      error = pindrive_drive_set(drive, key + std::strlen(table), value.*part);
+  }
+  return error;
+}
+
+// ---- electromagnet -----------------------------------------------------------------------------
+
+namespace {
+
+namespace device = pindrive::device;
+
+/// Checks of parameters, until one is refused.
+struct Checks {
+  const DeviceParameters& given;
+  pindrive_error error{PINDRIVE_OK};
+
+  double number(const char* name, double otherwise = 0) const {
+    return given.of(name, otherwise).value;
+  }
+  void allow(const char* name, double value, bool good, const char* allowed) {
+    if (!error) error = check(name, value, good, allowed);
+  }
+  double positive(const char* name) {
+    const double value = number(name);
+    allow(name, value, value > 0 && value < infinity, "above 0 and finite");
+    return value;
+  }
+  double not_negative(const char* name) {
+    const double value = number(name);
+    allow(name, value, value >= 0 && value < infinity, "at least 0 and finite");
+    return value;
+  }
+};
+
+device::MagnetParameters from_coil(Checks& checks, double deviation) {
+  const device::CoilConstruction coil{checks.positive("magnet.turns"),
+                                      checks.positive("magnet.pole_area"),
+                                      checks.positive("magnet.gap"),
+                                      checks.positive("magnet.wire_diameter"),
+                                      checks.positive("magnet.turn_length"),
+                                      checks.positive("magnet.supply_voltage"),
+                                      checks.not_negative("magnet.release_resistance"),
+                                      checks.positive("magnet.saturation_field")};
+  device::MagnetParameters found = coil.magnet(deviation);
+  found.thermal_resistance = checks.positive("magnet.thermal_resistance");
+  found.heat_capacity = checks.not_negative("magnet.heat_capacity");
+  return found;
+}
+
+device::MagnetParameters from_times(Checks& checks, double deviation) {
+  device::MagnetParameters found{};
+  found.saturation = checks.number("magnet.saturation");
+  checks.allow("magnet.saturation", found.saturation, found.saturation > 0 && found.saturation <= 1,
+               "above 0 and at most 1");
+  found.rise_constant =
+      device::rise_constant(checks.positive("magnet.rise_time"), found.saturation);
+  found.fall_constant =
+      device::fall_constant(checks.positive("magnet.fall_time"), found.saturation);
+  found.hold_force = checks.positive("magnet.hold_force");
+  found.deviation = deviation;
+  return found;
+}
+
+void read_gap(Checks& checks, device::MagnetParameters& magnet) {
+  if (!checks.given.has("magnet.lift")) return;
+  const double lift = checks.not_negative("magnet.lift"), gap = checks.number("magnet.gap");
+  const double force = checks.number("magnet.closing_force");
+  magnet.open_inductance = gap / (gap + lift);
+  magnet.closing_flux = device::closing_flux(magnet, force);
+  const double open = magnet.open_inductance / magnet.saturation;
+  const double most =
+      magnet.residual + (magnet.hold_force - magnet.residual) * std::min(open * open, 1.0);
+  checks.allow(
+      "magnet.closing_force", force,
+      force > magnet.residual && force < most && magnet.closing_flux < magnet.open_inductance,
+      "more than the residual pull and less than that with the open gap");
+}
+
+void read_voltage(Checks& checks, std::vector<device::VoltageStep>& steps) {
+  const double full = checks.number("magnet.supply_voltage");
+  const auto times = checks.given.list("magnet.voltage.time");
+  const auto volts = checks.given.list("magnet.voltage.value");
+  for (std::size_t i = 0; i < times.size() && !checks.error; ++i) {
+    const device::VoltageStep step{times[i].value, volts[i].value / full};
+    const bool later = i == 0 ? step.time == 0 : step.time > steps[i - 1].time;
+    const bool within = step.level >= 0 && step.level <= 1;
+    if (!later || !within)
+      checks.error = fail(
+          PINDRIVE_BAD_VALUE,
+          "magnet.voltage must begin at 0 s, its times increase, and be from 0 V to %.17g V", full);
+    steps.push_back(step);
+  }
+}
+
+}  // namespace
+
+pindrive_error DeviceParameters::read(std::unique_ptr<const device::Electromagnet>& magnet) const {
+  magnet.reset();
+  if (!has("magnet.hold_force") && !has("magnet.turns")) return PINDRIVE_OK;
+  Checks checks{*this};
+  const double deviation = checks.number("magnet.deviation", 1e-4);
+  checks.allow("magnet.deviation", deviation, deviation >= 1e-8 && deviation <= 0.1,
+               "from 1e-8 to 0.1");
+  device::MagnetParameters found =
+      has("magnet.turns") ? from_coil(checks, deviation) : from_times(checks, deviation);
+  found.residual = checks.number("magnet.residual");
+  checks.allow("magnet.residual", found.residual,
+               found.residual >= 0 && found.residual < found.hold_force,
+               "at least 0 and less than the full pull");
+  read_gap(checks, found);
+  found.pulse_duty = checks.number("magnet.pwm_duty", 1);
+  checks.allow("magnet.pwm_duty", found.pulse_duty, found.pulse_duty > 0 && found.pulse_duty <= 1,
+               "above 0 and at most 1");
+  found.pulse_frequency = checks.number("magnet.pwm_frequency", 1);
+  checks.allow("magnet.pwm_frequency", found.pulse_frequency,
+               found.pulse_frequency >= 1 && found.pulse_frequency <= 2e4, "from 1 to 20000");
+  const double normal_force = plate_normal_force().value;
+  checks.allow("weight and plate.preload", normal_force,
+               normal_force > 0 && normal_force < infinity, "above 0 and finite");
+  std::vector<device::VoltageStep> steps;
+  if (has("magnet.turns")) read_voltage(checks, steps);
+  if (!checks.error)
+    magnet = std::make_unique<const device::Electromagnet>(found, std::move(steps));
+  return checks.error;
+}
+
+pindrive_error DeviceParameters::read(device::Controller& controller) const {
+  Checks checks{*this};
+  controller = {checks.number("control.sample_rate", 1000), checks.number("control.latency", 0.005),
+                checks.number("control.threshold", 0.5), checks.number("control.hysteresis", 0.1)};
+  const auto& [rate, latency, threshold, hysteresis] = controller;
+  checks.allow("control.sample_rate", rate, rate >= 0.1 && rate <= 1e6, "from 0.1 to 1000000");
+  checks.allow("control.latency", latency, latency >= 0 && latency <= 100, "from 0 to 100");
+  checks.allow("control.threshold", threshold, threshold >= 0 && threshold <= 1, "from 0 to 1");
+  checks.allow(
+      "control.hysteresis", hysteresis,
+      hysteresis >= 0 && threshold - 0.5 * hysteresis >= 0 && threshold + 0.5 * hysteresis <= 1,
+      "at least 0, and the band about the threshold within 0 to 1");
+  return checks.error;
+}
+
+}  // namespace pindrive_c
