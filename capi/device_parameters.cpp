@@ -71,7 +71,8 @@ Number DeviceParameters::residual_load() const {
 pindrive_error DeviceParameters::fill_friction(pindrive_drive* drive, const char* contact,
                                                Number normal_force, double Number::* part) const {
   const bool coefficients = has(Key(contact, by_coefficient.kinetic).text) ||
-                            has(Key(contact, by_coefficient.limit).text);
+                            has(Key(contact, by_coefficient.limit).text) ||
+                            !list(Key(contact, by_coefficient.speeds).text).empty();
   const Friction& names = coefficients ? by_coefficient : by_force;
   const Number factor = coefficients ? normal_force : Number(1);
   std::vector<double> speeds, values;
@@ -124,8 +125,8 @@ struct Checks {
   void allow(const char* name, double value, bool good, const char* allowed) {
     if (!error) error = check(name, value, good, allowed);
   }
-  double positive(const char* name) {
-    const double value = number(name);
+  double positive(const char* name, double otherwise = 0) {
+    const double value = number(name, otherwise);
     allow(name, value, value > 0 && value < infinity, "above 0 and finite");
     return value;
   }
@@ -144,22 +145,22 @@ device::MagnetParameters from_coil(Checks& checks, double deviation) {
                                       checks.positive("magnet.turn_length"),
                                       checks.positive("magnet.supply_voltage"),
                                       checks.not_negative("magnet.release_resistance"),
-                                      checks.positive("magnet.saturation_field")};
+                                      checks.positive("magnet.saturation_field", 1.6)};
   device::MagnetParameters found = coil.magnet(deviation);
-  found.thermal_resistance = checks.positive("magnet.thermal_resistance");
+  found.thermal_resistance = checks.positive("magnet.thermal_resistance", 430);
   found.heat_capacity = checks.not_negative("magnet.heat_capacity");
   return found;
 }
 
 device::MagnetParameters from_times(Checks& checks, double deviation) {
   device::MagnetParameters found{};
-  found.saturation = checks.number("magnet.saturation");
+  found.saturation = checks.number("magnet.saturation", 1);
   checks.allow("magnet.saturation", found.saturation, found.saturation > 0 && found.saturation <= 1,
                "above 0 and at most 1");
   found.rise_constant =
-      device::rise_constant(checks.positive("magnet.rise_time"), found.saturation);
+      device::rise_constant(checks.positive("magnet.rise_time", 0.003), found.saturation);
   found.fall_constant =
-      device::fall_constant(checks.positive("magnet.fall_time"), found.saturation);
+      device::fall_constant(checks.positive("magnet.fall_time", 0.005), found.saturation);
   found.hold_force = checks.positive("magnet.hold_force");
   found.deviation = deviation;
   return found;

@@ -400,6 +400,121 @@ PINDRIVE_API pindrive_error pindrive_stepper_write(const pindrive_stepper *stepp
 PINDRIVE_API pindrive_error pindrive_stepper_read(const void *bytes, size_t size,
                                                   pindrive_stepper **stepper);
 
+/* ---- devices under a moving hand ------------------------------------------------------------- */
+
+/* A device of pins that electromagnets switch: a control block for each pin samples the page under its spot
+ * and switches its coil, which presses pin and plate together. A hand moves the device over the page. */
+typedef struct pindrive_device pindrive_device;
+
+/* A device of one pin, without friction, whose mass and stiffness are still to be given; null when memory is
+ * out. */
+PINDRIVE_API pindrive_device *pindrive_device_new(void);
+PINDRIVE_API void pindrive_device_free(pindrive_device *device);
+
+/* Sets a number by its key in a device file, in SI units; pindrive_scan_new() checks its range.
+ *   drive.    mass, stiffness, damping or damping_ratio, travel, stop_stiffness, stop_damping
+ *   plate.    kinetic and static, or coefficient and static_coefficient; preload
+ *   finger.   kinetic and static, or coefficient and static_coefficient with touch_force; stiffness
+ *   magnet.   hold_force, rise_time, fall_time, saturation
+ *   magnet.   or in their place turns, pole_area, gap, wire_diameter, turn_length, supply_voltage,
+ *   magnet.   release_resistance, saturation_field, thermal_resistance, heat_capacity
+ *   magnet.   residual, pwm_frequency, pwm_duty, lift, closing_force, deviation
+ *   control.  sample_rate, latency, threshold, hysteresis
+ *   array.    axis: of the drives on the page, from x towards y, rad
+ * What is not given has the value of a device file without the key. */
+PINDRIVE_API pindrive_error pindrive_device_set(pindrive_device *device, const char *key,
+                                                double value);
+
+/* Sets rows by their key: "plate.curve" and "finger.curve" (m/s, N), "plate.coefficient_curve" and
+ * "finger.coefficient_curve" (m/s, 1), "magnet.voltage" (s from the command on, V; constant until the next
+ * row). count 0 takes them away. */
+PINDRIVE_API pindrive_error pindrive_device_set_rows(pindrive_device *device, const char *key,
+                                                     const double *first, const double *second,
+                                                     size_t count);
+
+/* Sets the pins, of which each looks at the spot (x[i], y[i]) from the hand, m; at first there is one, at the
+ * hand. */
+PINDRIVE_API pindrive_error pindrive_device_set_pins(pindrive_device *device, const double *x,
+                                                     const double *y, size_t count);
+
+/* The motion of all pins of a device under a hand that is given row by row, as it moves. Its results do not depend
+ * on the times to which it is advanced, to the bit. */
+typedef struct pindrive_scan pindrive_scan;
+
+/* Pins at rest over blank paper, magnets off, at a time (s), under a hand at a place (m) with a velocity (m/s);
+ * finger_load (>= 0) is a factor of the finger friction, 0 for a finger that is lifted. To be freed; it keeps no
+ * reference to the device. */
+PINDRIVE_API pindrive_error pindrive_scan_new(const pindrive_device *device, double time, double x,
+                                              double y, double vx, double vy, double finger_load,
+                                              pindrive_scan **scan);
+
+/* A scan in the same state, which continues to the same bits. */
+PINDRIVE_API pindrive_error pindrive_scan_copy(const pindrive_scan *scan, pindrive_scan **copy);
+PINDRIVE_API void pindrive_scan_free(pindrive_scan *scan);
+
+/* Sets the page from now on: luminance from 0 (black) to 1 (white), row by row from the top, `pixel` wide and high
+ * (m, > 0), with its top left corner at (left, top); x goes to the right and y down. Beyond it the paper is
+ * blank. The luminance is copied. */
+PINDRIVE_API pindrive_error pindrive_scan_set_page(pindrive_scan *scan, const double *luminance,
+                                                   size_t rows, size_t columns, double pixel,
+                                                   double left, double top);
+
+/* Moves the hand on to a later time, s, at which it has a velocity; velocity and load are linear in between, and
+ * the place follows. */
+PINDRIVE_API pindrive_error pindrive_scan_move(pindrive_scan *scan, double time, double vx,
+                                               double vy, double finger_load);
+
+/* Advances the pins to a time (s) that is not before now and not after the last row of the hand. go_on is that of
+ * pindrive_stepper_step(). */
+PINDRIVE_API pindrive_error pindrive_scan_advance(pindrive_scan *scan, double until,
+                                                  pindrive_go_on go_on, void *context);
+
+typedef struct pindrive_scan_instant {
+  double time;      /* now, s */
+  double known;     /* time of the last row of the hand, s */
+  double x, y;      /* place of the hand now, m */
+  double vx, vy;    /* its velocity, m/s */
+  size_t pins;
+} pindrive_scan_instant;
+
+PINDRIVE_API pindrive_error pindrive_scan_now(const pindrive_scan *scan,
+                                              pindrive_scan_instant *instant);
+
+/* Quantities of a pin of a scan beside those of a motion. */
+enum {
+  PINDRIVE_PULL = 8,       /* of the magnet on the plate, N */
+  PINDRIVE_CURRENT = 9,    /* part of the full one */
+  PINDRIVE_WARMING = 10,   /* of the coil above 20 degrees Celsius, K */
+  PINDRIVE_COMMAND = 11,   /* 1: to be on */
+  PINDRIVE_LUMINANCE = 12  /* under its spot */
+};
+
+/* values[i] of a quantity of each pin now. */
+PINDRIVE_API pindrive_error pindrive_scan_evaluate(const pindrive_scan *scan,
+                                                   pindrive_quantity quantity, double *values);
+
+/* Contacts and inputs of a pin now; its event is that of a stepper. */
+PINDRIVE_API pindrive_error pindrive_scan_pin(const pindrive_scan *scan, size_t pin,
+                                              pindrive_instant *instant);
+
+typedef struct pindrive_pin_event {
+  size_t pin;
+  pindrive_event event;
+} pindrive_pin_event;
+
+/* Hands over the events of the pins since the last call, pin by pin for each advance, as pindrive_events() does;
+ * those that did not fit follow in the next call. */
+PINDRIVE_API pindrive_error pindrive_scan_events(pindrive_scan *scan, pindrive_pin_event *events,
+                                                 size_t capacity, size_t *count);
+
+/* A scan as bytes, without device, page and events: as of a stepper. It is read for an equal device, with the page
+ * still to be set. */
+PINDRIVE_API size_t pindrive_scan_size(const pindrive_scan *scan);
+PINDRIVE_API pindrive_error pindrive_scan_write(const pindrive_scan *scan, void *bytes,
+                                                size_t size);
+PINDRIVE_API pindrive_error pindrive_scan_read(const pindrive_device *device, const void *bytes,
+                                               size_t size, pindrive_scan **scan);
+
 /* ---- many releases --------------------------------------------------------------------------- */
 
 /* A number of the drive or the release that is another one in each point of a batch. */

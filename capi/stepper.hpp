@@ -17,6 +17,47 @@ inline pindrive_error given_up(pd::Status status) {
   return fail(PINDRIVE_GIVEN_UP, "%s", pindrive_status_text(static_cast<int>(status)));
 }
 
+/// Instant of a stepper on a clock on which it began at a time.
+template <class T>
+pindrive_instant instant_of(const pd::Stepper<T>& stepper, double begin = 0) {
+  const auto inputs = stepper.inputs();
+  return pindrive_instant{begin + plain(stepper.now()),
+                          begin + plain(stepper.next()),
+                          plain(inputs.plate_velocity.value),
+                          plain(inputs.plate_velocity.rate),
+                          plain(inputs.plate_load.value),
+                          plain(inputs.plate_load.rate),
+                          plain(inputs.across_velocity.value),
+                          plain(inputs.across_velocity.rate),
+                          plain(inputs.force.value),
+                          plain(inputs.force.rate),
+                          plain(inputs.finger_load.value),
+                          plain(inputs.finger_load.rate),
+                          static_cast<pindrive_contact_state>(stepper.mode().plate),
+                          static_cast<pindrive_contact_state>(stepper.mode().finger),
+                          static_cast<pindrive_transition>(stepper.event().plate),
+                          static_cast<pindrive_transition>(stepper.event().finger),
+                          static_cast<int>(stepper.mode().stop),
+                          static_cast<pindrive_transition>(stepper.event().stop)};
+}
+
+/// A quantity of a stepper now.
+template <class T>
+double value_of(const pd::Stepper<T>& stepper, pindrive_quantity quantity) {
+  const auto tau = stepper.tau();
+  const auto lines = stepper.lines();
+  return pd::visit_trajectory(stepper.drive(), stepper.segment(), lines, [&](const auto& along) {
+    const auto friction = [&] {
+      return pd::friction_along(
+          along, stepper.drive(), stepper.segment(), [&] { return lines; }, tau);
+    };
+    if (quantity == PINDRIVE_STOP_FORCE)
+      return pd::result(
+          pd::stop_force_along(along, stepper.drive(), stepper.segment(), lines.force, tau));
+    return value_along(along, tau, stepper.drive(), friction, quantity);
+  });
+}
+
 /// Stepper of one pin, with or without derivatives. A library that never constructs the second kind links a single
 /// instance of the core.
 class Following {
@@ -64,8 +105,10 @@ class Followed final : public Following {
     return std::make_unique<Followed>(at, along, stepper_.state());
   }
   pd::Status status() const override { return stepper_.status(); }
-  pindrive_instant now() const override;
-  double evaluate(pindrive_quantity quantity) const override;
+  pindrive_instant now() const override { return instant_of(stepper_); }
+  double evaluate(pindrive_quantity quantity) const override {
+    return value_of(stepper_, quantity);
+  }
   bool step(double until, bool stop_at_event, Attended& attended) override {
     return stepper_.step(until, stop_at_event, [&] { return attended.go_on(); });
   }
@@ -94,45 +137,6 @@ class Followed final : public Following {
 
   pd::Stepper<T> stepper_;
 };
-
-template <class T>
-pindrive_instant Followed<T>::now() const {
-  const auto inputs = stepper_.inputs();
-  return pindrive_instant{plain(stepper_.now()),
-                          plain(stepper_.next()),
-                          plain(inputs.plate_velocity.value),
-                          plain(inputs.plate_velocity.rate),
-                          plain(inputs.plate_load.value),
-                          plain(inputs.plate_load.rate),
-                          plain(inputs.across_velocity.value),
-                          plain(inputs.across_velocity.rate),
-                          plain(inputs.force.value),
-                          plain(inputs.force.rate),
-                          plain(inputs.finger_load.value),
-                          plain(inputs.finger_load.rate),
-                          static_cast<pindrive_contact_state>(stepper_.mode().plate),
-                          static_cast<pindrive_contact_state>(stepper_.mode().finger),
-                          static_cast<pindrive_transition>(stepper_.event().plate),
-                          static_cast<pindrive_transition>(stepper_.event().finger),
-                          static_cast<int>(stepper_.mode().stop),
-                          static_cast<pindrive_transition>(stepper_.event().stop)};
-}
-
-template <class T>
-double Followed<T>::evaluate(pindrive_quantity quantity) const {
-  const auto tau = stepper_.tau();
-  const auto lines = stepper_.lines();
-  return pd::visit_trajectory(stepper_.drive(), stepper_.segment(), lines, [&](const auto& along) {
-    const auto friction = [&] {
-      return pd::friction_along(
-          along, stepper_.drive(), stepper_.segment(), [&] { return lines; }, tau);
-    };
-    if (quantity == PINDRIVE_STOP_FORCE)
-      return pd::result(
-          pd::stop_force_along(along, stepper_.drive(), stepper_.segment(), lines.force, tau));
-    return value_along(along, tau, stepper_.drive(), friction, quantity);
-  });
-}
 
 /// The input of that name, or null.
 template <class T>

@@ -493,6 +493,99 @@ static void slipping_across(void) {
   }
 }
 
+/* A device whose one pin stands on a black line, under a hand at an even speed. */
+static pindrive_device *the_device(void) {
+  pindrive_device *device = pindrive_device_new();
+  expect(pindrive_device_set(device, "drive.mass", 0.010) == PINDRIVE_OK, "mass by its key");
+  expect(pindrive_device_set(device, "drive.stiffness", 100) == PINDRIVE_OK, "stiffness");
+  expect(pindrive_device_set(device, "drive.damping", 0.4) == PINDRIVE_OK, "damping");
+  expect(pindrive_device_set(device, "plate.kinetic", 0.02) == PINDRIVE_OK, "plate");
+  expect(pindrive_device_set(device, "finger.kinetic", 0.005) == PINDRIVE_OK, "finger");
+  return device;
+}
+
+static void a_device(void) {
+  const double black[2] = {0, 0}, gray[1] = {1.5}, x[2] = {0, 5e-3}, y[2] = {0, 0};
+  const double times[2] = {0, 0.01}, volts[2] = {5, 2};
+  pindrive_device *device = the_device();
+  pindrive_scan *scan = NULL, *copy = NULL, *read = NULL;
+  pindrive_scan_instant now;
+  pindrive_instant pin;
+  pindrive_pin_event events[2];
+  double values[2];
+  size_t count, size;
+  unsigned char *bytes;
+  expect(pindrive_device_set_pins(device, x, y, 2) == PINDRIVE_OK, "pins");
+  expect(pindrive_scan_new(device, 0.1, 0, 0, 0.06, 0, 1, &scan) == PINDRIVE_OK, "a scan");
+  expect(pindrive_scan_now(scan, &now) == PINDRIVE_OK && now.pins == 2 && now.x == 0, "it begins");
+  refuses(pindrive_scan_evaluate(scan, PINDRIVE_PULL, values), PINDRIVE_BAD_VALUE, "a second row");
+  refuses(pindrive_scan_pin(scan, 0, &pin), PINDRIVE_BAD_VALUE, "a second row");
+  refuses(pindrive_scan_advance(scan, 0.2, NULL, NULL), PINDRIVE_BAD_VALUE,
+          "to the last row of the hand, 0.1");
+  expect(pindrive_scan_copy(scan, &copy) == PINDRIVE_OK, "a copy before the second row");
+  refuses(pindrive_scan_move(scan, 0.1, 0, 0, 1), PINDRIVE_BAD_VALUE, "must be later than");
+  refuses(pindrive_scan_move(scan, 0.2, NAN, 0, 1), PINDRIVE_BAD_VALUE, "vx must be from -1e12");
+  refuses(pindrive_scan_move(scan, 0.2, 0, 0, -1), PINDRIVE_BAD_VALUE, "finger_load must be from 0");
+  expect(pindrive_scan_set_page(scan, black, 1, 2, 4e-3, -4e-3, -2e-3) == PINDRIVE_OK, "a page");
+  refuses(pindrive_scan_set_page(scan, gray, 1, 1, 1e-4, 0, 0), PINDRIVE_BAD_VALUE,
+          "luminance must be from 0 to 1, not 1.5 at pixel 0");
+  refuses(pindrive_scan_set_page(scan, black, 0, 2, 1e-4, 0, 0), PINDRIVE_BAD_VALUE, "pixels");
+  refuses(pindrive_scan_set_page(scan, black, 1, 2, 0, 0, 0), PINDRIVE_BAD_VALUE, "pixel must be");
+  expect(pindrive_scan_move(scan, 0.2, 0.06, 0, 1) == PINDRIVE_OK, "the hand moves");
+  expect(pindrive_scan_advance(scan, 0.12, NULL, NULL) == PINDRIVE_OK, "advanced");
+  expect(pindrive_scan_now(scan, &now) == PINDRIVE_OK && fabs(now.x - 1.2e-3) < 1e-15, "its place");
+  expect(pindrive_scan_evaluate(scan, PINDRIVE_COMMAND, values) == PINDRIVE_OK, "commands");
+  expect(values[0] == 1 && values[1] == 0, "of which the pin on the line has one");
+  expect(pindrive_scan_evaluate(scan, PINDRIVE_LUMINANCE, values) == PINDRIVE_OK && values[0] == 0,
+         "luminance");
+  refuses(pindrive_scan_evaluate(scan, 13, values), PINDRIVE_BAD_VALUE, "from 0 to 12, not 13");
+  expect(pindrive_scan_pin(scan, 0, &pin) == PINDRIVE_OK && pin.plate == PINDRIVE_STICK &&
+             fabs(pin.time - 0.12) < 1e-15,
+         "it is carried");
+  refuses(pindrive_scan_pin(scan, 2, &pin), PINDRIVE_BAD_VALUE, "from 0 to 1, not 2");
+  expect(pindrive_scan_events(scan, NULL, 0, &count) == PINDRIVE_MORE && count == 0, "events");
+  expect(pindrive_scan_events(scan, events, 2, &count) == PINDRIVE_OK && count == 1, "one of them");
+  expect(events[0].pin == 0 && events[0].event.plate == PINDRIVE_STICKS, "the magnet clamps");
+  expect(pindrive_scan_events(scan, events, 2, &count) == PINDRIVE_OK && count == 0, "handed over");
+
+  size = pindrive_scan_size(scan);
+  bytes = malloc(size);
+  refuses(pindrive_scan_write(scan, bytes, size - 1), PINDRIVE_BAD_VALUE, "size must be");
+  expect(pindrive_scan_write(scan, bytes, size) == PINDRIVE_OK, "written");
+  expect(pindrive_scan_read(device, bytes, size, &read) == PINDRIVE_OK, "read");
+  expect(pindrive_scan_set_page(read, black, 1, 2, 4e-3, -4e-3, -2e-3) == PINDRIVE_OK, "its page");
+  expect(pindrive_scan_advance(scan, 0.2, NULL, NULL) == PINDRIVE_OK, "to the end");
+  expect(pindrive_scan_advance(read, 0.2, NULL, NULL) == PINDRIVE_OK, "of both");
+  {
+    double one[2], other[2];
+    pindrive_scan_evaluate(scan, PINDRIVE_POSITION, one);
+    pindrive_scan_evaluate(read, PINDRIVE_POSITION, other);
+    expect(one[0] == other[0] && one[1] == other[1] && fabs(one[0]) > 1e-4, "to the same bits");
+  }
+  bytes[size / 2] ^= 1;
+  pindrive_scan_free(read);
+  refuses(pindrive_scan_read(device, bytes, size, &read), PINDRIVE_BAD_VALUE, "of a scan of 2 pins");
+  bytes[size / 2] ^= 1;
+  expect(pindrive_device_set_pins(device, x, y, 1) == PINDRIVE_OK, "another device");
+  refuses(pindrive_scan_read(device, bytes, size, &read), PINDRIVE_BAD_VALUE, "of a scan of 1 pin");
+  free(bytes);
+  pindrive_scan_free(scan);
+  pindrive_scan_free(copy);
+
+  refuses(pindrive_device_set(device, "drive.mas", 1), PINDRIVE_BAD_NAME, "has no number drive.mas");
+  refuses(pindrive_device_set_rows(device, "drive.mass", x, y, 1), PINDRIVE_BAD_NAME, "has no rows");
+  refuses(pindrive_device_set_pins(device, x, y, 0), PINDRIVE_BAD_VALUE, "at least one pin");
+  pindrive_device_set(device, "control.hysteresis", 1.5);
+  refuses(pindrive_scan_new(device, 0, 0, 0, 0, 0, 1, &scan), PINDRIVE_BAD_VALUE,
+          "control.hysteresis must be");
+  pindrive_device_set(device, "control.hysteresis", 0.1);
+  expect(pindrive_device_set_rows(device, "magnet.voltage", times, volts, 2) == PINDRIVE_OK, "rows");
+  pindrive_device_set(device, "magnet.turns", 250);
+  refuses(pindrive_scan_new(device, 0, 0, 0, 0, 0, 1, &scan), PINDRIVE_BAD_VALUE,
+          "magnet.pole_area must be above 0");
+  pindrive_device_free(device);
+}
+
 int main(void) {
   expect(pindrive_interface() == PINDRIVE_INTERFACE, "the header is that of the library");
   a_motion();
@@ -504,10 +597,13 @@ int main(void) {
   along_no_load();
   at_stops();
   slipping_across();
+  a_device();
   pindrive_motion_free(NULL);
   pindrive_drive_free(NULL);
   pindrive_release_free(NULL);
   pindrive_stepper_free(NULL);
+  pindrive_device_free(NULL);
+  pindrive_scan_free(NULL);
   printf("%d failures\n", failures);
   return failures == 0 ? 0 : 1;
 }

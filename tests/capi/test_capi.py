@@ -172,7 +172,7 @@ OF_THE_DEVICE = {
     "closest_approaches",
     "Scan",
 }
-"""Names of the device layer, which has no functions in C yet."""
+"""Names of the device layer, whose functions in C are those of a device and its scan."""
 OF_THE_EXTENSION = {"kernel_widths", "elementary", "settling_band", "event_limit"} | OF_THE_DEVICE
 """Names of the extension without a function in C."""
 

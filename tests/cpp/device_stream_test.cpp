@@ -44,7 +44,9 @@ std::vector<Segments> streamed(const device::Device& device, const scanned::Page
                                const std::vector<device::LiveHand::Row>& rows, Random* pauses,
                                bool kept) {
   std::vector<Segments> found(device.spots.size());
-  const auto sink = [&](std::size_t pin, const pd::Segment<double>& s) { found[pin].push_back(s); };
+  const auto sink = [&](std::size_t pin, const pd::Segment<double>& s, const auto&) {
+    found[pin].push_back(s);
+  };
   const device::Raster raster = page.raster();
   auto stream = std::make_unique<device::DeviceStream>(
       device, rows[0], device::Place{0, 5e-5}, std::vector<device::PinState>(device.spots.size()));

@@ -86,7 +86,9 @@ bool equal(const Segments& one, const Segments& other) {
 /// Follows a pin to the end, with pauses at random times; if `kept`, from the state at each pause.
 Segments follow(const Setting& s, Random* pauses, bool kept) {
   Segments found;
-  const auto sink = [&](const pd::Segment<double>& segment) { found.push_back(segment); };
+  const auto sink = [&](const pd::Segment<double>& segment, const auto&) {
+    found.push_back(segment);
+  };
   auto pin = std::make_unique<device::PinFollower>(s.inputs, device::PinState{});
   const double end = s.inputs.path.end();
   for (double until = 0; until < end;) {

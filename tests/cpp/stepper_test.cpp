@@ -165,7 +165,9 @@ void the_same_as_in_one_run() {
 /// Segments of a pin whose inputs are set row by row, each until the next; steps in between if `cut`.
 std::vector<pd::Segment<double>> segments_of(const Case& c, bool cut) {
   std::vector<pd::Segment<double>> found;
-  const auto sink = [&](const pd::Segment<double>& segment) { found.push_back(segment); };
+  const auto sink = [&](const pd::Segment<double>& segment, const auto&) {
+    found.push_back(segment);
+  };
   pd::Stepper<double> stepper(c.drive, start_of(c));
   for (std::size_t row = 0; row < c.times.size(); ++row) {
     const bool last = row + 1 == c.times.size();

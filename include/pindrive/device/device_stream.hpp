@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "pindrive/device/live_hand.hpp"
@@ -17,7 +18,8 @@ namespace pindrive::device {
 struct DeviceState {
   double now;  ///< s
   LiveHand hand;
-  std::vector<PinFollower::State> pins;
+  std::vector<PinState> begins;          ///< before the second row of the hand
+  std::vector<PinFollower::State> pins;  ///< from then on
 };
 
 /// Pins of a device over a page, advanced from time to time. The times at which the caller pauses do not change a
@@ -26,20 +28,19 @@ class DeviceStream {
  public:
   /// Pins at their states, one each, under a hand at rest or moving at a place.
   DeviceStream(const Device& device, const LiveHand::Row& first, Place place,
-               std::vector<PinState> states)
+               std::vector<PinState> begins)
       : device_(device),
         now_(first.time),
         hand_(first, place, device.axis),
-        states_(std::move(states)) {}
+        begins_(std::move(begins)) {}
   DeviceStream(const Device& device, const Raster& raster, const DeviceState& state)
-      : device_(device), now_(state.now), hand_(state.hand) {
+      : device_(device), now_(state.now), hand_(state.hand), begins_(state.begins) {
     for (const PinFollower::State& pin : state.pins)
       pins_.push_back(std::make_unique<PinFollower>(inputs(raster), pin));
   }
 
-  /// State now, after the second row of the hand.
   DeviceState state() const {
-    DeviceState found{now_, hand_, {}};
+    DeviceState found{now_, hand_, begins_, {}};
     for (const auto& pin : pins_) found.pins.push_back(pin->state());
     return found;
   }
@@ -48,11 +49,12 @@ class DeviceStream {
   void move(const Raster& raster, const LiveHand::Row& row) {
     hand_.add(row, device_.axis);
     if (!pins_.empty()) return;
-    for (const PinState& state : states_)
-      pins_.push_back(std::make_unique<PinFollower>(inputs(raster), state));
+    for (const PinState& begin : begins_)
+      pins_.push_back(std::make_unique<PinFollower>(inputs(raster), begin));
+    begins_.clear();
   }
 
-  /// Advances all pins to a time (s) from now() to hand().end(). `sink(pin, segment)` is called with each segment
+  /// Advances all pins to a time (s) from now() to hand().end(). `sink(pin, segment, after)` is called with each segment
   /// that ends, and `go_on` after each event and row. False if the advance is incomplete: status() is not ok, or
   /// go_on() returned false; the next call continues from there.
   template <class GoOn = Unattended, class Sink = Unattended>
@@ -60,8 +62,9 @@ class DeviceStream {
     const ScanInputs given = inputs(raster);
     for (std::size_t i = 0; i < pins_.size(); ++i) {
       pins_[i]->sample(given, i, until);
-      if (!pins_[i]->advance(given, until, go_on,
-                             [&](const Segment<double>& segment) { sink(i, segment); }))
+      if (!pins_[i]->advance(
+              given, until, go_on,
+              [&](const Segment<double>& segment, const auto& after) { sink(i, segment, after); }))
         return false;
     }
     now_ = until;
@@ -89,7 +92,7 @@ class DeviceStream {
   const Device& device_;
   double now_;
   LiveHand hand_;
-  std::vector<PinState> states_;  ///< at the begin
+  std::vector<PinState> begins_;  ///< states of the pins until they exist
   std::vector<std::unique_ptr<PinFollower>> pins_;
 };
 

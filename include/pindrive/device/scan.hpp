@@ -103,7 +103,9 @@ struct PinRun {
     segments.clear();
     from.pending = switchings;
     PinFollower follower(scan, from);
-    const auto sink = [&](const Segment<double>& segment) { segments.push_back(segment); };
+    const auto sink = [&](const Segment<double>& segment, const auto&) {
+      segments.push_back(segment);
+    };
     const bool whole = follower.advance(scan, scan.path.end(), go_on, sink);
     segments.push_back(follower.stepper().segment_until_now());
     outcome = {follower.stepper().status()};

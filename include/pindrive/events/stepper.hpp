@@ -83,7 +83,7 @@ class Stepper {
   }
 
   /// Advances to the time `until` (s, >= now) or, with `stop_at_event`, to the first contact event
-  /// before. `go_on` is called after each event, and `sink` with each segment that ends. With a horizon,
+  /// before. `go_on` is called after each event, and `sink` with each segment that ends and the state of the pin after. With a horizon,
   /// `until` is not beyond it.
   ///
   /// Returns false if the step is incomplete: `status` is not ok, or go_on() returned false, and
@@ -119,7 +119,7 @@ class Stepper {
   /// likewise. A value that differs from the continued input by rounding changes nothing.
   ///
   /// `horizon` is the time (s) at which the inputs are set next at the latest: events are not sought
-  /// beyond it, as if the inputs had a breakpoint there. `sink` is called with the segment that ends.
+  /// beyond it, as if the inputs had a breakpoint there. `sink` is called as in a step.
   template <class Sink = Unattended>
   void set(const InputLines<T>& given, T horizon = never, Sink&& sink = {}) {
     Held<T>&velocity = inputs_.mouse_velocity.held(), &load = inputs_.plate_load.held();
@@ -274,7 +274,7 @@ class Stepper {
     const Event event = evolution_.transitions(before_);
     if (ends) {
       segment_.event = event;
-      goes_on(sink, segment_);
+      goes_on(sink, segment_, evolution_.pin.state);
     }
     evolution_.begin(segment_);
     tau_ = evolution_.earliest(segment_.flow);

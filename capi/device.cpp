@@ -1,0 +1,200 @@
+// The C interface: a device by the keys of a device file.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <new>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "device_parameters.hpp"
+#include "interface.hpp"
+#include "pindrive.h"
+#include "scan.hpp"
+
+using namespace pindrive_c;  // NOLINT(google-build-using-namespace): its own
+
+namespace {
+
+constexpr const char* keys[] = {"drive.mass",
+                                "drive.stiffness",
+                                "drive.damping",
+                                "drive.damping_ratio",
+                                "drive.travel",
+                                "drive.stop_stiffness",
+                                "drive.stop_damping",
+                                "plate.kinetic",
+                                "plate.static",
+                                "plate.coefficient",
+                                "plate.static_coefficient",
+                                "plate.preload",
+                                "finger.kinetic",
+                                "finger.static",
+                                "finger.coefficient",
+                                "finger.static_coefficient",
+                                "finger.touch_force",
+                                "finger.stiffness",
+                                "magnet.hold_force",
+                                "magnet.rise_time",
+                                "magnet.fall_time",
+                                "magnet.saturation",
+                                "magnet.residual",
+                                "magnet.pwm_frequency",
+                                "magnet.pwm_duty",
+                                "magnet.deviation",
+                                "magnet.turns",
+                                "magnet.pole_area",
+                                "magnet.gap",
+                                "magnet.lift",
+                                "magnet.closing_force",
+                                "magnet.wire_diameter",
+                                "magnet.turn_length",
+                                "magnet.supply_voltage",
+                                "magnet.release_resistance",
+                                "magnet.saturation_field",
+                                "magnet.thermal_resistance",
+                                "magnet.heat_capacity",
+                                "control.sample_rate",
+                                "control.latency",
+                                "control.threshold",
+                                "control.hysteresis",
+                                "array.axis"};
+
+/// Keys of rows, with the names of both columns.
+struct RowsKey {
+  const char *key, *first, *second;
+};
+constexpr RowsKey keys_of_rows[] = {{"plate.curve", "speed", "force"},
+                                    {"plate.coefficient_curve", "speed", "coefficient"},
+                                    {"finger.curve", "speed", "force"},
+                                    {"finger.coefficient_curve", "speed", "coefficient"},
+                                    {"magnet.voltage", "time", "value"}};
+
+/// Sets the value of a key in a list.
+template <class Value>
+void put(std::vector<std::pair<std::string, Value>>& list, const char* key, Value value) {
+  const auto at =
+      std::find_if(list.begin(), list.end(), [&](const auto& each) { return each.first == key; });
+  if (at == list.end())
+    list.emplace_back(key, std::move(value));
+  else
+    at->second = std::move(value);
+}
+
+/// Parameters of a device; `names` keeps the keys of its rows.
+DeviceParameters parameters_of(const pindrive_device& device, std::vector<std::string>& names) {
+  DeviceParameters found;
+  for (const auto& [key, value] : device.numbers) found.add(key.c_str(), value);
+  std::size_t count = 0;
+  for (const auto& [key, rows] : device.rows) count += 2 * rows.size();
+  names.reserve(count);  // the parameters refer to them
+  for (const RowsKey& of : keys_of_rows)
+    for (const auto& [key, rows] : device.rows)
+      for (std::size_t i = 0; key == of.key && i < rows.size(); ++i)
+        for (const auto& [column, value] :
+             {std::pair(of.first, rows[i].first), std::pair(of.second, rows[i].second)}) {
+          names.push_back(key + "." + column + "[" + std::to_string(i + 1) + "]");
+          found.add(names.back().c_str(), value);
+        }
+  if (!found.has("magnet.hold_force") && !found.has("magnet.turns"))
+    found.add("magnet.hold_force", 1.0);
+  return found;
+}
+
+}  // namespace
+
+pindrive_error pindrive_c::made_of(const pindrive_device& device,
+                                   std::shared_ptr<const OwnedDevice>& made) {
+  std::vector<std::string> names;
+  const DeviceParameters parameters = parameters_of(device, names);
+  pindrive_drive drive;
+  const pindrive_release release;
+  std::unique_ptr<const pd::device::Electromagnet> magnet;
+  pd::device::Controller controller{};
+  pindrive_error error = parameters.fill(&drive, &DeviceParameters::Number::value);
+  if (!error) error = check(drive, release);
+  if (!error) error = parameters.read(magnet);
+  if (!error) error = parameters.read(controller);
+  const double axis = parameters.of("array.axis").value;
+  if (!error) error = check("array.axis", axis, std::abs(axis) <= 12.6, "from -12.6 to 12.6");
+  if (error) return error;
+  const pd::OwnedContact<double> plate(drive.plate, drive.plate),
+      finger(drive.finger, drive.finger);
+  const double normal_force = parameters.plate_normal_force().value;
+  const auto owned = std::make_shared<OwnedDevice>(OwnedDevice{
+      plate, finger,
+      pd::device::Device{
+          {}, normal_force, *magnet, controller, pd::device::Axis(axis), device.spots}});
+  owned->plate.contact.curve = owned->plate.branches.data();
+  owned->finger.contact.curve = owned->finger.branches.data();
+  owned->device.drive = {drive.mass,           drive.stiffness,       drive.damping,
+                         owned->plate.contact, owned->finger.contact, {}};
+  owned->device.drive.stops = pd::stops<double>(drive.stops, drive.stops);
+  made = owned;
+  return PINDRIVE_OK;
+}
+
+extern "C" {
+
+pindrive_device* pindrive_device_new(void) {
+  pindrive_device* device = nullptr;
+  guarded([&]() -> pindrive_error {
+    device = new pindrive_device;
+    return PINDRIVE_OK;
+  });
+  return device;
+}
+void pindrive_device_free(pindrive_device* device) { delete device; }
+
+pindrive_error pindrive_device_set(pindrive_device* device, const char* key, double value) {
+  if (!device) return null_pointer("device");
+  if (!key) return null_pointer("key");
+  if (std::none_of(std::begin(keys), std::end(keys),
+                   [&](const char* each) { return std::strcmp(each, key) == 0; }))
+    return fail(PINDRIVE_BAD_NAME, "a device has no number %.40s; its keys are those of pindrive.h",
+                key);
+  return guarded([&]() -> pindrive_error {
+    put(device->numbers, key, value);
+    return PINDRIVE_OK;
+  });
+}
+
+pindrive_error pindrive_device_set_rows(pindrive_device* device, const char* key,
+                                        const double* first, const double* second, size_t count) {
+  if (!device) return null_pointer("device");
+  if (!key) return null_pointer("key");
+  if (count > 0 && (!first || !second)) return null_pointer("first and second");
+  if (std::none_of(std::begin(keys_of_rows), std::end(keys_of_rows),
+                   [&](const RowsKey& each) { return std::strcmp(each.key, key) == 0; }))
+    return fail(PINDRIVE_BAD_NAME,
+                "a device has no rows %.40s, but plate.curve, plate.coefficient_curve, "
+                "finger.curve, finger.coefficient_curve, magnet.voltage",
+                key);
+  return guarded([&]() -> pindrive_error {
+    pd::Rows rows;
+    for (std::size_t i = 0; i < count; ++i) rows.emplace_back(first[i], second[i]);
+    put(device->rows, key, std::move(rows));
+    return PINDRIVE_OK;
+  });
+}
+
+pindrive_error pindrive_device_set_pins(pindrive_device* device, const double* x, const double* y,
+                                        size_t count) {
+  if (!device) return null_pointer("device");
+  if (!x || !y) return null_pointer("x and y");
+  if (count == 0) return fail(PINDRIVE_BAD_VALUE, "a device must have at least one pin, not 0");
+  for (std::size_t i = 0; i < count; ++i)
+    if (const bool near = std::abs(x[i]) <= 10 && std::abs(y[i]) <= 10; !near)
+      return fail(PINDRIVE_BAD_VALUE, "pin %zu must be from -10 m to 10 m, not at %.17g, %.17g", i,
+                  x[i], y[i]);
+  return guarded([&]() -> pindrive_error {
+    std::vector<pd::device::Place> spots;
+    spots.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) spots.push_back({x[i], y[i]});
+    device->spots = std::move(spots);
+    return PINDRIVE_OK;
+  });
+}
+
+}  // extern "C"
