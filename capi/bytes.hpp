@@ -8,7 +8,7 @@
 
 #include "pindrive.h"
 #include "pindrive/device/coil.hpp"
-#include "pindrive/events/stepper.hpp"
+#include "pindrive/events/stepper_state.hpp"
 
 namespace pindrive_c {
 
@@ -117,7 +117,7 @@ void exchange_list(Bytes& bytes, List& list, std::size_t least, Item&& item) {
 }
 
 template <class Bytes>
-void exchange(Bytes& bytes, pindrive::Stepper<double>::State& s) {
+void exchange(Bytes& bytes, pindrive::StepperState<double>& s) {
   const auto number = [&](auto&... each) { (bytes.item(each), ...); };
   const auto option = [&](auto& o) { number(o.state, o.guard, o.branch, o.slip_sign); };
   const auto line = [&](auto& l) { number(l.value, l.rate); };

@@ -30,7 +30,7 @@ pindrive_error pindrive_c::check_start(const pindrive_release& release, double b
 
 namespace {
 
-using State = pd::Stepper<double>::State;
+using State = pd::StepperState<double>;
 
 constexpr std::uint32_t magic = 0x70647333;  // "pds3"
 

@@ -157,7 +157,7 @@ def coil_course(magnet: tuple[Sequence[float], Sequence[tuple[float, float]]], s
 class Scan:
     """Pins under a hand that moves over a page."""
 
-    def __init__(self, drive: tuple[float, float, float, tuple[float, float, float, Sequence[tuple[float, float]]], tuple[float, float, float, Sequence[tuple[float, float]]], tuple[float, float, float]], normal_force: float, magnet: tuple[Sequence[float], Sequence[tuple[float, float]]], control: tuple[float, float, float, float], axis: float, raster: tuple[Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], float, float, float], path: tuple[Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]], spots: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], touch: Sequence[tuple[float, float]], states: Sequence[tuple[float, float, float, tuple[float, float, float, float, float, float, bool, bool], bool, Sequence[float]]]) -> None: ...
+    def __init__(self, drive: tuple[float, float, float, tuple[float, float, float, Sequence[tuple[float, float]]], tuple[float, float, float, Sequence[tuple[float, float]]], tuple[float, float, float]], normal_force: float, magnet: tuple[Sequence[float], Sequence[tuple[float, float]]], control: tuple[float, float, float, float], axis: float, raster: tuple[Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], float, float, float], path: tuple[Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]], spots: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], touch: Sequence[tuple[float, float]], states: Sequence[tuple[float, float, float, tuple[float, float, float, float, float, float, bool, bool], bool, Sequence[float], Sequence[float]]]) -> None: ...
 
     def energise(self, most_switchings: int, most_rows: int) -> tuple: ...
 
@@ -174,6 +174,11 @@ class Scan:
     def control(self, pin: int) -> tuple:
         """
         Whether it was commanded on at first; the last decision; pending switchings.
+        """
+
+    def end(self, pin: int) -> list[float]:
+        """
+        State of the pin at the end: time, twice, and its error; x, v, skin force; ...
         """
 
     def evaluate(self, criteria: tuple[float, float, float, float, float], lines: Sequence[tuple[Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', writable=False)]]]) -> dict: ...

@@ -12,11 +12,13 @@
 #include <cstdint>
 #include <future>
 #include <memory>
+#include <optional>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include "arrays.hpp"
+#include "bytes.hpp"
 #include "interrupt.hpp"
 #include "owned_motion.hpp"
 #include "pindrive/device/closest_approach.hpp"
@@ -113,8 +115,41 @@ using MagnetNumbers = std::pair<std::vector<double>, pd::Rows>;
 using ControlNumbers = std::tuple<double, double, double, double>;
 /// Since, flux, pull, warming, level, commanded; on, command.
 using CoilNumbers = std::tuple<double, double, double, double, double, double, bool, bool>;
-/// Position, velocity, stretch; coil; decision, pending switchings.
-using StateNumbers = std::tuple<double, double, double, CoilNumbers, bool, std::vector<double>>;
+/// Position, velocity, stretch; coil; decision, pending switchings; numbers of the motion, none of a release.
+using StateNumbers =
+    std::tuple<double, double, double, CoilNumbers, bool, std::vector<double>, std::vector<double>>;
+
+/// Numbers of a state, in the order of its bytes.
+struct ToNumbers {
+  std::vector<double> list;
+
+  template <class N>
+  void item(const N& number) {
+    list.push_back(static_cast<double>(number));
+  }
+};
+struct FromNumbers {
+  const std::vector<double>& list;
+  std::size_t next{0};
+
+  template <class N>
+  void item(N& number) {
+    number = static_cast<N>(list.at(next++));
+  }
+};
+
+std::vector<double> numbers_of(pd::StepperState<double> state) {
+  ToNumbers numbers;
+  pindrive_c::exchange(numbers, state);
+  return std::move(numbers.list);
+}
+std::optional<pd::StepperState<double>> motion_of(const std::vector<double>& given) {
+  if (given.empty()) return {};
+  pd::StepperState<double> state{};
+  FromNumbers numbers{given};
+  pindrive_c::exchange(numbers, state);
+  return state;
+}
 
 device::Electromagnet magnet_of(const MagnetNumbers& given) {
   const std::vector<double>& n = given.first;
@@ -182,8 +217,9 @@ class Scan {
         velocity_(path_of(path_), device_.axis),
         inputs_{device_,   raster_of(raster_), path_of(path_),
                 velocity_, touch_.profile(),   path_of(path_).begin()} {
-    for (const auto& [position, velocity, stretch, coil, decision, pending] : states)
-      states_.push_back({position, velocity, stretch, coil_of(coil), decision, pending});
+    for (const auto& [position, velocity, stretch, coil, decision, pending, motion] : states)
+      states_.push_back(
+          {position, velocity, stretch, coil_of(coil), decision, pending, motion_of(motion)});
     runs_.resize(states_.size());
     motions_.resize(states_.size());
   }
@@ -526,5 +562,8 @@ void bind_device(nb::module_& m) {
             return nb::make_tuple(run.commanded, run.decision, run.pending);
           },
           "pin"_a, "Whether it was commanded on at first; the last decision; pending switchings.")
+      .def(
+          "end", [](const Scan& scan, std::size_t pin) { return numbers_of(scan.run(pin).ended); },
+          "pin"_a, "State of the pin at the end: time, twice, and its error; x, v, skin force; ...")
       .def("evaluate", &evaluate, "criteria"_a, "lines"_a);
 }

@@ -55,7 +55,7 @@ PUBLIC = {
         "scan_inputs",
         "sign_change",
     },
-    "events": {"simulate", "stepper"},
+    "events": {"simulate", "stepper", "stepper_state"},
     "flow": {"flow", "oscillator"},
     "model": {"input_lines", "model"},
     "motion": {

@@ -153,10 +153,52 @@ void the_motion_under_the_rows() {
   expect(worst < 1e-14, "the motion is that of one simulation under the rows of the coil");
 }
 
+/// A scan that goes on from the state at the end of another one is that over both hands.
+void a_scan_in_two_parts() {
+  Random random(48);
+  double worst = 0;
+  int moved = 0, differing = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Setting s(random);
+    device::PinRun whole;
+    whole.energise(s.inputs, 0, {}, 1U << 20);
+    whole.simulate(s.inputs, {}, [] { return true; });
+    const device::HandPath& path = s.inputs.path;
+    const std::size_t cut = 3 + random() % 6;
+    const device::HandPath one{path.times, path.vx, path.vy, path.x, path.y, cut + 1};
+    const device::HandPath other{path.times + cut, path.vx + cut, path.vy + cut,
+                                 path.x + cut,     path.y + cut,  path.count - cut};
+    const device::PlateVelocity first(one, s.device.axis), second(other, s.device.axis);
+    const double begin = other.begin();
+    std::vector<double> later = s.hand.touch_times;
+    for (double& time : later) time -= begin;
+    const pd::Profile<double> touch(later.data(), s.hand.touches.data(), later.size());
+    device::PinRun run;
+    run.energise({s.device, s.inputs.raster, one, first, s.inputs.finger_load, 0}, 0, {}, 1U << 20);
+    run.simulate({s.device, s.inputs.raster, one, first, s.inputs.finger_load, 0}, {},
+                 [] { return true; });
+    device::PinState from;
+    from.motion = run.ended;
+    from.coil = run.coil.end;
+    from.decision = run.decision;
+    from.pending = run.pending;
+    const device::ScanInputs rest{s.device, s.inputs.raster, other, second, touch, begin};
+    run.energise(rest, 0, from, 1U << 20);
+    run.simulate(rest, from, [] { return true; });
+    worst = std::max(worst, std::abs(run.ended.pin.x - whole.ended.pin.x));
+    moved += std::abs(whole.ended.pin.x) > 1e-5;
+    differing += !pd::same_mode(run.segments.back().mode, whole.segments.back().mode);
+  }
+  std::printf("# in two parts: positions within %.1e m\n", worst);
+  expect(worst < 1e-13 && moved > 30, "a scan in two parts ends where that in one run does");
+  expect(differing == 0, "with the same contacts");
+}
+
 }  // namespace
 
 int main() {
   pauses_change_nothing();
   the_motion_under_the_rows();
+  a_scan_in_two_parts();
   return check::status();
 }

@@ -239,6 +239,29 @@ def test_two_runs_are_identical_to_the_bit() -> None:
     assert one.to_dataset().identical(other.to_dataset())
 
 
+def test_a_scan_cut_where_the_hand_dips_to_zero_is_the_scan_in_one() -> None:
+    """Plate and finger are at rest under the pin there: the state says which of them holds it."""
+    device = Device(drive=drive(finger=Contact(0.010, 0.024)))
+    path = HandPath([0.0, 0.4, 0.8, 1.2], [0.04, 0.04, 0.0, 0.04], [0.0] * 4, (0.01, 0.005))
+    cut = 0.8
+    whole, first = scan(device, blank(), path), scan(device, blank(), path.between(0.0, cut))
+    second = scan(device, blank(), path.between(cut, path.end), start=first.state)
+    t = np.linspace(cut, path.end, 500)
+    (pin,), (again,) = whole.pins, second.pins
+    assert_allclose(again.position(t), pin.position(t), rtol=0.0, atol=1e-15)
+    released = [replace(first.state[0], contacts=None)]
+    (other,) = scan(device, blank(), path.between(cut, path.end), start=released).pins
+    assert np.abs(other.position(t) - pin.position(t)).max() > 2e-5
+
+
+def test_contacts_of_another_state_are_refused() -> None:
+    device, path = Device(drive=drive()), across(grating(0.004))
+    (state,) = scan(device, blank(), path).state
+    moved = replace(state, position=state.position + 1e-4)
+    with pytest.raises(ValueError, match=r"start\[0\].contacts must be None where position or"):
+        scan(device, blank(), path, start=[moved])
+
+
 @pytest.mark.parametrize("finger", [RIGID, SKIN], ids=["rigid", "skin"])
 @pytest.mark.parametrize("part", [0.137, 0.3, 0.311, 0.42, 0.5, 0.583, 0.7, 0.96])
 def test_a_scan_in_two_halves_is_the_scan_in_one(finger: Contact, part: float) -> None:

@@ -21,7 +21,7 @@ class PinFollower {
  public:
   /// Complete state: a follower constructed from this state gives identical bits.
   struct State {
-    Stepper<double>::State motion;
+    StepperState<double> motion;
     CoilState coil;
     double sampled;               ///< time until which the page is sampled, s
     double passed;                ///< time of the last row of an input, s since the begin
@@ -36,7 +36,8 @@ class PinFollower {
         sampled_(begin_),
         decision_(from.decision),
         pending_(from.pending),
-        stepper_(device_->drive, release(scan, from)) {
+        stepper_(from.motion ? Stepper<double>(device_->drive, *from.motion)
+                             : Stepper<double>(device_->drive, release(scan, from))) {
     pass(scan, 0, Unattended{});
   }
   PinFollower(const ScanInputs& scan, const State& state)
@@ -80,6 +81,9 @@ class PinFollower {
     return stepper_.step(end, false, go_on, sink);
   }
 
+  /// Ends the motion; returns its state for another scan that begins now.
+  StepperState<double> hand_over() { return stepper_.hand_over(); }
+
   const Stepper<double>& stepper() const { return stepper_; }  ///< time since the begin
   const Coil& coil() const { return coil_; }
   bool decision() const { return decision_; }  ///< last decision of the control block
@@ -113,6 +117,7 @@ class PinFollower {
   template <class Sink>
   void pass(const ScanInputs& scan, double time, Sink&& sink) {
     InputLines<double> lines = stepper_.inputs();
+    if (passed_ == -infinity) lines.plate_load = load(begin_);
     for (double at; (at = std::min(command(), coil_.next())) - begin_ <= time;) {
       if (at == command()) {
         coil_.command(!coil_.state().command, at);
@@ -137,7 +142,7 @@ class PinFollower {
   const Device* device_;
   double begin_;  ///< of the scan, s
   Coil coil_;
-  double sampled_, passed_{0};
+  double sampled_, passed_{-infinity};
   bool decision_;
   std::vector<double> pending_;
   Stepper<double> stepper_;

@@ -34,6 +34,7 @@ struct PinRun {
   std::vector<double> load_times, loads;  ///< rows of the factor of the plate friction
   std::vector<Segment<double>> segments;
   Outcome<double> outcome{};
+  StepperState<double> ended{};  ///< for a scan that begins at the end
 
   /// Samples the page and switches the coil, until its course has more than `most` pieces or rows.
   void energise(const ScanInputs& scan, std::size_t pin, const PinState& from, std::size_t most) {
@@ -108,6 +109,7 @@ struct PinRun {
     };
     const bool whole = follower.advance(scan, scan.path.end(), go_on, sink);
     segments.push_back(follower.stepper().segment_until_now());
+    ended = follower.hand_over();
     outcome = {follower.stepper().status()};
     outcome.until = segments.back().end;
     if (!whole && outcome.status == Status::ok) outcome.status = Status::stopped;

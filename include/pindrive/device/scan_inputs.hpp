@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "pindrive/device/coil.hpp"
@@ -12,6 +13,7 @@
 #include "pindrive/device/electromagnet.hpp"
 #include "pindrive/device/hand_path.hpp"
 #include "pindrive/device/raster.hpp"
+#include "pindrive/events/stepper_state.hpp"
 #include "pindrive/model/model.hpp"
 
 namespace pindrive::device {
@@ -37,6 +39,8 @@ struct PinState {
   CoilState coil{};
   bool decision{false};         ///< last decision of the control block
   std::vector<double> pending;  ///< times of the switchings that are due, s
+  /// Position, velocity, skin and contacts at the end of another scan; without, those of a release.
+  std::optional<StepperState<double>> motion{};
 };
 
 /// Velocity of the plate under the mouse, over the time since the begin of a path. A component across the

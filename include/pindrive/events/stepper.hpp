@@ -13,6 +13,7 @@
 
 #include "pindrive/events/evolution.hpp"
 #include "pindrive/events/set_inputs.hpp"
+#include "pindrive/events/stepper_state.hpp"
 #include "pindrive/numbers/functions.hpp"
 #include "pindrive/numbers/limits.hpp"
 
@@ -20,29 +21,10 @@ namespace pindrive {
 
 template <class T>
 class Stepper {
-  using ContactMode = detail::ContactMode<T>;
   static constexpr T never = std::numeric_limits<T>::infinity();
 
  public:
-  /// Complete state: a stepper constructed from this state gives identical bits.
-  struct State {
-    T now;                                    ///< s
-    T since;                                  ///< time of the last event, s
-    T since_error;                            ///< rounding error of that time, s
-    detail::State<T> pin;                     ///< pin at that time
-    ContactMode plate, finger;                ///< modes of the contacts before
-    detail::ActiveGuard at_plate, at_finger;  ///< active guards of the contacts
-    int limit;                                ///< side of a stick force at its limit
-    StopState stop;                           ///< state of the end stops before
-    bool stop_released, stop_met;  ///< the stop force reached zero; the pin reached the stop
-    bool struck;                   ///< the pin struck a rigid stop
-    Mode before;                   ///< mode before
-    Line<T> plate_velocity;        ///< plate velocity from that time on
-    /// Inputs as set.
-    Held<T> mouse_velocity{}, plate_load{}, across_velocity{}, force{}, finger_load{};
-    T horizon{never};  ///< time at which the inputs are set next at the latest, s
-    Event event{};     ///< transitions of contacts and stops now
-  };
+  using State = StepperState<T>;
 
   /// Release at the time `begin`, s. The duration of the inputs is ignored. The friction curves of
   /// the drive are referenced, not copied.
@@ -70,16 +52,16 @@ class Stepper {
   Stepper& operator=(const Stepper&) = delete;
 
   State state() const {
-    State found = last_;
+    State found = with_inputs(last_);
     found.now = now_;
-    found.mouse_velocity = inputs_.mouse_velocity.held();
-    found.plate_load = inputs_.plate_load.held();
-    found.across_velocity = inputs_.across_velocity.held();
-    found.force = inputs_.force.held();
-    found.finger_load = inputs_.finger_load.held();
-    found.horizon = horizon_;
-    found.event = event_;
     return found;
+  }
+  /// Ends the present segment now; returns the state on a clock that begins now, for another stepper.
+  State hand_over() {
+    restart();
+    State found = with_inputs(kept());
+    found.plate_velocity = evolution_.pin.plate.surface;
+    return found.on_clock_from(now_);
   }
 
   /// Advances to the time `until` (s, >= now) or, with `stop_at_event`, to the first contact event
@@ -233,7 +215,7 @@ class Stepper {
       restore(last_);
       evolution_.pin.time = now_;
       evolution_.time_error = T(0);
-      evolution_.pin.plate.surface.rate = inputs_.mouse_velocity.held().line.rate;
+      evolution_.pin.plate.surface.rate = inputs_.mouse_velocity.from(now_).rate;
       take_inputs(now_);
       evolution_.pin.stick_limit_side = 0;
       if (evolution_.pin.stop.rigid()) evolution_.pin.stop.released = false;  // the push may jump
@@ -245,25 +227,41 @@ class Stepper {
     return true;
   }
 
+  State with_inputs(State state) const {
+    state.mouse_velocity = inputs_.mouse_velocity.held();
+    state.plate_load = inputs_.plate_load.held();
+    state.across_velocity = inputs_.across_velocity.held();
+    state.force = inputs_.force.held();
+    state.finger_load = inputs_.finger_load.held();
+    state.horizon = horizon_;
+    state.event = event_;
+    return state;
+  }
+  /// State of the pin without inputs, before the next mode is selected.
+  State kept() const {
+    const auto& pin = evolution_.pin;
+    return {now_,
+            pin.time,
+            evolution_.time_error,
+            pin.state,
+            pin.plate.mode,
+            pin.finger.mode,
+            pin.plate.reached_guard,
+            pin.finger.reached_guard,
+            pin.stick_limit_side,
+            pin.stop.state,
+            pin.stop.released,
+            pin.stop.met,
+            evolution_.struck,
+            before_,
+            pin.plate.surface};
+  }
+
   /// Begins the next segment; the present one `ends`. Returns the transitions.
   template <class Sink>
   Event select(bool ends, Sink&& sink) {
+    last_ = kept();
     const auto &plate = evolution_.pin.plate, &finger = evolution_.pin.finger;
-    last_ = {now_,
-             evolution_.pin.time,
-             evolution_.time_error,
-             evolution_.pin.state,
-             plate.mode,
-             finger.mode,
-             plate.reached_guard,
-             finger.reached_guard,
-             evolution_.pin.stick_limit_side,
-             evolution_.pin.stop.state,
-             evolution_.pin.stop.released,
-             evolution_.pin.stop.met,
-             evolution_.struck,
-             before_,
-             plate.surface};
     // Linear quantities are evaluated over a finite time.
     const bool steady = plate.surface.rate == 0 && plate.load.rate == 0 && finger.load.rate == 0 &&
                         evolution_.pin.force.rate == 0;

@@ -36,6 +36,8 @@ from pindrive.quantities.value import concise, equal_by_value
 
 _POSITION: Final = 0
 """Position among the quantities of the core."""
+_AT: Final = slice(3, 6)
+"""Position, velocity and skin force among the numbers of a state of the core."""
 Progress = Callable[[int, int], None]
 """Called after each part of a computation: how many are done, of how many."""
 
@@ -57,6 +59,11 @@ class PinState:
     """The coil's last switching; None: it is off, without current."""
     decision: Decision = field(default_factory=Decision)
     """State of the control block."""
+    contacts: tuple[float, ...] | None = field(default=None, repr=False)
+    """Contacts at the end of a scan, as the core keeps them; None: those of a release.
+
+    They belong to the position and velocity of that state.
+    """
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +94,8 @@ class ScanInputs:
         drive, control, magnet = device.drive, device.control, device.magnet
         pressed = self.finger_load
         begins = []
-        for state in self.states:
+        for number, state in enumerate(self.states):
+            _check_contacts(number, state)
             coil = CoilState(self.path.begin) if state.coil is None else state.coil
             pull = magnet.pull(coil.flux) if coil.pull is None else coil.pull
             begins.append(
@@ -98,6 +106,7 @@ class ScanInputs:
                     coil.numbers(pull, state.decision.switched),
                     state.decision.on,
                     [*state.decision.pending],
+                    [*(state.contacts or ())],
                 )
             )
         return _core.Scan(
@@ -266,23 +275,27 @@ class PinScan:
     @property
     def state(self) -> PinState:
         """Return the state at the end."""
-        last, lasts = self.motion.segments[-1], self.end - self.begin
-        drive = self.motion.drive
-        position = self.motion.position(lasts, "left")
-        velocity = self.motion.velocity(lasts, "left")
-        # a rigid stop that is struck at the end has taken the velocity: the skin grips as it was
-        strikes = abs(position) == drive.rigid_travel and position * velocity > 0.0
-        # under a falling touch skin also slips under a pin at rest, and keeps a stretch
-        grips = (last.finger == 0 or strikes or velocity == 0.0) and not drive.finger.rigid
+        contacts = tuple(self.core.end(self.number))
+        position, velocity, skin = contacts[_AT]
+        finger = self.drive.finger
         _, on, pending = self.core.control(self.number)
         switched = bool(self.commands.on(self.end))
         return PinState(
             position=position,
-            velocity=0.0 if strikes else None if last.plate == 0 else velocity,
-            skin_stretch=self.motion.stretch(lasts, "left") if grips else None,
+            velocity=velocity,
+            skin_stretch=None if finger.rigid else skin / finger.stiffness,
             coil=self.current.state,
             decision=Decision(on, switched, tuple(pending)),
+            contacts=contacts,
         )
+
+
+def _check_contacts(number: int, state: PinState) -> None:
+    if state.contacts is None or state.contacts[_AT][:2] == (state.position, state.velocity):
+        return
+    required = "None where position or velocity is not that at the end of a scan"
+    given = f"those of {state.contacts[_AT][0]!r} m and {state.contacts[_AT][1]!r} m/s"
+    raise ValueError(refusal(f"start[{number}].contacts", required, given))
 
 
 def energised(given: ScanInputs) -> _core.Scan:
