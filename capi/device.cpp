@@ -11,55 +11,22 @@
 #include "device_parameters.hpp"
 #include "interface.hpp"
 #include "pindrive.h"
+#include "pindrive/device/inputs.hpp"
 #include "scan.hpp"
 
 using namespace pindrive_c;  // NOLINT(google-build-using-namespace): its own
 
 namespace {
 
-constexpr const char* keys[] = {"drive.mass",
-                                "drive.stiffness",
-                                "drive.damping",
-                                "drive.damping_ratio",
-                                "drive.travel",
-                                "drive.stop_stiffness",
-                                "drive.stop_damping",
-                                "plate.kinetic",
-                                "plate.static",
-                                "plate.coefficient",
-                                "plate.static_coefficient",
-                                "plate.preload",
-                                "finger.kinetic",
-                                "finger.static",
-                                "finger.coefficient",
-                                "finger.static_coefficient",
-                                "finger.touch_force",
-                                "finger.stiffness",
-                                "magnet.hold_force",
-                                "magnet.rise_time",
-                                "magnet.fall_time",
-                                "magnet.saturation",
-                                "magnet.residual",
-                                "magnet.pwm_frequency",
-                                "magnet.pwm_duty",
-                                "magnet.deviation",
-                                "magnet.turns",
-                                "magnet.pole_area",
-                                "magnet.gap",
-                                "magnet.lift",
-                                "magnet.closing_force",
-                                "magnet.wire_diameter",
-                                "magnet.turn_length",
-                                "magnet.supply_voltage",
-                                "magnet.release_resistance",
-                                "magnet.saturation_field",
-                                "magnet.thermal_resistance",
-                                "magnet.heat_capacity",
-                                "control.sample_rate",
-                                "control.latency",
-                                "control.threshold",
-                                "control.hysteresis",
-                                "array.axis"};
+/// True if a device has a number of a key. The keys of page and hand are none.
+bool has_number(const char* key) {
+  const auto in_table = [&](const char* table) {
+    return std::strncmp(key, table, std::strlen(table)) == 0;
+  };
+  return pd::device::find_input(key) &&
+         (in_table("drive.") || in_table("plate.") || in_table("finger.") || in_table("magnet.") ||
+          in_table("control.") || std::strcmp(key, "array.axis") == 0);
+}
 
 /// Keys of rows, with the names of both columns.
 struct RowsKey {
@@ -97,8 +64,9 @@ DeviceParameters parameters_of(const pindrive_device& device, std::vector<std::s
           names.push_back(key + "." + column + "[" + std::to_string(i + 1) + "]");
           found.add(names.back().c_str(), value);
         }
-  if (!found.has("magnet.hold_force") && !found.has("magnet.turns"))
-    found.add("magnet.hold_force", 1.0);
+  constexpr const char pull[] = "magnet.hold_force";
+  if (!found.has(pull) && !found.has("magnet.turns"))
+    found.add(pull, pd::device::find_input(pull)->absent);
   return found;
 }
 
@@ -117,7 +85,7 @@ pindrive_error pindrive_c::made_of(const pindrive_device& device,
   if (!error) error = parameters.read(magnet);
   if (!error) error = parameters.read(controller);
   const double axis = parameters.of("array.axis").value;
-  if (!error) error = check("array.axis", axis, std::abs(axis) <= 12.6, "from -12.6 to 12.6");
+  if (!error) error = check("array.axis", *pd::device::find_input("array.axis"), axis);
   if (error) return error;
   const pd::OwnedContact<double> plate(drive.plate, drive.plate),
       finger(drive.finger, drive.finger);
@@ -150,8 +118,7 @@ void pindrive_device_free(pindrive_device* device) { delete device; }
 pindrive_error pindrive_device_set(pindrive_device* device, const char* key, double value) {
   if (!device) return null_pointer("device");
   if (!key) return null_pointer("key");
-  if (std::none_of(std::begin(keys), std::end(keys),
-                   [&](const char* each) { return std::strcmp(each, key) == 0; }))
+  if (!has_number(key))
     return fail(PINDRIVE_BAD_NAME, "a device has no number %.40s; its keys are those of pindrive.h",
                 key);
   return guarded([&]() -> pindrive_error {

@@ -1,6 +1,7 @@
 // Parameters of a device by the keys of a device file.
 #include "device_parameters.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -9,11 +10,14 @@
 #include <vector>
 
 #include "interface.hpp"
+#include "pindrive/device/inputs.hpp"
 #include "pindrive/device/magnet_construction.hpp"
 
 namespace pindrive_c {
 
 namespace {
+
+namespace device = pindrive::device;
 
 constexpr double gravity = 9.80665;  // m/s^2, as in the Python package
 
@@ -93,10 +97,11 @@ pindrive_error DeviceParameters::fill_friction(pindrive_drive* drive, const char
 }
 
 pindrive_error DeviceParameters::fill(pindrive_drive* drive, double Number::* part) const {
-  pindrive_error error = fill_friction(drive, "plate", plate_normal_force(), part);
-  if (!error) error = fill_friction(drive, "finger", of("finger.touch_force"), part);
+  pindrive_error error = PINDRIVE_OK;
   constexpr const char table[] = "drive.";
   for (const auto& [key, value] : rows_) {
+    const device::InputQuantity* const input = device::find_input(key);
+    if (!error && input && part == &Number::value) error = check(key, *input, value.value);
     if (error || !begins(key, table)) continue;
     if (std::strcmp(key, "drive.damping_ratio") == 0)
       error = pindrive_drive_set(
@@ -105,6 +110,8 @@ pindrive_error DeviceParameters::fill(pindrive_drive* drive, double Number::* pa
     else
       error = pindrive_drive_set(drive, key + std::strlen(table), value.*part);
   }
+  if (!error) error = fill_friction(drive, "plate", plate_normal_force(), part);
+  if (!error) error = fill_friction(drive, "finger", of("finger.touch_force"), part);
   return error;
 }
 
@@ -112,63 +119,56 @@ pindrive_error DeviceParameters::fill(pindrive_drive* drive, double Number::* pa
 
 namespace {
 
-namespace device = pindrive::device;
-
-/// Checks of parameters, until one is refused.
+/// Checked parameters, until one is refused.
 struct Checks {
   const DeviceParameters& given;
   pindrive_error error{PINDRIVE_OK};
 
-  double number(const char* name, double otherwise = 0) const {
-    return given.of(name, otherwise).value;
+  /// Value of a key, or the one that holds without the key.
+  double number(const char* key) {
+    const device::InputQuantity& input = *device::find_input(key);
+    const double value = given.of(key, input.absent).value;
+    if (!error && !given.has(key) && std::isnan(value))
+      error = fail(PINDRIVE_BAD_VALUE, "%s must be given", key);
+    if (!error) error = check(key, input, value);
+    return value;
+  }
+  double number_or(const char* key, double otherwise) {
+    return given.has(key) ? number(key) : otherwise;
   }
   void allow(const char* name, double value, bool good, const char* allowed) {
     if (!error) error = check(name, value, good, allowed);
   }
-  double positive(const char* name, double otherwise = 0) {
-    const double value = number(name, otherwise);
-    allow(name, value, value > 0 && value < infinity, "above 0 and finite");
-    return value;
-  }
-  double not_negative(const char* name) {
-    const double value = number(name);
-    allow(name, value, value >= 0 && value < infinity, "at least 0 and finite");
-    return value;
-  }
 };
 
 device::MagnetParameters from_coil(Checks& checks, double deviation) {
-  const device::CoilConstruction coil{checks.positive("magnet.turns"),
-                                      checks.positive("magnet.pole_area"),
-                                      checks.positive("magnet.gap"),
-                                      checks.positive("magnet.wire_diameter"),
-                                      checks.positive("magnet.turn_length"),
-                                      checks.positive("magnet.supply_voltage"),
-                                      checks.not_negative("magnet.release_resistance"),
-                                      checks.positive("magnet.saturation_field", 1.6)};
+  const device::CoilConstruction coil{checks.number("magnet.turns"),
+                                      checks.number("magnet.pole_area"),
+                                      checks.number("magnet.gap"),
+                                      checks.number("magnet.wire_diameter"),
+                                      checks.number("magnet.turn_length"),
+                                      checks.number("magnet.supply_voltage"),
+                                      checks.number("magnet.release_resistance"),
+                                      checks.number("magnet.saturation_field")};
   device::MagnetParameters found = coil.magnet(deviation);
-  found.thermal_resistance = checks.positive("magnet.thermal_resistance", 430);
-  found.heat_capacity = checks.not_negative("magnet.heat_capacity");
+  found.thermal_resistance = checks.number("magnet.thermal_resistance");
+  found.heat_capacity = checks.number_or("magnet.heat_capacity", 0);
   return found;
 }
 
 device::MagnetParameters from_times(Checks& checks, double deviation) {
   device::MagnetParameters found{};
-  found.saturation = checks.number("magnet.saturation", 1);
-  checks.allow("magnet.saturation", found.saturation, found.saturation > 0 && found.saturation <= 1,
-               "above 0 and at most 1");
-  found.rise_constant =
-      device::rise_constant(checks.positive("magnet.rise_time", 0.003), found.saturation);
-  found.fall_constant =
-      device::fall_constant(checks.positive("magnet.fall_time", 0.005), found.saturation);
-  found.hold_force = checks.positive("magnet.hold_force");
+  found.saturation = checks.number("magnet.saturation");
+  found.rise_constant = device::rise_constant(checks.number("magnet.rise_time"), found.saturation);
+  found.fall_constant = device::fall_constant(checks.number("magnet.fall_time"), found.saturation);
+  found.hold_force = checks.number("magnet.hold_force");
   found.deviation = deviation;
   return found;
 }
 
 void read_gap(Checks& checks, device::MagnetParameters& magnet) {
   if (!checks.given.has("magnet.lift")) return;
-  const double lift = checks.not_negative("magnet.lift"), gap = checks.number("magnet.gap");
+  const double lift = checks.number("magnet.lift"), gap = checks.number("magnet.gap");
   const double force = checks.number("magnet.closing_force");
   magnet.open_inductance = gap / (gap + lift);
   magnet.closing_flux = device::closing_flux(magnet, force);
@@ -203,22 +203,16 @@ pindrive_error DeviceParameters::read(std::unique_ptr<const device::Electromagne
   magnet.reset();
   if (!has("magnet.hold_force") && !has("magnet.turns")) return PINDRIVE_OK;
   Checks checks{*this};
-  const double deviation = checks.number("magnet.deviation", 1e-4);
-  checks.allow("magnet.deviation", deviation, deviation >= 1e-8 && deviation <= 0.1,
-               "from 1e-8 to 0.1");
+  const double deviation = checks.number("magnet.deviation");
   device::MagnetParameters found =
       has("magnet.turns") ? from_coil(checks, deviation) : from_times(checks, deviation);
   found.residual = checks.number("magnet.residual");
-  checks.allow("magnet.residual", found.residual,
-               found.residual >= 0 && found.residual < found.hold_force,
-               "at least 0 and less than the full pull");
+  checks.allow("magnet.residual", found.residual, found.residual < found.hold_force,
+               "less than the full pull");
   read_gap(checks, found);
-  found.pulse_duty = checks.number("magnet.pwm_duty", 1);
-  checks.allow("magnet.pwm_duty", found.pulse_duty, found.pulse_duty > 0 && found.pulse_duty <= 1,
-               "above 0 and at most 1");
-  found.pulse_frequency = checks.number("magnet.pwm_frequency", 1);
-  checks.allow("magnet.pwm_frequency", found.pulse_frequency,
-               found.pulse_frequency >= 1 && found.pulse_frequency <= 2e4, "from 1 to 20000");
+  found.pulse_duty = checks.number_or("magnet.pwm_duty", 1);
+  found.pulse_frequency = checks.number_or("magnet.pwm_frequency", 1);
+  checks.number("plate.preload");
   const double normal_force = plate_normal_force().value;
   checks.allow("weight and plate.preload", normal_force,
                normal_force > 0 && normal_force < infinity, "above 0 and finite");
@@ -231,16 +225,11 @@ pindrive_error DeviceParameters::read(std::unique_ptr<const device::Electromagne
 
 pindrive_error DeviceParameters::read(device::Controller& controller) const {
   Checks checks{*this};
-  controller = {checks.number("control.sample_rate", 1000), checks.number("control.latency", 0.005),
-                checks.number("control.threshold", 0.5), checks.number("control.hysteresis", 0.1)};
-  const auto& [rate, latency, threshold, hysteresis] = controller;
-  checks.allow("control.sample_rate", rate, rate >= 0.1 && rate <= 1e6, "from 0.1 to 1000000");
-  checks.allow("control.latency", latency, latency >= 0 && latency <= 100, "from 0 to 100");
-  checks.allow("control.threshold", threshold, threshold >= 0 && threshold <= 1, "from 0 to 1");
-  checks.allow(
-      "control.hysteresis", hysteresis,
-      hysteresis >= 0 && threshold - 0.5 * hysteresis >= 0 && threshold + 0.5 * hysteresis <= 1,
-      "at least 0, and the band about the threshold within 0 to 1");
+  controller = {checks.number("control.sample_rate"), checks.number("control.latency"),
+                checks.number("control.threshold"), checks.number("control.hysteresis")};
+  const double threshold = controller.threshold, band = controller.hysteresis;
+  checks.allow("control.hysteresis", band, band <= 2 * std::min(threshold, 1 - threshold),
+               "such that the band about the threshold is within 0 and 1");
   return checks.error;
 }
 

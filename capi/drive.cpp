@@ -9,6 +9,8 @@
 #include "interface.hpp"
 #include "owned_motion.hpp"
 #include "pindrive.h"
+#include "pindrive/device/inputs.hpp"
+#include "wording.hpp"
 
 namespace pd = pindrive;
 
@@ -117,7 +119,25 @@ pindrive_error pindrive_c::check(const char* name, double value, bool good, cons
   return fail(PINDRIVE_BAD_VALUE, "%s must be %s, not %.17g", name, range, value);
 }
 
+pindrive_error pindrive_c::check(const char* label, const pd::device::InputQuantity& input,
+                                 double value) {
+  const pd::device::Bounds* const violated = input.violated(value);
+  if (!violated) return PINDRIVE_OK;
+  Text required, given;
+  const char* const unit = unit_of(input);
+  add_bounds(required, *violated, unit);
+  given.add_number(value);
+  return fail(PINDRIVE_BAD_VALUE, "%s must be %s, got %s%s%s", label, required.get(), given.get(),
+              *unit != 0 ? " " : "", unit);
+}
+
 namespace {
+
+/// The input of a key, found by the compiler.
+template <std::size_t N>
+constexpr const pd::device::InputQuantity& input(const char (&key)[N]) {
+  return *pd::device::find_input(key);
+}
 
 /// Two rows at one time are a step, where there may be one.
 pindrive_error check_rows(const char* name, const pd::Rows& rows, bool negative, bool steps) {
@@ -142,14 +162,16 @@ pindrive_error check_contact(const char* name, const pd::ContactNumbers& contact
     std::snprintf(of, sizeof of, "%s.%s", name, what);
     return of;
   };
+  // The bounds of both contacts are alike.
+  static constexpr const auto& force = input("plate.kinetic");
+  static constexpr const auto& stiffness = input("finger.stiffness");
   const double kinetic = contact.kinetic, at_rest = contact.static_limit;
-  pindrive_error error = check(named("kinetic"), kinetic, kinetic >= 0 && std::isfinite(kinetic),
-                               "at least 0 and finite");
+  pindrive_error error = check(named("kinetic"), force, kinetic);
+  if (!error) error = check(named("static"), force, at_rest);
   if (!error)
-    error = check(named("static"), at_rest, at_rest >= kinetic && std::isfinite(at_rest),
-                  "at least the kinetic friction and finite");
-  if (!error)
-    error = check(named("stiffness"), contact.stiffness, contact.stiffness > 0, "above 0");
+    error = check(named("static"), at_rest, at_rest >= kinetic, "at least the kinetic friction");
+  if (!error && contact.stiffness != infinity)
+    error = check(named("stiffness"), stiffness, contact.stiffness);
   if (!error && !contact.curve.empty()) {
     error = check(named("curve"), contact.curve[0].first, contact.curve[0].first == 0,
                   "a curve from speed 0 on");
@@ -164,39 +186,38 @@ pindrive_error check_contact(const char* name, const pd::ContactNumbers& contact
 }  // namespace
 
 pindrive_error pindrive_c::check(const pindrive_drive& drive, const pindrive_release& release) {
-  const auto positive = [](double value) { return value > 0 && std::isfinite(value); };
-  const auto finite_or = [](double value, double other) {
-    return std::isfinite(value) || (std::isnan(value) && std::isnan(other));
-  };
-  pindrive_error error = check("mass", drive.mass, positive(drive.mass), "above 0 and finite");
-  if (!error)
-    error = check("stiffness", drive.stiffness, positive(drive.stiffness), "above 0 and finite");
-  if (!error)
-    error = check("damping", drive.damping, drive.damping >= 0 && std::isfinite(drive.damping),
-                  "at least 0 and finite");
+  static constexpr const auto& mass = input("drive.mass");
+  static constexpr const auto& spring = input("drive.stiffness");
+  static constexpr const auto& damping = input("drive.damping");
+  static constexpr const auto& travel = input("drive.travel");
+  static constexpr const auto& stop_stiffness = input("drive.stop_stiffness");
+  static constexpr const auto& stop_damping = input("drive.stop_damping");
+  static constexpr const auto& displacement = input("motion.displacement");
+  static constexpr const auto& velocity = input("motion.velocity");
+  static constexpr const auto& stretch = input("motion.skin_stretch");
+  const pd::StopNumbers& stops = drive.stops;
+  pindrive_error error = check("mass", mass, drive.mass);
+  if (!error) error = check("stiffness", spring, drive.stiffness);
+  if (!error) error = check("damping", damping, drive.damping);
   if (!error) error = check_contact("plate", drive.plate);
   if (!error) error = check_contact("finger", drive.finger);
-  if (!error) error = check("travel", drive.stops.travel, drive.stops.travel > 0, "above 0");
-  if (!error)
-    error = check("stop_stiffness", drive.stops.stiffness, drive.stops.stiffness > 0, "above 0");
-  if (!error)
-    error = check("stop_damping", drive.stops.damping,
-                  drive.stops.damping >= 0 && std::isfinite(drive.stops.damping),
-                  "at least 0 and finite");
+  if (!error && stops.travel != infinity) error = check("travel", travel, stops.travel);
+  if (!error && stops.stiffness != infinity)
+    error = check("stop_stiffness", stop_stiffness, stops.stiffness);
+  if (!error) error = check("stop_damping", stop_damping, stops.damping);
   if (!error) error = check_rows("mouse_velocity", release.mouse_velocity, true, false);
   if (!error) error = check_rows("plate_load", release.plate_load, false, true);
   if (!error) error = check_rows("force", release.force, true, true);
   if (!error) error = check_rows("across_velocity", release.across_velocity, true, false);
   if (!error) error = check_rows("finger_load", release.finger_load, false, true);
-  if (!error)
-    error =
-        check("displacement", release.displacement, std::isfinite(release.displacement), "finite");
-  if (!error)
-    error = check("velocity", release.velocity, finite_or(release.velocity, none),
-                  "finite, or NaN for the plate's");
-  if (!error)
-    error = check("skin_stretch", release.skin_stretch, finite_or(release.skin_stretch, none),
-                  "finite, or NaN");
+  if (!error) error = check("displacement", displacement, release.displacement);
+  if (!error && stops.stiffness == infinity)
+    error = check("displacement", release.displacement,
+                  std::abs(release.displacement) <= stops.travel, "at most travel, either way");
+  if (!error && !std::isnan(release.velocity))
+    error = check("velocity", velocity, release.velocity);
+  if (!error && !std::isnan(release.skin_stretch))
+    error = check("skin_stretch", stretch, release.skin_stretch);
   if (error) return error;
   const double skin = release.skin_stretch;
   const double most = drive.finger.static_limit * release.finger_load[0].second;
@@ -208,7 +229,8 @@ pindrive_error pindrive_c::check(const pindrive_drive& drive, const pindrive_rel
 }
 
 pindrive_error pindrive_c::check_duration(const pindrive_release& release) {
-  return check("duration", release.duration, release.duration > 0, "above 0");
+  static constexpr const auto& duration = input("motion.duration");
+  return release.duration == infinity ? PINDRIVE_OK : check("duration", duration, release.duration);
 }
 
 namespace {
@@ -253,7 +275,8 @@ void pindrive_c::start(pd::Numbers& at, pd::Numbers& along) {
 }
 
 pindrive_error pindrive_c::check_band(double band) {
-  return check("settling_band", band, band > 0 && band <= 1, "above 0 and at most 1");
+  static constexpr const auto& share = input("motion.settling_band");
+  return check("settling_band", share, band);
 }
 
 extern "C" {

@@ -8,6 +8,7 @@
 
 #include "owned_motion.hpp"
 #include "pindrive.h"
+#include "pindrive/device/inputs.hpp"
 
 namespace pindrive_c {
 namespace pd = pindrive;
@@ -96,6 +97,8 @@ constexpr const char* release_names =
     "mouse_velocity, plate_load, force, across_velocity, finger_load, displacement, velocity, "
     "skin_stretch, duration";
 
+/// Checks a value of an input, which a message calls by a label.
+pindrive_error check(const char* label, const pd::device::InputQuantity& input, double value);
 pindrive_error check_band(double band);
 /// Checks that the core can simulate the drive, and that the direction of a derivative fits.
 pindrive_error check(const pindrive_drive& drive, const pindrive_release& release);

@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 import sys
 from decimal import Decimal
-from math import isfinite
+from math import inf, isfinite
 from pathlib import Path
 from typing import Any
 
@@ -70,8 +70,8 @@ def bounds(quantity: Quantity, of: Bounds) -> dict[str, Any]:
             "upper": number(of.upper),
             "lowerClosed": of.lower_closed,
             "upperClosed": of.upper_closed,
-            "infinite": bool(of.also) and not isfinite(of.also[-1]),
-            "zero": 0.0 in of.also,
+            "infinite": of.also == inf,
+            "zero": of.also == 0.0,
             "words": of.words("" if quantity.unit == "1" else quantity.unit),
         }
     )

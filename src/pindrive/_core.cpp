@@ -349,7 +349,8 @@ nb::class_<CoreMotion<T>> bind(nb::module_& m, const char* name, const char* mea
 }  // namespace
 
 void bind_batch(nb::module_& m);   // _batch.cpp
-void bind_device(nb::module_& m);  // _device.cpp
+void bind_device(nb::module_& m);
+void bind_inputs(nb::module_& m);  // _device.cpp
 
 NB_MODULE(_core, m) {
   m.doc() = "The exact core. All quantities in SI units; nothing is checked here.";
@@ -396,6 +397,7 @@ NB_MODULE(_core, m) {
         "The derivatives of a motion along a direction; both as the arguments of simulate.");
   bind_batch(m);
   bind_device(m);
+  bind_inputs(m);
   m.attr("settling_band") = pd::settling_band;
   m.attr("event_limit") = pd::event_limit;
   nb::dict statuses;  // Status in quantities/status.py

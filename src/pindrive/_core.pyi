@@ -183,6 +183,13 @@ class Scan:
 
     def evaluate(self, criteria: tuple[float, float, float, float, float], lines: Sequence[tuple[Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', writable=False)]]]) -> dict: ...
 
+def input_quantities() -> list:
+    """
+    Key, unit, bounds, computable bounds and value without the key, of each input.
+    """
+
+def bounds_words(bounds: tuple[float, float, bool, bool, float], unit: str) -> str: ...
+
 settling_band: float = 0.05
 
 event_limit: int = 1000000

@@ -173,17 +173,18 @@ static void mistakes(void) {
     pindrive_error error;
     const char *words;
   } cases[] = {
-      {"mass", 0, PINDRIVE_BAD_VALUE, "mass must be above 0 and finite, not 0"},
-      {"stiffness", INFINITY, PINDRIVE_BAD_VALUE, "stiffness must be above 0 and finite"},
-      {"damping", -1, PINDRIVE_BAD_VALUE, "damping must be at least 0"},
-      {"plate.kinetic", -0.5, PINDRIVE_BAD_VALUE, "plate.kinetic must be at least 0"},
+      {"mass", 1e-13, PINDRIVE_BAD_VALUE, "mass must be finite and at least 1e-12 kg and at most 1e12 kg"},
+      {"mass", 0, PINDRIVE_BAD_VALUE, "mass must be finite and greater than 0 kg, got 0 kg"},
+      {"stiffness", INFINITY, PINDRIVE_BAD_VALUE, "stiffness must be finite and greater than 0 N/m, got inf N/m"},
+      {"damping", -1, PINDRIVE_BAD_VALUE, "damping must be finite and at least 0 N*s/m, got -1 N*s/m"},
+      {"plate.kinetic", -0.5, PINDRIVE_BAD_VALUE, "plate.kinetic must be finite and at least 0 N, got -0.5 N"},
       {"plate.static", 0.01, PINDRIVE_BAD_VALUE, "plate.static must be at least the kinetic"},
-      {"finger.stiffness", 0, PINDRIVE_BAD_VALUE, "finger.stiffness must be above 0"},
+      {"finger.stiffness", 0, PINDRIVE_BAD_VALUE, "finger.stiffness must be finite and greater than 0 N/m"},
       {"displacement", NAN, PINDRIVE_BAD_VALUE, "displacement must be finite"},
-      {"velocity", INFINITY, PINDRIVE_BAD_VALUE, "velocity must be finite, or NaN"},
+      {"velocity", INFINITY, PINDRIVE_BAD_VALUE, "velocity must be finite, got inf m/s"},
       {"plate_load", -1, PINDRIVE_BAD_VALUE, "row 0 of plate_load must be from 0 to 1e12"},
       {"skin_stretch", 1e-3, PINDRIVE_UNSUPPORTED, "skin_stretch must be NaN for a rigid finger"},
-      {"duration", 0, PINDRIVE_BAD_VALUE, "duration must be above 0"},
+      {"duration", 0, PINDRIVE_BAD_VALUE, "duration must be finite and greater than 0 s, got 0 s"},
       {"weight", 1, PINDRIVE_BAD_NAME, "has no weight, but"},
   };
   const double speeds[] = {0, 0.1, 0.05}, forces[] = {0.02, 0.01, 0.01};
@@ -443,6 +444,10 @@ static void at_stops(void) {
   pindrive_instant now;
   double push = NAN, x = NAN;
   pindrive_drive_set(drive, "travel", 1e-3);
+  pindrive_release_set(release, "displacement", 2e-3);
+  refuses(pindrive_stepper_new(drive, release, 0, &stepper), PINDRIVE_BAD_VALUE,
+          "displacement must be at most travel");
+  pindrive_release_set(release, "displacement", 0);
   pindrive_release_set(release, "mouse_velocity", 0);
   pindrive_release_set(release, "force", 0.5);
   expect(pindrive_stepper_new(drive, release, 0, &stepper) == PINDRIVE_OK, "a stepper with stops");
@@ -582,7 +587,7 @@ static void a_device(void) {
   expect(pindrive_device_set_rows(device, "magnet.voltage", times, volts, 2) == PINDRIVE_OK, "rows");
   pindrive_device_set(device, "magnet.turns", 250);
   refuses(pindrive_scan_new(device, 0, 0, 0, 0, 0, 1, &scan), PINDRIVE_BAD_VALUE,
-          "magnet.pole_area must be above 0");
+          "magnet.pole_area must be given");
   pindrive_device_free(device);
 }
 

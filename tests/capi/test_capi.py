@@ -173,7 +173,14 @@ OF_THE_DEVICE = {
     "Scan",
 }
 """Names of the device layer, whose functions in C are those of a device and its scan."""
-OF_THE_EXTENSION = {"kernel_widths", "elementary", "settling_band", "event_limit"} | OF_THE_DEVICE
+OF_THE_EXTENSION = {
+    "input_quantities",
+    "bounds_words",
+    "kernel_widths",
+    "elementary",
+    "settling_band",
+    "event_limit",
+} | OF_THE_DEVICE
 """Names of the extension without a function in C."""
 
 

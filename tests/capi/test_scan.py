@@ -59,7 +59,6 @@ class Reading:
             "finger.coefficient": friction,
             "finger.static_coefficient": 1.4 * friction,
             "finger.touch_force": TOUCH,
-            "finger.stiffness": skin,
             "magnet.hold_force": random.uniform(0.8, 2.0),
             "magnet.rise_time": 0.002,
             "magnet.fall_time": 0.004,
@@ -69,6 +68,8 @@ class Reading:
             "control.latency": 0.003,
             "array.axis": 0.1 if seed % 3 == 2 else 0.0,
         }
+        if skin < inf:
+            self.numbers["finger.stiffness"] = skin
         n = self.numbers
         drive = Drive(
             mass=n["drive.mass"],

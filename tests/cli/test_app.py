@@ -376,7 +376,7 @@ def test_help_loads_nothing_heavy() -> None:
         "from pindrive.cli.app import main\n"
         "try: main()\n"
         "except SystemExit as end: assert not end.code\n"
-        "heavy = {'numpy', 'pydantic', 'pint', 'rich', 'xarray', 'matplotlib', 'pindrive._core'}\n"
+        "heavy = {'numpy', 'pydantic', 'pint', 'rich', 'xarray', 'matplotlib'}\n"
         "sys.exit(', '.join(heavy & set(sys.modules)) or None)"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)

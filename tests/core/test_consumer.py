@@ -44,6 +44,7 @@ PUBLIC = {
         "electromagnet",
         "evaluation",
         "hand_path",
+        "inputs",
         "live_hand",
         "magnet_construction",
         "monotone_pieces",

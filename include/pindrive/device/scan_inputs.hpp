@@ -40,7 +40,7 @@ struct PinState {
   bool decision{false};         ///< last decision of the control block
   std::vector<double> pending;  ///< times of the switchings that are due, s
   /// Position, velocity, skin and contacts at the end of another scan; without, those of a release.
-  std::optional<StepperState<double>> motion{};
+  std::optional<StepperState<double>> motion;
 };
 
 /// Velocity of the plate under the mouse, over the time since the begin of a path. A component across the

@@ -82,7 +82,11 @@ def _interval(*sets: Bounds) -> tuple[float, float, float]:
     """The smallest and the largest value that all of the sets hold, and one beside them or NaN."""
     least = max(b.lower if b.lower_closed else float(np.nextafter(b.lower, inf)) for b in sets)
     most = min(b.upper if b.upper_closed else float(np.nextafter(b.upper, -inf)) for b in sets)
-    beside = [value for b in sets for value in b.also if all(value in other for other in sets)]
+    beside = [
+        value
+        for b in sets
+        if (value := b.also) is not None and all(value in other for other in sets)
+    ]
     return least, most, beside[0] if beside else nan
 
 
@@ -482,7 +486,7 @@ def _within(bounds: Bounds, values: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Return True for the values within the bounds; NaN never is."""
     above = values >= bounds.lower if bounds.lower_closed else values > bounds.lower
     below = values <= bounds.upper if bounds.upper_closed else values < bounds.upper
-    return (above & below) | np.isin(values, bounds.also) if bounds.also else above & below
+    return (above & below) | np.equal(values, nan if bounds.also is None else bounds.also)
 
 
 # ---- what the numbers mean -----------------------------------------------------------------------

@@ -9,24 +9,21 @@ from __future__ import annotations
 from math import radians
 from typing import Any, Final
 
-from pindrive.quantities.quantity import FINE, NON_NEGATIVE, Quantity, between, optional
+from pindrive.quantities.quantity import NON_NEGATIVE, Quantity, between, inputs
 
 LUMINANCE: Final = between(0.0, 1.0)
-ACUTE: Final = between(0.0, radians(90.0))
 SPEED: Final = between(1e-4, 100.0)
 """Speed of a hand."""
 PLACE: Final = between(-1e3, 1e3)
 """On the page."""
-TURN: Final = radians(720.0)
 
-CONTROL: Final = optional(
+CONTROL: Final = inputs(
     "control",
     Quantity(
         "sample_rate",
         "f_s",
         "Hz",
         "rate at which the control block samples the scene",
-        between(0.1, 1e6),
         1000.0,
         "mice report 125 to 1000 times a second (USB HID)",
     ),
@@ -35,7 +32,6 @@ CONTROL: Final = optional(
         "t_l",
         "s",
         "delay from sampling to switching the coil",
-        between(0.0, 100.0),
         0.005,
         "assumed: a few reports of a mouse",
     ),
@@ -44,7 +40,6 @@ CONTROL: Final = optional(
         "L_0",
         "1",
         "luminance below which the page is black for the control block; 0 is black, 1 is white",
-        LUMINANCE,
         0.5,
         "assumed: the middle",
     ),
@@ -53,41 +48,35 @@ CONTROL: Final = optional(
         "ΔL",
         "1",
         "width of the band about the threshold: on below it, off above it",
-        LUMINANCE,
         0.1,
         "assumed",
         remark="the band lies within 0 and 1",
     ),
 )
 
-ARRAY: Final = optional(
+ARRAY: Final = inputs(
     "array",
     Quantity(
         "columns",
         "n_x",
         "1",
         "number of pins along the drive axis",
-        between(1.0, 1000.0),
         4.0,
         "assumed",
-        absent=1.0,
     ),
     Quantity(
         "rows",
         "n_y",
         "1",
         "number of rows of pins",
-        between(1.0, 1000.0),
         4.0,
         "assumed",
-        absent=1.0,
     ),
     Quantity(
         "pitch",
         "p",
         "m",
         "distance between neighbouring pins",
-        between(1e-6, 1.0),
         0.005,
         "assumed: room for electromagnets 3.5 mm wide; twice that of the dots of a Braille cell",
     ),
@@ -96,7 +85,6 @@ ARRAY: Final = optional(
         "d_p",
         "m",
         "diameter of a pin, the smallest distance between axes",
-        between(1e-6, 1.0),
         0.0015,
         "as a Braille dot at its base, 1.4-1.6 mm",
     ),
@@ -105,7 +93,6 @@ ARRAY: Final = optional(
         "l_s",
         "m",
         "length of the slot in which a pin moves, along the drive axis",
-        between(1e-6, 1.0),
         source="the pin's diameter and 1.35 mm either way: a pin goes up to 1.29 mm, and slots are "
         "cut to 0.1 mm (ISO 2768-1, medium, 3-6 mm); 0.8 mm of wall is left at a pitch of 5 mm",
         example=0.0042,
@@ -116,7 +103,6 @@ ARRAY: Final = optional(
         "(x_i, y_i)",
         "m",
         "positions of the pins in the mouse, along and across the drive axis",
-        between(-10.0, 10.0),
         source="assumed: three pins in a triangle",
         remark="in place of columns, rows and pitch",
         rows_of="places",
@@ -127,7 +113,6 @@ ARRAY: Final = optional(
         "s",
         "1",
         "factor from the distances of the pins to those of their sensing spots",
-        between(0.0, 1000.0),
         1.0,
         "assumed: the scene is felt in its own size",
     ),
@@ -136,20 +121,18 @@ ARRAY: Final = optional(
         "φ",
         "rad",
         "direction of the drive axis on the page, from x towards y",
-        between(-TURN, TURN),
         0.0,
         "the paper keeps drive and motion parallel, along the lines of the page",
     ),
 )
 
-SCAN: Final = optional(
+SCAN: Final = inputs(
     "scan",
     Quantity(
         "hand_speed",
         "v_h",
         "m/s",
         "peak speed of a reading stroke; a minimum-jerk stroke takes 1.875 length / speed",
-        SPEED,
         0.060,
         "hand speed 20-100 mm/s in finger studies (arXiv 2505.11162); the middle",
     ),
@@ -158,7 +141,6 @@ SCAN: Final = optional(
         "v_r",
         "m/s",
         "peak speed of the stroke back to the next line",
-        SPEED,
         0.1,
         "the upper end of hand speed in finger studies (arXiv 2505.11162)",
     ),
@@ -167,7 +149,6 @@ SCAN: Final = optional(
         "t_p",
         "s",
         "rest of the hand after each stroke",
-        between(0.0, 3600.0),
         0.2,
         "assumed",
     ),
@@ -176,7 +157,6 @@ SCAN: Final = optional(
         "N_f(t)",
         "N",
         "touch force of the finger on each pin, over the time of the scan",
-        NON_NEGATIVE,
         source="assumed: a finger that rests for 0.4 s, lifts within 20 ms, and presses again",
         remark="one value, rows over time, or a CSV of them, for a finger with a coefficient; "
         "finger.touch_force throughout unless given",
@@ -190,7 +170,6 @@ SCAN: Final = optional(
         "h_l",
         "m",
         "distance between the lines of text, and between the hand's strokes",
-        between(1e-5, 10.0),
         source="assumed: twice the height of the text",
         example=0.020,
         remark="twice the height of text, one stroke along the middle of an image, unless given",
@@ -200,7 +179,6 @@ SCAN: Final = optional(
         "h_t",
         "m",
         "height of capital letters in text",
-        between(1e-5, 10.0),
         0.010,
         "assumed: letters that a pin can follow",
     ),
@@ -209,7 +187,6 @@ SCAN: Final = optional(
         "p_s",
         "m",
         "size of a pixel of the scene",
-        between(1e-7, 1.0),
         source="assumed: 254 pixels an inch",
         example=1e-4,
         remark="resolution of the image, 0.1 mm for text and lines, unless given",
@@ -219,7 +196,6 @@ SCAN: Final = optional(
         "γ_max",
         "rad",
         "angle between motion and drive axis above which a warning is given",
-        ACUTE,
         radians(20.0),
         "assumed: 6 % of the speed is lost at 20 deg, of the force as much",
     ),
@@ -228,7 +204,6 @@ SCAN: Final = optional(
         "a_max",
         "m/s^2",
         "largest acceleration of the hand in a recording",
-        between(1e-3, 1e6),
         30.0,
         "assumed: five times that of a minimum-jerk stroke of 100 mm in 0.3 s",
     ),
@@ -237,7 +212,6 @@ SCAN: Final = optional(
         "n_m",
         "1/m",
         "resolution of the mouse for recordings in counts",
-        between(1e2, 1e8),
         1e7 / 254.0,
         "assumed: 1000 to the inch, as usual mice have",
     ),
@@ -246,7 +220,6 @@ SCAN: Final = optional(
         "f_c",
         "Hz",
         "3 dB cut-off of the low-pass that smooths a raw recording of a mouse",
-        between(0.1, 1e5),
         20.0,
         "assumed: hands move below 10 Hz; it takes 0.13 % off the peak of a stroke of 0.15 s",
     ),
@@ -255,45 +228,50 @@ SCAN: Final = optional(
         "ε_v",
         "1",
         "largest deviation of the piecewise-linear speed from minimum jerk, over the peak",
-        FINE,
         1e-4,
         "its slope, which is the force of inertia, is then within 3 % of its peak",
     ),
 )
 
 DEVICE_PARTS: Final[tuple[Quantity, ...]] = (
-    Quantity("place.x", "x", "m", "place of a pin along the drive axis", between(-10.0, 10.0)),
-    Quantity("place.y", "y", "m", "place of a pin across the drive axis", between(-10.0, 10.0)),
-    Quantity("scene.origin", "x_0", "m", "place of the scene's top left corner", PLACE),
-    Quantity("scene.luminance", "L", "1", "luminance of a pixel, black 0, white 1", LUMINANCE),
-    Quantity("stroke.length", "D", "m", "length of a stroke", between(1e-9, 2e3)),
-    Quantity("stroke.duration", "T", "s", "duration of a stroke", between(1e-12, 1e8)),
-    Quantity("hand.time", "t", "s", "time in a recorded path", between(-1e6, 1e6)),
+    Quantity(
+        "place.x", "x", "m", "place of a pin along the drive axis", bounds=between(-10.0, 10.0)
+    ),
+    Quantity(
+        "place.y", "y", "m", "place of a pin across the drive axis", bounds=between(-10.0, 10.0)
+    ),
+    Quantity("scene.origin", "x_0", "m", "place of the scene's top left corner", bounds=PLACE),
+    Quantity(
+        "scene.luminance", "L", "1", "luminance of a pixel, black 0, white 1", bounds=LUMINANCE
+    ),
+    Quantity("stroke.length", "D", "m", "length of a stroke", bounds=between(1e-9, 2e3)),
+    Quantity("stroke.duration", "T", "s", "duration of a stroke", bounds=between(1e-12, 1e8)),
+    Quantity("hand.time", "t", "s", "time in a recorded path", bounds=between(-1e6, 1e6)),
     Quantity(
         "margin",
         "h_m",
         "m",
         "white around the text or the lines of a page",
-        between(0.0, 10.0),
         source="assumed: half the height of the text",
         absent=0.005,
+        bounds=between(0.0, 10.0),
     ),
     Quantity(
         "text.pixel",
         "p_s",
         "m",
         "size of a pixel of text and lines",
-        between(1e-7, 1.0),
         source="assumed: 254 pixels an inch",
         absent=1e-4,
+        bounds=between(1e-7, 1.0),
     ),
-    Quantity("hand.place", "x", "m", "place in a recorded path", PLACE),
+    Quantity("hand.place", "x", "m", "place in a recorded path", bounds=PLACE),
     Quantity(
         "friction_coefficient",
         "μ",
         "1",
         "kinetic friction of the plate over the normal force",
-        NON_NEGATIVE,
+        bounds=NON_NEGATIVE,
     ),
     Quantity(
         "pin_gap",

@@ -1,6 +1,7 @@
 """The table of quantities, first part: the drive, its inputs, and what follows from them.
 
-Only the standard library is imported here and in the other parts, so that a command starts fast.
+Only the standard library and the core are imported here and in the other parts, so that a command
+starts fast.
 """
 
 from __future__ import annotations
@@ -16,11 +17,10 @@ from pindrive.quantities.quantity import (
     PAPER,
     POSITIVE,
     POSITIVE_OR_RIGID,
-    SHARE,
     Bounds,
     Quantity,
     between,
-    in_table,
+    inputs,
 )
 
 STEEL: Final = (
@@ -28,40 +28,30 @@ STEEL: Final = (
 )
 FINGER: Final = "ROBOMECH J. 2017, 10.1186/s40648-017-0080-8, Table 1"
 
-# Inputs of the core stay within 1e±12 SI, far beyond any device. Then rates, sqrt(k/m) and
-# b/m, stay within 1e±24, forces under load below 1e24, lengths F/k below 1e36, energies k x² below
-# 1e84, and what the certificate bounds, the fifth derivative of a length, below 1e156: in doubles,
-# which end at 1e308, nothing overflows, nor does what matters vanish below 1e-308. A friction or a
-# start that is still smaller (a velocity of 1e-17, rounded from 0) acts as 0 where its square does.
+# The parts of a drive stay within 1e±12 SI as its inputs do (include/pindrive/device/inputs.hpp).
 #
-# A phase ω t is known to 1e-16 of itself: after 1e12 rad to four digits, beyond 1e16 to none. So a
-# duration ends there, and a damping ratio, by whose inverse a motion outlasts its period, is 0 or
-# above 1e-11. Beyond 1e6 the two rates of a mode, ω/(2ζ) and 2ζω, lie so far apart that a velocity
-# has lost four of its digits beside the other wave's.
-LARGEST: Final = 1e12
-SMALLEST: Final = 1e-12
-EITHER_WAY: Final = between(-LARGEST, LARGEST)
-FROM_ZERO: Final = between(0.0, LARGEST)
-ABOVE_ZERO: Final = between(SMALLEST, LARGEST)
-OR_INFINITE: Final = Bounds(SMALLEST, LARGEST, True, True, also=(inf,))
+# A phase ω t is known to 1e-16 of itself: after 1e12 rad to four digits, beyond 1e16 to none.
+EITHER_WAY: Final = between(-1e12, 1e12)
+FROM_ZERO: Final = between(0.0, 1e12)
+ABOVE_ZERO: Final = between(1e-12, 1e12)
+OR_INFINITE: Final = Bounds(1e-12, 1e12, True, True, also=inf)
 COMPUTED: Final = {
     FINITE: EITHER_WAY,
     NON_NEGATIVE: FROM_ZERO,
     POSITIVE: ABOVE_ZERO,
     POSITIVE_OR_RIGID: OR_INFINITE,
 }
-"""Computable intervals of the derived quantities."""
-RATIOS: Final = Bounds(1e-11, 1e6, True, True, also=(0.0,))
+"""Computable intervals of the parts of a drive."""
 PHASES: Final = between(0.0, 1e12)
 
 
-def _computed(*parts: tuple[Quantity, ...]) -> tuple[Quantity, ...]:
+def _computed(rows: tuple[Quantity, ...]) -> tuple[Quantity, ...]:
     """Rows whose limits follow from their bounds unless they have their own."""
     return tuple(
         replace(row, limits=COMPUTED.get(row.bounds, row.limits))
         if row.limits is FINITE_OR_NOT
         else row
-        for row in (row for rows in parts for row in rows)
+        for row in rows
     )
 
 
@@ -71,7 +61,6 @@ _DRIVE: Final = (
         "m",
         "kg",
         "moving mass: the body held by the spring",
-        POSITIVE,
         0.010,
         "assumed: 1.2 cm3 of iron and copper, 8.4 g/cm3",
         seen=between(1e-6, 5.0),
@@ -82,7 +71,6 @@ _DRIVE: Final = (
         "k",
         "N/m",
         "stiffness of the spring that holds the body",
-        POSITIVE,
         100.0,
         "assumed: a natural frequency of 16 Hz with a mass of 10 g",
         seen=between(1e-5, 1e7),
@@ -93,7 +81,6 @@ _DRIVE: Final = (
         "b",
         "N*s/m",
         "viscous damping of the drive",
-        NON_NEGATIVE,
         source="the damping ratio 0.16 below, with m = 10 g and k = 100 N/m",
         example=0.32,
         remark="give this or damping_ratio",
@@ -104,19 +91,16 @@ _DRIVE: Final = (
         "ζ",
         "1",
         "damping over critical damping, b / (2 sqrt(m k))",
-        NON_NEGATIVE,
         0.16,
         f"{PAPER}, Fig. 4: 0.04, 0.16, 0.32, read as ratios; the middle one",
         remark="give this or damping",
         seen=between(0.0, 1e3),
-        limits=RATIOS,
     ),
     Quantity(
         "travel",
         "x_s",
         "m",
         "travel of the pin from the spring's rest to its end stops, either way",
-        POSITIVE,
         source="assumed: a pin 1 mm thick in a slot 5 mm long",
         example=0.002,
         remark="no end stops unless given",
@@ -127,7 +111,6 @@ _DRIVE: Final = (
         "k_s",
         "N/m",
         "stiffness of the end stops, which push and never pull",
-        POSITIVE,
         source="assumed: rubber, a hundred times as stiff as the spring",
         example=1e4,
         remark="rigid and plastic unless given: a pin that strikes loses its velocity",
@@ -138,7 +121,6 @@ _DRIVE: Final = (
         "b_s",
         "N*s/m",
         "damping of elastic end stops",
-        NON_NEGATIVE,
         source="assumed: a pin returns with half its speed",
         example=4.0,
         remark="none unless given; needs stop_stiffness",
@@ -175,39 +157,40 @@ def _friction(
             f"{symbol}_{letter}(|u|)",
             unit,
             f"friction {what} of {curved} over sliding speed, linear between rows",
-            NON_NEGATIVE,
             source=given[1],
             remark=f"speeds from 0 m/s up; {of} may then be left out",
             rows_of=name,
             rows=given[0],
             follows=(f"{contact}.{of}",),
             seen=forces if unit == "N" else plain,
+            bounds=NON_NEGATIVE,
         )
 
-    return (
+    return inputs(
+        "",
         Quantity(
             f"{contact}.kinetic",
             f"F_{letter}",
             "N",
             f"friction force of the {contact} while sliding{sliding}",
-            NON_NEGATIVE,
             *kinetic,
             seen=forces,
             mandatory=True,
             alternative=tuple(
                 f"{contact}.{n}" for n in ("curve", "coefficient", "coefficient_curve")
             ),
+            bounds=NON_NEGATIVE,
         ),
         Quantity(
             f"{contact}.static",
             f"F_{letter},s",
             "N",
             f"largest friction force of the {contact} without sliding",
-            NON_NEGATIVE,
             *static,
             remark="the kinetic one unless given",
             follows=(f"{contact}.kinetic",),
             seen=forces,
+            bounds=NON_NEGATIVE,
         ),
         rows("curve", "F", "N", "force", "kinetic", curve),
         Quantity(
@@ -215,23 +198,23 @@ def _friction(
             f"μ_{letter}",
             "1",
             f"kinetic friction coefficient of the {contact}, over {presses}",
-            NON_NEGATIVE,
             source=coefficient[1],
             example=coefficient[0],
             remark="in place of the forces kinetic, static and curve",
             seen=plain,
+            bounds=NON_NEGATIVE,
         ),
         Quantity(
             f"{contact}.static_coefficient",
             f"μ_{letter},s",
             "1",
             "friction coefficient at rest",
-            NON_NEGATIVE,
             source=static_coefficient[1],
             example=static_coefficient[0],
             remark="the kinetic one unless given",
             follows=(f"{contact}.coefficient",),
             seen=plain,
+            bounds=NON_NEGATIVE,
         ),
         rows("coefficient_curve", "μ", "1", "coefficient", "coefficient", coefficient_curve),
     )
@@ -252,17 +235,15 @@ _CONTACTS: Final = (
             "steel on steel, 0.225 falling to 0.15 (the lowest)",
         ),
     ),
-    *in_table(
+    *inputs(
         "plate",
         Quantity(
             "preload",
             "W_0",
             "N",
             "force that presses the body on the plate beside its weight and the pull",
-            NON_NEGATIVE,
             source="assumed: none, the weight alone presses",
             example=0.0,
-            absent=0.0,
             seen=between(0.0, 1e3),
         ),
     ),
@@ -281,30 +262,31 @@ _CONTACTS: Final = (
         static_coefficient=(0.75, f"1.5 times the kinetic one, as 2.1 to 1.4 in {FINGER}"),
         coefficient_curve=(((0.0, 0.5), (0.05, 0.4)), "assumed: by a fifth less at 50 mm/s"),
     ),
-    *in_table(
+    *inputs(
         "finger",
         Quantity(
             "touch_force",
             "N_f",
             "N",
             "force with which the finger presses on the pin",
-            NON_NEGATIVE,
             source="assumed: a light touch",
             example=0.010,
             remark="needed where a coefficient gives the finger's friction",
             seen=between(0.0, 1e3),
         ),
     ),
-    Quantity(
-        "finger.stiffness",
-        "k_f",
-        "N/m",
-        "tangential stiffness of the finger's skin, which stretches before it slips",
-        POSITIVE,
-        source=FINGER,
-        example=1000.0,
-        remark="rigid unless given",
-        seen=between(1e-2, 1e12),
+    *inputs(
+        "",
+        Quantity(
+            "finger.stiffness",
+            "k_f",
+            "N/m",
+            "tangential stiffness of the finger's skin, which stretches before it slips",
+            source=FINGER,
+            example=1000.0,
+            remark="rigid unless given",
+            seen=between(1e-2, 1e12),
+        ),
     ),
 )
 
@@ -314,7 +296,6 @@ _MOTION: Final = (
         "v_p",
         "m/s",
         "velocity of the plate under the mouse",
-        FINITE,
         0.060,
         "hand speed 20-100 mm/s in finger studies (arXiv 2505.11162); the middle",
         remark="its sign is the direction; one value, rows over time, or a CSV of them or of a "
@@ -329,9 +310,7 @@ _MOTION: Final = (
         "λ",
         "1",
         "factor on the plate's friction, raised by the pull of a magnet",
-        NON_NEGATIVE,
         source="assumed: a magnet that held the pin with four times its weight releases it in 5 ms",
-        absent=1.0,
         remark="one value, rows over time, or a CSV of them",
         example=1.0,
         rows_of="profile",
@@ -343,9 +322,7 @@ _MOTION: Final = (
         "F_e",
         "N",
         "external force on the pin, positive in the direction of x",
-        FINITE,
         source="assumed: a finger that pushes the pin for 20 ms",
-        absent=0.0,
         remark="one value, rows over time, or a CSV of them",
         example=0.010,
         rows_of="profile",
@@ -357,9 +334,7 @@ _MOTION: Final = (
         "w",
         "m/s",
         "transverse velocity of the plate, which prevents stick",
-        FINITE,
         source="assumed: a hand that moves 10 degrees off the axis",
-        absent=0.0,
         remark="one value, rows over time, or a CSV of them",
         example=0.010,
         rows_of="profile",
@@ -371,9 +346,7 @@ _MOTION: Final = (
         "λ_f",
         "1",
         "factor on the finger's friction: its touch force over time, over touch_force",
-        NON_NEGATIVE,
         source="assumed: a finger that lifts off the pin within 20 ms",
-        absent=1.0,
         remark="one value, rows over time, or a CSV of them",
         example=1.0,
         rows_of="profile",
@@ -385,10 +358,8 @@ _MOTION: Final = (
         "x_0",
         "m",
         "deflection of the pin from the spring's rest at release",
-        FINITE,
         0.002,
         "assumed: the pin was carried along a line 2 mm wide",
-        absent=0.0,
         seen=between(0.0, 0.1),
     ),
     Quantity(
@@ -396,7 +367,6 @@ _MOTION: Final = (
         "v_0",
         "m/s",
         "velocity of the pin in the mouse at release",
-        FINITE,
         source=f"{PAPER}: the pin is released while the plate carries it",
         example=0.060,
         remark="the plate's velocity unless given",
@@ -407,7 +377,6 @@ _MOTION: Final = (
         "s_0",
         "m",
         "skin stretch of a compliant finger that sticks to the pin at release",
-        FINITE,
         source="assumed: half of what static friction holds, 7.5 mN / (1000 N/m)",
         example=3.75e-6,
         remark="that of sliding skin, or zero for a pin at rest, unless given",
@@ -419,7 +388,6 @@ _MOTION: Final = (
         "T",
         "s",
         "duration of the simulated motion",
-        POSITIVE,
         source="a few periods of the slow decay",
         example=0.3,
         remark="until the ending is known unless given",
@@ -430,85 +398,90 @@ _MOTION: Final = (
         "ε",
         "1",
         "half-width of the settling band about the end, over |x(0) - x_end|",
-        SHARE,
         0.05,
         "usual beside 2 % in control engineering",
-        absent=0.05,
     ),
 )
-DRIVE_QUANTITIES: Final = _computed(
-    in_table("drive", *_DRIVE), _CONTACTS, in_table("motion", *_MOTION)
-)
+DRIVE_QUANTITIES: Final = inputs("drive", *_DRIVE) + _CONTACTS + inputs("motion", *_MOTION)
 """Keys of a device file, in order."""
 
 _PARTS: Final = (
-    Quantity("kinetic", "F", "N", "friction force of a sliding contact", NON_NEGATIVE),
+    Quantity("kinetic", "F", "N", "friction force of a sliding contact", bounds=NON_NEGATIVE),
     Quantity(
         "static",
         "F_s",
         "N",
         "largest friction force without sliding",
-        NON_NEGATIVE,
+        bounds=NON_NEGATIVE,
     ),
     Quantity(
         "contact.stiffness",
         "k_c",
         "N/m",
         "tangential stiffness of a contact",
-        POSITIVE_OR_RIGID,
+        bounds=POSITIVE_OR_RIGID,
     ),
     Quantity(
         "curve.speed",
         "|u|",
         "m/s",
         "sliding speed in a friction curve",
-        NON_NEGATIVE,
+        bounds=NON_NEGATIVE,
     ),
     Quantity(
         "curve.force",
         "F(|u|)",
         "N",
         "kinetic friction in a friction curve",
-        NON_NEGATIVE,
+        bounds=NON_NEGATIVE,
     ),
     Quantity(
         "curve.coefficient",
         "μ(|u|)",
         "1",
         "friction coefficient in a friction curve",
-        NON_NEGATIVE,
+        bounds=NON_NEGATIVE,
     ),
     Quantity(
         "curve.coefficient_slope",
         "dμ/d|u|",
         "s/m",
         "slope of a curve of friction coefficients between rows",
-        FINITE,
+        bounds=FINITE,
     ),
-    Quantity("coefficient", "μ", "1", "friction force over normal force", NON_NEGATIVE),
+    Quantity("coefficient", "μ", "1", "friction force over normal force", bounds=NON_NEGATIVE),
     Quantity(
-        "static_coefficient", "μ_s", "1", "friction coefficient of a sticking contact", NON_NEGATIVE
+        "static_coefficient",
+        "μ_s",
+        "1",
+        "friction coefficient of a sticking contact",
+        bounds=NON_NEGATIVE,
     ),
     Quantity(
         "normal_force",
         "N",
         "N",
         "normal force of a contact: weight, preload and pull, or the touch force",
-        NON_NEGATIVE,
+        bounds=NON_NEGATIVE,
     ),
     Quantity(
         "curve.slope",
         "dF/d|u|",
         "N*s/m",
         "slope of a friction curve between rows",
-        FINITE,
+        bounds=FINITE,
     ),
-    Quantity("profile.time", "t", "s", "time of a profile's row", FINITE),
-    Quantity("profile.value", "y", "1", "value of a profile's row", FINITE),
-    Quantity("profile.rate", "dy/dt", "1/s", "rate of a profile between rows", FINITE),
+    Quantity("profile.time", "t", "s", "time of a profile's row", bounds=FINITE),
+    Quantity("profile.value", "y", "1", "value of a profile's row", bounds=FINITE),
+    Quantity("profile.rate", "dy/dt", "1/s", "rate of a profile between rows", bounds=FINITE),
     Quantity("natural_frequency", "ω_0", "rad/s", "undamped natural frequency, sqrt(k/m)"),
     Quantity(
-        "phase", "ω_0 T", "rad", "natural frequency times duration", NON_NEGATIVE, limits=PHASES
+        "phase",
+        "ω_0 T",
+        "rad",
+        "natural frequency times duration",
+        limits=PHASES,
+        bounds=NON_NEGATIVE,
     ),
 )
 PARTS: Final = _computed(_PARTS)

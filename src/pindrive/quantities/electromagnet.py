@@ -8,16 +8,15 @@ from __future__ import annotations
 
 from typing import Final
 
-from pindrive.quantities.quantity import FINE, SHARE, Quantity, between, optional
+from pindrive.quantities.quantity import SHARE, Quantity, between, inputs
 
-MAGNET: Final = optional(
+MAGNET: Final = inputs(
     "magnet",
     Quantity(
         "hold_force",
         "P_h",
         "N",
         "pull of the energised electromagnet on the plate",
-        between(1e-6, 1e4),
         1.0,
         "assumed: at a friction coefficient of 0.27 it carries a pin of 1 g 1 mm against 250 N/m",
         remark="follows from the coil if one is given",
@@ -27,7 +26,6 @@ MAGNET: Final = optional(
         "t_r",
         "s",
         "time from switching on to 90 % of the pull",
-        between(1e-7, 100.0),
         0.003,
         "assumed: an L/R of 1 ms, twice that of the coil below",
         remark="follows from the coil if one is given",
@@ -37,7 +35,6 @@ MAGNET: Final = optional(
         "t_f",
         "s",
         "time from switching off to 10 % of the pull",
-        between(1e-7, 100.0),
         0.005,
         "assumed: longer than the rise, as current dies away through a diode",
         remark="follows from the coil if one is given",
@@ -47,7 +44,6 @@ MAGNET: Final = optional(
         "σ",
         "1",
         "part of the full current above which the iron is saturated and the pull constant",
-        between(1e-3, 1.0),
         1.0,
         "assumed: a coil just strong enough",
         remark="follows from the coil if one is given",
@@ -57,7 +53,6 @@ MAGNET: Final = optional(
         "P_r",
         "N",
         "pull that remains without current",
-        between(0.0, 1e4),
         0.0,
         "assumed: soft iron and a paint thick enough",
     ),
@@ -66,7 +61,6 @@ MAGNET: Final = optional(
         "f_PWM",
         "Hz",
         "frequency of the pulses while the coil is on",
-        between(1.0, 2e4),
         source="assumed: such that the current follows by a part; beyond 20 kHz eddy currents in "
         "the iron decide, which are not simulated",
         example=500.0,
@@ -77,7 +71,6 @@ MAGNET: Final = optional(
         "D",
         "1",
         "duty cycle of the pulses",
-        SHARE,
         source="assumed: a pull that holds with half of the current",
         example=0.5,
         remark="with pwm_frequency",
@@ -87,7 +80,6 @@ MAGNET: Final = optional(
         "d_e",
         "m",
         "diameter of the electromagnet, a cylinder",
-        between(1e-6, 1.0),
         source="assumed: a pot of steel 0.3 mm thick about a winding 0.45 mm thick and a core 2 mm "
         "wide",
         example=0.0035,
@@ -98,7 +90,6 @@ MAGNET: Final = optional(
         "H_e",
         "m",
         "height of the electromagnet",
-        between(1e-6, 1.0),
         source="1 g at 8.4 g/cm3, between iron, 7.87, and copper, 8.96 (CRC Handbook)",
         example=0.0124,
         remark="diameter and height bound the mass",
@@ -108,21 +99,19 @@ MAGNET: Final = optional(
         "ε_P",
         "1",
         "largest deviation of the piecewise-linear pull from the exact pull, over hold_force",
-        FINE,
         1e-4,
         "a thousandth of the scatter of friction coefficients in handbooks",
     ),
 )
 """The electromagnet by what it does."""
 
-COIL: Final = optional(
+COIL: Final = inputs(
     "magnet",
     Quantity(
         "turns",
         "N",
         "1",
         "turns of the winding",
-        between(1.0, 1e6),
         source="assumed",
         example=250,
         remark="in place of hold_force, rise_time, fall_time, saturation; with pole_area, gap, "
@@ -133,7 +122,6 @@ COIL: Final = optional(
         "A",
         "m^2",
         "area of one of its two poles",
-        between(1e-10, 1.0),
         source="assumed: a core 2 mm wide",
         example=3e-6,
     ),
@@ -142,7 +130,6 @@ COIL: Final = optional(
         "g",
         "m",
         "gap between each pole and the steel: paint, roughness",
-        between(1e-9, 0.1),
         source="assumed: with the coil below it pulls with 1.08 N",
         example=5e-5,
     ),
@@ -151,7 +138,6 @@ COIL: Final = optional(
         "s",
         "m",
         "additional width of the gap under each pole while it is open",
-        between(0.0, 0.1),
         source="assumed: as much again as the gap",
         example=5e-5,
         remark="with closing_force; the gap stays closed unless both are given",
@@ -161,7 +147,6 @@ COIL: Final = optional(
         "F_c",
         "N",
         "pull above which the gap is closed, against suspension or pad",
-        between(1e-9, 1e4),
         source="assumed: twice the weight of 1 g",
         example=0.02,
         remark="with lift",
@@ -171,7 +156,6 @@ COIL: Final = optional(
         "d",
         "m",
         "diameter of the copper in its wire",
-        between(1e-7, 0.1),
         source="assumed: 250 turns fill 36 % of a winding 0.45 mm thick and 12 mm high",
         example=1e-4,
     ),
@@ -180,7 +164,6 @@ COIL: Final = optional(
         "l",
         "m",
         "mean length of a turn",
-        between(1e-5, 10.0),
         source="assumed: round a core 2 mm wide",
         example=0.0085,
     ),
@@ -189,7 +172,6 @@ COIL: Final = optional(
         "U",
         "V",
         "voltage across the coil while it is on",
-        between(1e-3, 1e5),
         source="assumed",
         example=1.0,
     ),
@@ -199,7 +181,6 @@ COIL: Final = optional(
         "V",
         "voltage across the coil over the time since it was switched on; each row holds until the "
         "next",
-        between(0.0, 1e5),
         source="assumed: full voltage until the pull is there, then half of it",
         remark="rows or a CSV of them, at most supply_voltage, which holds throughout unless given",
         rows_of="steps",
@@ -210,38 +191,31 @@ COIL: Final = optional(
         "R_d",
         "ohm",
         "additional resistance while the current decays",
-        between(0.0, 1e9),
         source="assumed: a diode alone, its voltage neglected",
         example=0.0,
-        absent=0.0,
     ),
     Quantity(
         "saturation_field",
         "B_s",
         "T",
         "field at which the iron saturates",
-        between(1e-3, 100.0),
         source="iron, 1.5-2.1 T (handbook tables); the lower middle",
         example=1.6,
-        absent=1.6,
     ),
     Quantity(
         "thermal_resistance",
         "R_th",
         "K/W",
         "temperature rise of the electromagnet per watt",
-        between(1e-4, 1e7),
         source="1.55 cm2 (a cylinder 3.5 mm wide, 12.4 mm high) in still air at 15 W/(m2 K), of "
         "2-25 (Incropera, table 1.1)",
         example=430.0,
-        absent=430.0,
     ),
     Quantity(
         "heat_capacity",
         "C_th",
         "J/K",
         "heat capacity of the electromagnet",
-        between(1e-7, 1e7),
         source="1 g of copper, 0.385, and iron, 0.449 J/(g K) (CRC Handbook)",
         example=0.42,
         remark="simulates the temperature, from 20 °C on, with which the resistance grows",
@@ -251,48 +225,54 @@ COIL: Final = optional(
         "ΔT",
         "K",
         "allowed temperature rise",
-        between(1e-2, 1000.0),
         source="assumed: from 25 °C to 45 °C, for a finger stays on it",
         example=20.0,
-        absent=20.0,
     ),
 )
 """The electromagnet by how it is made."""
 
 MADE: Final[tuple[Quantity, ...]] = (
     Quantity(
-        "coil.resistance", "R", "ohm", "resistance of the winding at 20 °C", between(1e-9, 1e15)
+        "coil.resistance",
+        "R",
+        "ohm",
+        "resistance of the winding at 20 °C",
+        bounds=between(1e-9, 1e15),
     ),
     Quantity(
-        "coil.inductance", "L", "H", "inductance of the coil on the plate", between(1e-15, 1e9)
+        "coil.inductance",
+        "L",
+        "H",
+        "inductance of the coil on the plate",
+        bounds=between(1e-15, 1e9),
     ),
-    Quantity("coil.current", "I", "A", "full current", between(1e-12, 1e12)),
+    Quantity("coil.current", "I", "A", "full current", bounds=between(1e-12, 1e12)),
     Quantity(
         "coil.field",
         "B",
         "T",
         "field in the gap at full current, without saturation",
-        between(1e-12, 1e12),
+        bounds=between(1e-12, 1e12),
     ),
-    Quantity("coil.power", "P_el", "W", "power while it is on", between(1e-15, 1e15)),
-    Quantity("coil.duty", "D_th", "1", "duty cycle at the allowed temperature rise", SHARE),
+    Quantity("coil.power", "P_el", "W", "power while it is on", bounds=between(1e-15, 1e15)),
+    Quantity("coil.duty", "D_th", "1", "duty cycle at the allowed temperature rise", bounds=SHARE),
     Quantity(
         "rise_constant",
         "τ_r",
         "s",
         "time constant of the rising current",
-        between(1e-9, 1e6),
         source="assumed: a third of rise_time",
         absent=0.001,
+        bounds=between(1e-9, 1e6),
     ),
     Quantity(
         "fall_constant",
         "τ_f",
         "s",
         "time constant of the falling current",
-        between(1e-9, 1e6),
         source="assumed: four fifths of fall_time",
         absent=0.004,
+        bounds=between(1e-9, 1e6),
     ),
 )
 """Quantities derived from the design of the magnet, with the time constants that replace its times.

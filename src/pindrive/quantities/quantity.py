@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, replace
-from math import degrees, floor, inf, isfinite, isnan, log10
+from math import degrees, floor, inf, isfinite, isnan, log10, nan
 from typing import Final
+
+from pindrive import _core
 
 Rows = tuple[tuple[float, float], ...]
 """A piecewise-linear function by its corners, SI: (speed, force) or (time, value)."""
@@ -31,7 +33,7 @@ displayed unchanged."""
 
 @dataclass(frozen=True, slots=True)
 class Bounds:
-    """An interval of allowed values, and single ones beside it.
+    """An interval of allowed values, and a single one beside it.
 
     An open infinite end leaves infinity out.
     """
@@ -40,7 +42,7 @@ class Bounds:
     upper: float = inf
     lower_closed: bool = False
     upper_closed: bool = False
-    also: tuple[float, ...] = ()
+    also: float | None = None
 
     def __contains__(self, value: float) -> bool:
         """Return True if `value` is allowed; NaN never is."""
@@ -48,22 +50,14 @@ class Bounds:
             self.lower < value < self.upper
             or (self.lower_closed and value == self.lower)
             or (self.upper_closed and value == self.upper)
-            or value in self.also
+            or value == self.also
         )
 
     def words(self, unit: str = "") -> str:
         """The values as they read in a sentence: "finite and greater than 0 kg"."""
-
-        def end(value: float) -> str:
-            return f"{brief(value)} {unit}".rstrip()
-
-        beside = "".join(f"{'infinite' if y == inf else end(y)} or " for y in self.also)
-        parts = [] if (self.upper == inf and self.upper_closed) or self.also else ["finite"]
-        if self.lower > -inf:
-            parts.append(f"{'at least' if self.lower_closed else 'greater than'} {end(self.lower)}")
-        if self.upper < inf:
-            parts.append(f"{'at most' if self.upper_closed else 'less than'} {end(self.upper)}")
-        return beside + " and ".join(parts)
+        also = nan if self.also is None else self.also
+        ends = (self.lower, self.upper, self.lower_closed, self.upper_closed, also)
+        return _core.bounds_words(ends, unit)
 
 
 FINITE: Final = Bounds()
@@ -79,10 +73,6 @@ def between(lower: float, upper: float) -> Bounds:
     return Bounds(lower, upper, lower_closed=True, upper_closed=True)
 
 
-FINE: Final = between(1e-8, 0.1)
-"""Tolerance of a curve through points: the number of points grows with one over its square root."""
-
-
 @dataclass(frozen=True, slots=True)
 class Quantity:
     """One quantity: its name, its unit, the values it may take, its meaning and its source."""
@@ -93,8 +83,6 @@ class Quantity:
     unit: str
     """SI unit, "1" when dimensionless, "" for a count or a truth value."""
     meaning: str
-    bounds: Bounds = FINITE
-    """Bounds of all possible values."""
     default: float | None = None
     """SI value in the file that `pindrive init` writes."""
     source: str = ""
@@ -118,6 +106,8 @@ class Quantity:
     follows: tuple[str, ...] = ()
     """Keys to which the value, or the values of rows, keep their ratio when the keys are varied:
     the first key, or the first over the second."""
+    bounds: Bounds = FINITE
+    """Bounds of all possible values; of an input those of the core."""
     limits: Bounds = FINITE_OR_NOT
     """Bounds of the computable values, far outside of any device; other values are rejected."""
     seen: Bounds | None = None
@@ -215,17 +205,30 @@ class Quantity:
         return f"{self.digits(value)} {self.display_unit}".rstrip()
 
 
-def in_table(section: str, *rows: Quantity) -> tuple[Quantity, ...]:
-    """Rows of one table of a device file."""
-    return tuple(replace(row, section=section) for row in rows)
+def _bounds(ends: tuple[float, float, bool, bool, float]) -> Bounds:
+    lower, upper, lower_closed, upper_closed, also = ends
+    return Bounds(lower, upper, lower_closed, upper_closed, None if isnan(also) else also)
 
 
-def optional(section: str, *rows: Quantity) -> tuple[Quantity, ...]:
-    """Return the quantities as optional ones, with their values in `pindrive init` as defaults."""
-    return tuple(
-        replace(row, absent=row.default) if row.absent is None else row
-        for row in in_table(section, *rows)
-    )
+_OF_CORE: Final[dict[str, tuple[Bounds, Bounds, float | None]]] = {
+    key: (_bounds(bounds), _bounds(computable), None if isnan(absent) else absent)
+    for key, _, bounds, computable, absent in _core.input_quantities()
+}
+"""Bounds, computable bounds and value without the key, of each input of the core."""
+
+
+def inputs(section: str, *rows: Quantity) -> tuple[Quantity, ...]:
+    """Return inputs with their bounds and the value that holds without them.
+
+    Args:
+        section: Table of a device file; empty where the names contain it.
+        rows: The inputs.
+    """
+    found = []
+    for row in rows:
+        bounds, limits, absent = _OF_CORE[f"{section}.{row.name}" if section else row.name]
+        found.append(replace(row, section=section, bounds=bounds, limits=limits, absent=absent))
+    return tuple(found)
 
 
 def heading(name: str, unit: str) -> str:

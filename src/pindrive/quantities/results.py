@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from pindrive.quantities.quantity import NON_NEGATIVE, PAPER, Quantity, between, optional
+from pindrive.quantities.quantity import NON_NEGATIVE, PAPER, Quantity, between, inputs
 
 _USE: Final[tuple[tuple[str, str, str, str], ...]] = (
     ("reversals", "n_{}", "", "zeros of the sliding velocity in the transient, {}"),
@@ -179,9 +179,9 @@ RATE: Final = Quantity(
     "f",
     "Hz",
     "sampling rate of a motion in a file",
-    between(1e-6, 1e12),
     source="assumed",
     absent=1000.0,
+    bounds=between(1e-6, 1e12),
 )
 """Sampling rate of time series in files."""
 
@@ -224,16 +224,14 @@ CHANNELS: Final[dict[str, Quantity]] = {
 
 GLEESON: Final = "Gleeson, Horschel & Provancher: direction of tangential motion of skin"
 HANDS: Final = "hand speed in finger studies, 20-100 mm/s (arXiv 2505.11162)"
-FELT: Final = between(1e-9, 1.0)
 
-CRITERIA: Final = optional(
+CRITERIA: Final = inputs(
     "criteria",
     Quantity(
         "felt",
         "d_1",
         "m",
         "smallest motion that is felt as a pulse",
-        FELT,
         45e-6,
         "9-45 µm at 20-150 Hz on glabrous skin, the upper end "
         "(Hämäläinen & Järvilehto 1981, Brain Res. 219:1)",
@@ -243,7 +241,6 @@ CRITERIA: Final = optional(
         "d_2",
         "m",
         "smallest skin motion with a perceived direction",
-        FELT,
         5e-5,
         f"{GLEESON}, from 0.05 mm",
     ),
@@ -252,7 +249,6 @@ CRITERIA: Final = optional(
         "d_3",
         "m",
         "smallest skin motion whose direction is recognised in more than 95 % of cases",
-        FELT,
         2e-4,
         f"{GLEESON}, 0.2 mm",
     ),
@@ -261,7 +257,6 @@ CRITERIA: Final = optional(
         "v_3",
         "m/s",
         "least mean speed of that motion",
-        between(1e-9, 1e3),
         2e-3,
         f"{GLEESON}, 2 mm/s",
     ),
@@ -270,7 +265,6 @@ CRITERIA: Final = optional(
         "h_e",
         "1",
         "least height of a false line over that of the line before",
-        between(1e-6, 1.0),
         0.5,
         "assumed",
     ),
@@ -335,34 +329,34 @@ LINE_COUNTS: Final[tuple[Quantity, ...]] = tuple(
 """Counts of the evaluation of a scan."""
 
 SPEED: Final[tuple[Quantity, ...]] = (
-    Quantity("speed.pitch", "p", "m", "distance between two lines", between(1e-6, 10.0)),
-    Quantity("speed.width", "w", "m", "width of the lines", between(1e-7, 10.0)),
+    Quantity("speed.pitch", "p", "m", "distance between two lines", bounds=between(1e-6, 10.0)),
+    Quantity("speed.width", "w", "m", "width of the lines", bounds=between(1e-7, 10.0)),
     Quantity(
         "speed.part",
         "r",
         "1",
         "required return of the pin between two lines, over its displacement",
-        between(1e-6, 1.0),
         source="assumed",
         absent=0.5,
+        bounds=between(1e-6, 1.0),
     ),
     Quantity(
         "speed.slowest",
         "v_min",
         "m/s",
         "slowest hand tried",
-        between(1e-4, 100.0),
         source=f"a fourth of the slowest of {HANDS}",
         absent=0.005,
+        bounds=between(1e-4, 100.0),
     ),
     Quantity(
         "speed.fastest",
         "v_max",
         "m/s",
         "fastest hand tried",
-        between(1e-4, 100.0),
         source=f"ten times the fastest of {HANDS}",
         absent=1.0,
+        bounds=between(1e-4, 100.0),
     ),
     Quantity("speed.distinct", "v_d", "m/s", "largest hand speed at which the lines are distinct"),
     Quantity(
@@ -379,14 +373,18 @@ JUDGE: Final = LINE + LINE_COUNTS + SPEED
 
 DESIGNED: Final[tuple[Quantity, ...]] = (
     Quantity(
-        "design.price", "P", "1", "total price of the catalogue parts of a design", NON_NEGATIVE
+        "design.price",
+        "P",
+        "1",
+        "total price of the catalogue parts of a design",
+        bounds=NON_NEGATIVE,
     ),
     Quantity(
         "design.yield",
         "Y",
         "1",
         "part of the devices within tolerances that meets all constraints",
-        between(0.0, 1.0),
+        bounds=between(0.0, 1.0),
     ),
     Quantity(
         "design.distinct_speed",

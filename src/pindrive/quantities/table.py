@@ -1,7 +1,7 @@
 """The table of quantities: every number that goes in or comes out, named, bounded and sourced once.
 
 Command-line flags, device files, error messages, table headings and file attributes read it.
-Only the standard library is imported, so that a command starts fast.
+Only the standard library and the core are imported, so that a command starts fast.
 """
 
 from __future__ import annotations

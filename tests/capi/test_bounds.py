@@ -1,0 +1,90 @@
+"""One table of bounds: Python and C refuse the same values of an input, in the same words."""
+
+from __future__ import annotations
+
+import re
+import sys
+from ctypes import byref, c_double, c_void_p
+from math import inf, nan, nextafter
+from pathlib import Path
+
+import pytest
+
+from c_interface import Interface
+from pindrive import _core
+from pindrive.quantities.table import QUANTITIES, check
+
+pytestmark = [
+    pytest.mark.timeout(1800),
+    pytest.mark.skipif(
+        sys.platform == "win32", reason="where the library lies is tested on the others"
+    ),
+]
+
+ALONE = {
+    **{"drive.mass": 0.01, "drive.stiffness": 100.0, "plate.kinetic": 0.02},
+    **{"finger.kinetic": 0.005, "magnet.residual": 0.0},
+}
+"""A device whose other numbers are good."""
+COIL = {
+    **{"magnet.turns": 250.0, "magnet.pole_area": 3e-6, "magnet.gap": 1e-4},
+    **{"magnet.wire_diameter": 1e-4, "magnet.turn_length": 0.01, "magnet.supply_voltage": 5.0},
+}
+TABLES = ("drive", "plate", "finger", "magnet", "control")
+NOT_IN_C = {
+    *("plate.curve", "plate.coefficient_curve", "finger.curve", "finger.coefficient_curve"),
+    *("magnet.voltage", "magnet.outer_diameter", "magnet.height", "magnet.temperature_rise"),
+}
+"""Rows, and what the motion does not depend on."""
+NAMES = {quantity.key: name for name, quantity in QUANTITIES.items()}
+
+
+def spoiled(key: str) -> list[float]:
+    """Values beyond the bounds of a key, some of them by the last bit."""
+    quantity = QUANTITIES[NAMES[key]]
+    least = max(quantity.bounds.lower, quantity.limits.lower)
+    most = min(quantity.bounds.upper, quantity.limits.upper)
+    given = [nextafter(least, -inf), nextafter(most, inf), -1.0, 0.0, 1e300, inf, -inf, nan]
+    return [
+        value for value in given if value not in quantity.bounds or value not in quantity.limits
+    ]
+
+
+def refusal(key: str, value: float) -> str:
+    with pytest.raises(ValueError, match="must be") as found:
+        check(NAMES[key], value)
+    return required(str(found.value))
+
+
+def required(message: str) -> str:
+    """The values that a message allows."""
+    found = re.search(r" must be (.*), got ", message)
+    assert found, message
+    return found[1]
+
+
+@pytest.mark.parametrize("table", TABLES)
+def test_python_and_c_refuse_the_same_values_in_the_same_words(table: str, c_library: Path) -> None:
+    c = Interface(c_library)
+    c.library.pindrive_device_new.restype = c_void_p
+    count = 0
+    for key, *_ in _core.input_quantities():
+        if not key.startswith(f"{table}.") or key in NOT_IN_C:
+            continue
+        for value in spoiled(key):
+            device, scan = c_void_p(c.library.pindrive_device_new()), c_void_p()
+            other = COIL if key in COIL or "field" in key or "therm" in key else {}
+            for name, number in (ALONE | other | {key: value}).items():
+                c("device_set", device, name.encode(), c_double(number))
+            if "lift" in key or "closing" in key:
+                c("device_set", device, b"magnet.lift", c_double(1e-4))
+                c("device_set", device, key.encode(), c_double(value))
+            numbers = map(c_double, (0.0, 0.0, 0.0, 0.0, 0.0, 1.0))
+            error = c.library.pindrive_scan_new(device, *numbers, byref(scan))
+            message = c.library.pindrive_last_error().decode()
+            assert error == 3, f"{key} = {value!r}: {error}, {message}"
+            assert message.startswith(f"{key} must be "), f"{value!r}: {message}"
+            assert required(message) == refusal(key, value)
+            c.free(device=device)
+            count += 1
+    assert count > 15
