@@ -348,9 +348,9 @@ nb::class_<CoreMotion<T>> bind(nb::module_& m, const char* name, const char* mea
 
 }  // namespace
 
-void bind_batch(nb::module_& m);   // _batch.cpp
+void bind_batch(nb::module_& m);
 void bind_device(nb::module_& m);
-void bind_inputs(nb::module_& m);  // _device.cpp
+void bind_inputs(nb::module_& m);
 
 NB_MODULE(_core, m) {
   m.doc() = "The exact core. All quantities in SI units; nothing is checked here.";

@@ -346,7 +346,10 @@ def test_refusal_names_the_value(archive: Archive, capsys: pytest.CaptureFixture
             lambda: unit.slave.doStep(5.0, 1.0),
             "a step must begin where the last one ended, at 0 s, not at 5 s",
         ),
-        (lambda: bad.begin(drive__mass=-1.0), "drive.mass must be finite and greater than 0 kg, got -1 kg"),
+        (
+            lambda: bad.begin(drive__mass=-1.0),
+            "drive.mass must be finite and greater than 0 kg, got -1 kg",
+        ),
     ):
         with pytest.raises(FMICallException):
             call()
