@@ -1,4 +1,4 @@
-"""One table of bounds: Python and C refuse the same values of an input, in the same words."""
+"""One table of bounds: Python and C refuse alike, value by value and word by word."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ NAMES = {quantity.key: name for name, quantity in QUANTITIES.items()}
 
 
 def spoiled(key: str) -> list[float]:
-    """Values beyond the bounds of a key, some of them by the last bit."""
+    """Values beyond the bounds of a key, some by the last bit."""
     quantity = QUANTITIES[NAMES[key]]
     least = max(quantity.bounds.lower, quantity.limits.lower)
     most = min(quantity.bounds.upper, quantity.limits.upper)

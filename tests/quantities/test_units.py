@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+from decimal import Decimal
 from math import inf, isnan, pi
 
 import pytest
 
+from pindrive.quantities import units
 from pindrive.quantities.quantity import DISPLAY
+from pindrive.quantities.table import QUANTITIES
 from pindrive.quantities.units import UnitError, to_si
 
 KNOWN = {
@@ -71,3 +76,29 @@ def test_displayed_values_are_read_back() -> None:
     """A displayed value in its unit is read back as the SI value."""
     for unit, (shown, scale) in DISPLAY.items():
         assert to_si(f"{scale!r} {shown}", unit, "1 x") == pytest.approx(1.0, rel=1e-14)
+
+
+def test_the_usual_units_are_those_of_the_registry() -> None:
+    """Factors of SI units and of their multiples, found without pint, are the registry's."""
+    registry = units._registry()
+    count = 0
+    for unit in {quantity.unit for quantity in QUANTITIES.values()} - {""}:
+        symbols = {unit, unit.removeprefix("k"), "percent", "", "dpi", "min"}
+        for written in {prefix + symbol for prefix in units._PREFIXES for symbol in symbols}:
+            usual = units._usual_factor(written, unit)
+            if usual is None:
+                continue
+            target = registry.parse_units("" if unit == "1" else unit)
+            expected = registry.convert(Decimal(1), registry.parse_units(written), target)
+            assert usual == Decimal(expected), (written, unit)
+            count += 1
+    assert count > 150
+
+
+def test_a_usual_unit_imports_no_pint() -> None:
+    code = (
+        "import sys; from pindrive.quantities.units import to_si\n"
+        "assert to_si('60 mm/s', 'm/s', '') == 0.06 and to_si('1 g', 'kg', '') == 1e-3\n"
+        "sys.exit('pint' in sys.modules)"
+    )
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -16,6 +16,7 @@ import warnings
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cache
+from importlib.util import find_spec
 from math import ceil
 from os import PathLike, fspath
 from pathlib import Path
@@ -26,7 +27,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pindrive import _core
-from pindrive.lazy import Image, ImageDraw, ImageFont, ImageOps, features, ft2font, matplotlib
+from pindrive.lazy import Image, ImageDraw, ImageFont, ImageOps, features, ft2font
 from pindrive.quantities import budgets
 from pindrive.quantities.refusal import check_whole, quoted, refusal
 from pindrive.quantities.table import check, default
@@ -321,7 +322,9 @@ PLAIN_SCRIPTS: Final = (
 @cache
 def default_font() -> str:
     """DejaVu Sans, which comes with Matplotlib: Latin, Greek, Cyrillic, Arabic, Hebrew and more."""
-    return str(Path(matplotlib.get_data_path(), "fonts", "ttf", "DejaVuSans.ttf"))
+    found = find_spec("matplotlib")  # not imported: a page needs no more of it
+    assert found is not None and found.origin is not None
+    return str(Path(found.origin).parent / "mpl-data" / "fonts" / "ttf" / "DejaVuSans.ttf")
 
 
 def draw(
@@ -353,7 +356,10 @@ def draw(
         measured = ImageFont.truetype(file, MEASURED, layout_engine=engine)
     except OSError as error:
         raise ValueError(f"{file}: is not a font that can be read: {error}") from None
-    _check_known("".join(lines), file)
+    drawn_text = "".join(lines)
+    # DejaVu Sans has all of ASCII; the reader of other fonts takes long to import.
+    if font is not None or not (drawn_text.isascii() and drawn_text.isprintable()):
+        _check_known(drawn_text, file)
     capital = -measured.getbbox("H", anchor="ls")[1]
     if not capital > 0:
         raise ValueError(f"{file}: its capital H has no height")

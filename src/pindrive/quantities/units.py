@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from decimal import Decimal
 from functools import cache
+from typing import Final
 
 from pindrive.lazy import pint
 from pindrive.quantities.refusal import quoted
@@ -42,6 +43,13 @@ henry = ohm * second = H
 tesla = volt * second / meter ** 2 = T
 kelvin = [temperature] = K
 """
+
+_PREFIXES: Final = {
+    **{"": Decimal(1), "k": Decimal(1000), "c": Decimal("0.01"), "m": Decimal("0.001")},
+    **dict.fromkeys(("u", "\u00b5", "\u03bc"), Decimal("1e-6")),
+    "n": Decimal("1e-9"),
+}
+_GRAM: Final = Decimal("0.001")
 
 _NUMBER_AND_UNIT = re.compile(
     r"\s*(?P<number>[+-]?(?:nan|inf|(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?))(?P<unit>.*)",
@@ -105,6 +113,8 @@ def expected(unit: str, written: str, otherwise: str = "") -> str:
 @cache
 def _factor(written: str, unit: str) -> Decimal:
     """Return the number of units `unit` in one `written`; LookupError for different dimensions."""
+    if (usual := _usual_factor(written, unit)) is not None:
+        return usual
     registry = _registry()
     try:
         source = registry.parse_units(written)
@@ -112,6 +122,21 @@ def _factor(written: str, unit: str) -> Decimal:
         return Decimal(registry.convert(Decimal(1), source, target))
     except Exception:  # pint lets through whatever goes wrong in the parts of its parser
         raise LookupError(written) from None
+
+
+def _usual_factor(written: str, unit: str) -> Decimal | None:
+    """The factor of an SI unit or of its multiple by a prefix; None for other units.
+
+    Most files need no other unit; pint takes longer to import than they take to read.
+    """
+    if unit == "1":
+        return {"": Decimal(1), "percent": Decimal("0.01")}.get(written)
+    mass = unit.startswith("kg")
+    symbol = unit[1:] if mass else unit
+    prefix = written.removesuffix(symbol)
+    if prefix == written or prefix not in _PREFIXES or (prefix and re.match(r"1|\w+\^", unit)):
+        return None
+    return _PREFIXES[prefix] * (_GRAM if mass else 1)
 
 
 @cache
