@@ -65,6 +65,7 @@ pindrive_error Instance::derivative(std::size_t unknown, const unsigned* knowns,
     const Variable* const known = variable(knowns[i]);
     if (!known) return PINDRIVE_BAD_VALUE;
     if (known->kind == Variable::output || known->kind == Variable::command ||
+        known->kind == Variable::luminance ||
         (known->kind == Variable::parameter && values_.initialised))
       return fail(PINDRIVE_BAD_VALUE,
                   "a derivative is had along inputs and, before the initialisation ends, "

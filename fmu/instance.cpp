@@ -22,8 +22,14 @@ using pindrive_c::fail;
 /// Makes the magnet of the parameters, without a current.
 pindrive_error make_magnet(const Given& given, double time, Magnet& magnet) {
   magnet = {};
+  auto controller = std::make_unique<pindrive::device::Controller>();
   const pindrive_error error = given.parameters().read(magnet.electromagnet);
   if (error || !magnet.electromagnet) return error;
+  if (given.has_luminance()) {
+    if (const pindrive_error bad = given.parameters().read(*controller)) return bad;
+    magnet.control.sample = controller->sample_from(time);
+    magnet.controller = std::move(controller);
+  }
   magnet.coil = std::make_unique<pindrive::device::Coil>(*magnet.electromagnet, time);
   magnet.normal_force = given.parameters().plate_normal_force().value;
   return PINDRIVE_OK;
@@ -35,6 +41,23 @@ pindrive_error pulled(pindrive_stepper* stepper, const Magnet& magnet, double ti
 }
 
 }  // namespace
+
+void Magnet::pass(double until) {
+  while (next_sample() <= until) {
+    const bool on = controller->decides(control.decision, control.luminance);
+    if (on != control.decision) control.pending.push_back(control.sample + controller->latency);
+    control.decision = on;
+    control.sample = controller->sample_after(control.sample);
+  }
+  for (double time = next(); time <= until; time = next()) {
+    if (time == control.due()) {
+      coil->command(!coil->state().command, time);
+      control.pending.erase(control.pending.begin());
+    } else {
+      coil->pass(time);
+    }
+  }
+}
 
 pindrive_error Instance::begin(const char* folder, const char* token) {
   constexpr const char file[] = "/drive.txt";
@@ -87,11 +110,13 @@ pindrive_error Instance::make(Stepper& stepper, Magnet& magnet) const {
       error = pindrive_stepper_set(made, input.name, value_of_input(place, values), rate);
     place += 2;
   }
-  for (std::size_t i = 0; i < variables_.size() && !error; ++i)
+  for (std::size_t i = 0; i < variables_.size() && !error; ++i) {
+    if (variables_[i].kind == Variable::luminance) magnet.control.luminance = values[i];
     if (variables_[i].kind == Variable::command && values[i] != 0) {
       magnet.coil->command(true, values_.begin);
       error = pulled(made, magnet, values_.begin);
     }
+  }
   if (error) stepper.reset();
   return error;
 }
@@ -144,8 +169,8 @@ pindrive_error Instance::next_event(double& time) {
   if (error) return error;
   time = now.next_event;
   if (!magnet_.present()) return PINDRIVE_OK;
-  if (magnet_.coil->next() > now.time) {
-    time = std::min(time, magnet_.coil->next());
+  if (magnet_.next() > now.time) {
+    time = std::min(time, magnet_.next());
   } else {  // a line of the pull ends now: its next one is not the stepper's yet
     pindrive::device::Coil ahead = *magnet_.coil;
     ahead.pass(now.time);
@@ -161,6 +186,10 @@ pindrive_error Instance::number(std::size_t reference, double& value) {
   if (asked->kind == Variable::parameter ||
       (asked->kind == Variable::input && !values_.initialised)) {
     value = values_.start[reference - 1];
+    return PINDRIVE_OK;
+  }
+  if (asked->kind == Variable::luminance) {
+    value = values_.initialised ? magnet_.control.luminance : values_.start[reference - 1];
     return PINDRIVE_OK;
   }
   pindrive_instant now;
@@ -229,6 +258,12 @@ pindrive_error Instance::set(std::size_t reference, double value) {
   if (error) return error;
   if (given->kind == Variable::command)
     return fail(PINDRIVE_BAD_VALUE, "%s is a Boolean", given->name);
+  if (given->kind == Variable::luminance) {
+    error = pindrive_c::check(given->name, value, value >= 0 && value <= 1, "from 0 to 1");
+    if (error) return error;
+    magnet_.control.luminance = value;
+    if (values_.initialised) return PINDRIVE_OK;
+  }
   if (!values_.initialised) {
     values_.start[reference - 1] = value;
     stepper_.reset();
@@ -285,11 +320,14 @@ pindrive_error Instance::step(double from, double size, bool may_end_early, bool
                 size);
   const double until = std::max(from + size, at.time);
   do {  // an event due at the end of the step waits for the next step: a command may come first
-    if (magnet_.present() && magnet_.coil->next() <= at.time) {
-      magnet_.coil->pass(at.time);
-      error = pulled(stepper_.get(), magnet_, at.time);
+    double next = until;
+    if (magnet_.present()) {
+      if (std::min(magnet_.next(), magnet_.next_sample()) <= at.time) {
+        magnet_.pass(at.time);
+        error = pulled(stepper_.get(), magnet_, at.time);
+      }
+      next = std::min({until, magnet_.next(), magnet_.next_sample()});
     }
-    const double next = magnet_.present() ? std::min(until, magnet_.coil->next()) : until;
     if (!error)
       error = pindrive_stepper_step(stepper_.get(), next, may_end_early, nullptr, nullptr);
     if (!error) error = instant(at);
@@ -303,15 +341,6 @@ pindrive_error Instance::step(double from, double size, bool may_end_early, bool
 
 namespace {
 
-/// A state of a coil as numbers.
-constexpr std::size_t coil_numbers = 8;
-std::array<double, coil_numbers> numbers_of(const pindrive::device::CoilState& s) {
-  return {s.since, s.flux,      s.pull,           s.warming,
-          s.level, s.commanded, s.on ? 1.0 : 0.0, s.command ? 1.0 : 0.0};
-}
-pindrive::device::CoilState coil_of(const std::array<double, coil_numbers>& n) {
-  return {n[0], n[1], n[2], n[3], n[4], n[5], n[6] != 0, n[7] != 0};
-}
 bool possible(const pindrive::device::CoilState& s) {
   const auto part = [](double number) { return number >= 0 && number <= 1; };
   return part(s.flux) && part(s.level) && s.warming >= 0 && std::isfinite(s.since) &&
@@ -333,6 +362,7 @@ pindrive_error Instance::keep(std::unique_ptr<State>& state) const {
   auto kept = std::make_unique<State>();
   kept->values = values_;
   if (magnet_.present()) kept->coil = magnet_.coil->state();
+  kept->control = magnet_.control;
   const pindrive_error error = copy(stepper_, kept->stepper);
   if (!error) state = std::move(kept);
   return error;
@@ -355,64 +385,72 @@ pindrive_error Instance::go_back(const State& state) {
     if (stepper && !error) magnet.coil->pass_rows(now.time);
   }
   if (error) return error;
+  magnet.control = state.control;
   values_ = state.values;
   magnet_ = std::move(magnet);
   stepper_ = std::move(stepper);
   return PINDRIVE_OK;
 }
 
-/// The numbers as they stand in memory, whether it is initialised, the magnet, the stepper if there is one, and a
-/// checksum of all.
-pindrive_error Instance::write(const State& state, std::vector<unsigned char>& bytes) {
-  bytes.clear();
-  const auto add = [&](const auto& number) {
-    const auto* const from = reinterpret_cast<const unsigned char*>(&number);
-    bytes.insert(bytes.end(), from, from + sizeof number);
-  };
-  for (const double number : state.values.start) add(number);
-  add(state.values.begin);
-  add(static_cast<unsigned char>(state.values.initialised));
-  for (const double number : numbers_of(state.coil)) add(number);
-  pindrive_error error = PINDRIVE_OK;
-  if (state.stepper) {
-    const std::size_t before = bytes.size(), size = pindrive_stepper_size(state.stepper.get());
-    bytes.resize(before + size);
-    error = pindrive_stepper_write(state.stepper.get(), &bytes[before], size);
+namespace {
+
+constexpr std::uint32_t magic = 0x70646676;  // "pdfv"
+
+/// State in the order of its bytes, with the bytes of the stepper.
+struct Bytes {
+  Values values;
+  pindrive::device::CoilState coil;
+  ControlState control;
+  std::vector<unsigned char> stepper;
+
+  template <class Exchanged>
+  void operator()(Exchanged& bytes) {
+    const auto item = [&](auto& each) { bytes.item(each); };
+    pindrive_c::exchange_list(bytes, values.start, sizeof(double), item);
+    item(values.begin);
+    item(values.initialised);
+    pindrive_c::exchange(bytes, coil);
+    item(control.luminance);
+    item(control.decision);
+    item(control.sample);
+    pindrive_c::exchange_list(bytes, control.pending, sizeof(double), item);
+    pindrive_c::exchange_list(bytes, stepper, 1, item);
   }
-  add(pindrive_c::checksum(bytes.data(), bytes.size()));
-  return error;
+};
+
+}  // namespace
+
+pindrive_error Instance::write(const State& state, std::vector<unsigned char>& bytes) {
+  Bytes kept{state.values, state.coil, state.control, {}};
+  if (state.stepper) {
+    kept.stepper.resize(pindrive_stepper_size(state.stepper.get()));
+    const pindrive_error error =
+        pindrive_stepper_write(state.stepper.get(), kept.stepper.data(), kept.stepper.size());
+    if (error) return error;
+  }
+  bytes.resize(pindrive_c::framed_size(kept));
+  pindrive_c::write_framed(magic, bytes.data(), bytes.size(), kept);
+  return PINDRIVE_OK;
 }
 
 pindrive_error Instance::read(const unsigned char* bytes, std::size_t size,
                               std::unique_ptr<State>& state) const {
-  const std::size_t before = variables_.size() * sizeof(double) + sizeof(double) + 1;
-  const std::size_t numbers = before + coil_numbers * sizeof(double);
-  const auto refused = [&] {
+  Bytes kept{};
+  const bool whole = pindrive_c::read_framed(magic, bytes, size, kept);
+  if (!whole || kept.values.start.size() != variables_.size() ||
+      (kept.stepper.empty() && kept.values.initialised))
     return fail(PINDRIVE_BAD_VALUE, "the bytes must be those of a state of this unit, not %zu",
                 size);
-  };
-  std::uint64_t said = 0;
-  if (size < numbers + sizeof said) return refused();
-  size -= sizeof said;
-  std::memcpy(&said, bytes + size, sizeof said);
-  if (said != pindrive_c::checksum(bytes, size)) return refused();
   auto found = std::make_unique<State>();
-  Values& values = found->values;
-  values.start.resize(variables_.size());
-  std::memcpy(values.start.data(), bytes, variables_.size() * sizeof(double));
-  std::memcpy(&values.begin, bytes + variables_.size() * sizeof(double), sizeof(double));
-  values.initialised = bytes[before - 1] != 0;
-  std::array<double, coil_numbers> coil;
-  std::memcpy(coil.data(), bytes + before, sizeof coil);
-  found->coil = coil_of(coil);
-  if (size > numbers) {
+  found->values = std::move(kept.values);
+  found->coil = kept.coil;
+  found->control = std::move(kept.control);
+  if (!kept.stepper.empty()) {
     pindrive_stepper* stepper = nullptr;
     if (const pindrive_error error =
-            pindrive_stepper_read(bytes + numbers, size - numbers, &stepper))
+            pindrive_stepper_read(kept.stepper.data(), kept.stepper.size(), &stepper))
       return error;
     found->stepper.reset(stepper);
-  } else if (values.initialised) {
-    return refused();
   }
   state = std::move(found);
   return PINDRIVE_OK;

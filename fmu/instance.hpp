@@ -2,12 +2,16 @@
 /// What FMI 2 and FMI 3 have in common, over the C interface.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <vector>
 
 #include "pindrive.h"
 #include "pindrive/device/coil.hpp"
+#include "pindrive/device/controller.hpp"
+#include "pindrive/device/electromagnet.hpp"
 #include "variables.hpp"
 
 namespace pindrive_fmu {
@@ -17,13 +21,35 @@ struct FreeStepper {
 };
 using Stepper = std::unique_ptr<pindrive_stepper, FreeStepper>;
 
-/// Magnet of a unit and its coil; without one, neither.
+/// State of a control block that samples an input.
+struct ControlState {
+  double luminance{1};
+  bool decision{false};         ///< after the last sample
+  double sample{0};             ///< time of the next sample, s
+  std::vector<double> pending;  ///< times of the switchings that are due, s
+
+  double due() const {
+    return pending.empty() ? std::numeric_limits<double>::infinity() : pending.front();
+  }
+};
+
+/// Magnet of a unit, its coil, and the control block of a unit with one; without a magnet, none.
 struct Magnet {
   std::unique_ptr<const pindrive::device::Electromagnet> electromagnet;
   std::unique_ptr<pindrive::device::Coil> coil;
+  std::unique_ptr<const pindrive::device::Controller> controller;
+  ControlState control;
   double normal_force{0};  ///< of the plate without a pull, N
 
   bool present() const { return coil != nullptr; }
+  /// Time of the next change by itself, or of the next switching, s.
+  double next() const { return std::min(coil->next(), control.due()); }
+  /// Time of the next sample, s.
+  double next_sample() const {
+    return controller ? control.sample : std::numeric_limits<double>::infinity();
+  }
+  /// Goes beyond all samples, switchings and changes until a time, s; a switching comes before a change.
+  void pass(double until);
   double load(double time) const { return 1 + coil->pull(time) / normal_force; }
   double load_rate() const { return coil->rate() / normal_force; }
 };
@@ -65,6 +91,7 @@ class Instance {
   struct State {
     Values values;
     pindrive::device::CoilState coil;
+    ControlState control;
     Stepper stepper;
   };
   pindrive_error keep(std::unique_ptr<State>& state) const;

@@ -1,5 +1,6 @@
 #include "parameters.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 namespace pindrive_fmu {
@@ -8,6 +9,11 @@ Given::Given(const std::vector<Variable>& variables, const double* values, const
     : variables_(variables), values_(values), seeds_(seeds) {
   for (std::size_t i = 0; i < variables.size(); ++i)
     if (variables[i].kind == Variable::parameter) parameters_.add(variables[i].name, at(i));
+}
+
+bool Given::has_luminance() const {
+  return std::any_of(variables_.begin(), variables_.end(),
+                     [](const Variable& variable) { return variable.kind == Variable::luminance; });
 }
 
 pindrive_error Given::fill(pindrive_drive* drive, pindrive_release* release,

@@ -28,6 +28,7 @@ class Given {
   Given(const std::vector<Variable>& variables, const double* values, const double* seeds);
 
   const pindrive_c::DeviceParameters& parameters() const { return parameters_; }
+  bool has_luminance() const;  ///< the unit has a control block, which samples it
   /// Sets the numbers of a drive and a release, or, by `part`, their derivatives.
   pindrive_error fill(pindrive_drive* drive, pindrive_release* release,
                       double Number::* part) const;

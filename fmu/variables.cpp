@@ -92,10 +92,11 @@ pindrive_error read_variables(const char* path, const char* token, std::vector<c
     return fail(PINDRIVE_BAD_VALUE, "the token must be %.60s, not %.60s", own, token);
   for (const char* kind = next_word(text); *kind; kind = next_word(text)) {
     Variable variable{};
-    variable.kind = std::strcmp(kind, "parameter") == 0 ? Variable::parameter
-                    : std::strcmp(kind, "input") == 0   ? Variable::input
-                    : std::strcmp(kind, "command") == 0 ? Variable::command
-                                                        : Variable::output;
+    variable.kind = std::strcmp(kind, "parameter") == 0   ? Variable::parameter
+                    : std::strcmp(kind, "input") == 0     ? Variable::input
+                    : std::strcmp(kind, "command") == 0   ? Variable::command
+                    : std::strcmp(kind, "luminance") == 0 ? Variable::luminance
+                                                          : Variable::output;
     variable.name = next_word(text);
     variable.place = place_of(variable.kind, variable.name);
     const char* const bits = next_word(text);

@@ -36,8 +36,9 @@ struct Variable {
     parameter,
     input,
     command,
+    luminance,
     output
-  } kind;  ///< a command is a Boolean input
+  } kind;  ///< a command is a Boolean input; luminance, an input without a rate, is in its place
   const char* name;
   double start;
   int place;  ///< among the inputs, each followed by its rate, or among the outputs; −1: of another kind

@@ -100,9 +100,11 @@ class Unit:
         return float(found[0])
 
 
-def unpacked(device: DeviceFile, path: Path, version: int) -> tuple[Path, Any]:
+def unpacked(
+    device: DeviceFile, path: Path, version: int, *, control: bool = False
+) -> tuple[Path, Any]:
     """The folder and the description of the FMU of a device, written to `path` and unpacked."""
-    write_fmu(device, path, version)
+    write_fmu(device, path, version, control=control)
     folder = path.with_suffix("")
     with ZipFile(path) as archive:
         archive.extractall(folder)

@@ -16,7 +16,7 @@ import mutants
 from mutants import Mutant, Runner
 
 UNITS = "tests/quantities/test_units.py::test_a_unit_is_what_it_is_defined_as"
-PERCENT = Mutant("percent", "quantities/units.py", "percent = 0.01", "percent = 1", (UNITS,))
+POUND = Mutant("pound", "quantities/units.py", "pound = 453.59237", "pound = 500", (UNITS,))
 
 
 @pytest.fixture(scope="module")
@@ -35,8 +35,8 @@ def test_every_text_is_once_in_its_file() -> None:
 
 
 def test_a_mutant_that_is_none_is_an_error() -> None:
-    gone = replace(PERCENT, text="percent = 0.02")
-    nowhere = replace(PERCENT, name="other", tests=("tests/test_none.py", UNITS + "_not"))
+    gone = replace(POUND, text="percent = 0.02")
+    nowhere = replace(POUND, name="other", tests=("tests/test_none.py", UNITS + "_not"))
     assert mutants.problems([gone, nowhere]) == [
         "percent: its text is 0 times in quantities/units.py, not once",
         "other: there is no tests/test_none.py",
@@ -46,20 +46,20 @@ def test_a_mutant_that_is_none_is_an_error() -> None:
 
 def test_mutants_fail_and_the_original_passes(runner: Runner) -> None:
     assert runner.control([UNITS]) == ""
-    verdict, said = runner.verdict(PERCENT)
+    verdict, said = runner.verdict(POUND)
     assert (verdict, "FAILED" in said) == ("dies", True)
-    harmless = replace(PERCENT, text="to the last bit.", instead="to the very last bit.")
+    harmless = replace(POUND, text="to the last bit.", instead="to the very last bit.")
     assert runner.verdict(harmless)[0] == "lives"
-    broken = replace(PERCENT, text="def to_si(", instead="def to si(")
+    broken = replace(POUND, text="def to_si(", instead="def to si(")
     assert runner.verdict(broken)[0] == "error"
-    unknown = replace(PERCENT, tests=(UNITS + "_not",))
+    unknown = replace(POUND, tests=(UNITS + "_not",))
     assert runner.verdict(unknown)[0] == "error"
-    source = Path(mutants.SOURCE, PERCENT.file).read_text("utf-8")
-    assert PERCENT.text in source, "the source is left alone"
+    source = Path(mutants.SOURCE, POUND.file).read_text("utf-8")
+    assert POUND.text in source, "the source is left alone"
 
 
 def test_files_take_turns() -> None:
-    found = [replace(PERCENT, name=name, file=name[0]) for name in ("a1", "a2", "a3", "b1", "c1")]
+    found = [replace(POUND, name=name, file=name[0]) for name in ("a1", "a2", "a3", "b1", "c1")]
     names = [mutant.name for mutant in mutants.spread(found)]
     assert names == ["a1", "b1", "c1", "a2", "a3"]
 

@@ -32,6 +32,12 @@ int main() {
   expect(controller.decides(false, 0.39) && controller.decides(true, 0.45), "dark switches on");
   expect(!controller.decides(false, 0.45) && !controller.decides(true, 0.61), "light off");
   expect(controller.decides(true, 0.6) && !controller.decides(false, 0.4), "the band keeps it");
+  // One after another they are those of each_sample, to the bit.
+  const device::Controller odd{970, 0, 0.5, 0.2};
+  std::vector<double> one_by_one;
+  for (double at = odd.sample_from(0.37); at < 1.9; at = odd.sample_after(at))
+    one_by_one.push_back(at);
+  expect(one_by_one == samples(970, 0.37, 1.9), "samples follow one another");
   int calls = 0;
   controller.each_sample(0, 1, [&](double) { return ++calls < 3; });
   expect(calls == 3, "a visitor may end the samples");

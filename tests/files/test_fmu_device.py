@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -147,6 +148,60 @@ def test_commands_lead_to_what_a_scan_has(
         )
     print(f"{magnet}, FMI {version}: within {worst:.1e}, {astray} states gone back to")
     assert worst < 1e-12 and astray > 5
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_luminance_leads_to_what_a_scan_has(
+    version: int, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    """The unit's control block samples its input, which holds between steps of any length."""
+    folder = tmp_path_factory.getbasetemp() / "times"
+    folder.mkdir(exist_ok=True)
+    device, scanned_page = scanned("times", folder)
+    (pin,) = scanned_page.pins
+    hand = pin.release.mouse_velocity
+    assert isinstance(hand, Profile) and pin.begin == 0.0 and len(pin.commands.times) >= 4
+    archive = folder / f"control{version}.fmu"
+    unit = Unit(*unpacked(device, archive, version, control=True)).begin(mouse_velocity=0.0)
+    assert validate_fmu(str(archive)) == []
+    random = np.random.default_rng(4)
+    times, black = np.array(hand.times), dict(zip(pin.sample_times, pin.luminance, strict=True))
+    size = np.abs(pin.position(np.linspace(0.0, pin.end, 500))).max()
+    worst, astray = 0.0, 0
+    stops = np.unique([*times, *black, pin.end])
+    for begin, end in pairwise(stops):
+        i = np.searchsorted(times, begin, "right") - 1
+        rate = (hand.values[i + 1] - hand.values[i]) / (times[i + 1] - times[i])
+        unit.set(mouse_velocity=hand(begin), mouse_velocity_rate=rate)
+        if begin in black:
+            unit.set(luminance=black[begin])
+        unit.step(random.uniform(begin, end))
+        if random.integers(50) == 0:
+            with unit.astray(random, "position", "velocity", "magnet_pull", "luminance"):
+                unit.set(luminance=random.uniform(0.0, 1.0))
+                unit.step(unit.time + 0.02)
+            astray += 1
+        unit.step(end)
+        (x,) = unit.get("position")
+        worst = max(worst, abs(x - pin.position(end)) / size)
+    print(f"luminance, FMI {version}: within {worst:.1e}, {astray} states gone back to")
+    assert worst < 1e-12 and astray > 5
+    assert size > 1e-4
+
+
+def test_luminance_is_checked(
+    tmp_path_factory: pytest.TempPathFactory, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path_factory.getbasetemp() / "times"
+    folder.mkdir(exist_ok=True)
+    device, _ = scanned("times", folder)
+    unit = Unit(*unpacked(device, folder / "checked.fmu", 3, control=True)).begin()
+    with pytest.raises(FMICallException):
+        unit.set(luminance=1.5)
+    assert "luminance must be from 0 to 1, not 1.5" in capsys.readouterr().out
+    alone = load_device(READER.parent / "stribeck-skin.toml")
+    with pytest.raises(ValueError, match="where a unit has the control block, got a drive"):
+        variables_of(alone, control=True)
 
 
 def test_steps_end_early_under_a_command(tmp_path: Path) -> None:

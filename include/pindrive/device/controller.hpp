@@ -18,6 +18,17 @@ struct Controller {
     return on && !(luminance > threshold + 0.5 * hysteresis);
   }
 
+  /// First sample at a time or later, s.
+  double sample_from(double time) const {
+    double k = std::ceil(time * sample_rate) - 1;
+    while (k / sample_rate < time) ++k;
+    return k / sample_rate;
+  }
+  /// Sample after a sample, s.
+  double sample_after(double sample) const {
+    return (std::round(sample * sample_rate) + 1) / sample_rate;
+  }
+
   /// Calls visit(time) for each sample in [begin, end), s, at multiples of the sampling interval, until
   /// visit returns false.
   template <class Visitor>

@@ -26,6 +26,7 @@ from pindrive.motion.profile import Profile
 from pindrive.motion.release import INPUTS
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import DISPLAY, Quantity
+from pindrive.quantities.refusal import refusal
 from pindrive.quantities.results import SERIES
 from pindrive.quantities.table import QUANTITIES
 
@@ -79,7 +80,7 @@ ELSEWHERE: Final = {
     "magnet.outer_diameter": "says whether the device can be built",
     "magnet.height": "says whether the device can be built",
     "magnet.temperature_rise": "limit of the warming: the motion does not depend on it",
-    "control": "the importer commands the magnet",
+    "control": "the importer commands the magnet, unless the unit has the control block",
     "array": "the unit is one pin of it",
     "scan": "the importer moves the plate",
     "criteria": "criterion of the evaluation: the motion does not depend on it",
@@ -87,6 +88,8 @@ ELSEWHERE: Final = {
 """The keys and tables of a device file that are no variables of its unit, and why."""
 COMMAND: Final = "magnet_on"
 """The input that commands the magnet of a whole device, in place of the plate's load."""
+LUMINANCE: Final = "luminance"
+"""The input of a unit with the control block, in place of the command."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,7 +98,7 @@ class FmuVariable:
 
     name: str
     kind: str
-    """"parameter", "input", "command" (a Boolean input) or "output"."""
+    """"parameter", "input", "command" (a Boolean input), "luminance" (an input) or "output"."""
     meaning: str
     unit: str
     start: float | None = None
@@ -113,23 +116,34 @@ class FmuVariable:
     @property
     def causality(self) -> str:
         """As FMI calls it."""
-        return "input" if self.kind == "command" else self.kind
+        return "input" if self.kind in ("command", "luminance") else self.kind
 
 
-def variables_of(device: DeviceFile) -> list[FmuVariable]:
+def variables_of(device: DeviceFile, control: bool = False) -> list[FmuVariable]:
     """The variables of a device's drive, in the order of their numbers, which begin with 1.
+
+    Args:
+        device: A device file.
+        control: True for a unit with the control block, which samples an input luminance.
+
+    Raises:
+        ValueError: The file of a unit with the control block describes no whole device.
 
     Parameters are the keys as the file gives them, or whose values hold where it does not; rows
     are parameters one by one. A file of the whole device has the magnet too, whose command is an
     input in place of the plate's load.
     """
+    if control and not device.whole:
+        required = "the file of a whole device, where a unit has the control block"
+        raise ValueError(refusal("device", required, "a drive"))
     magnet = _magnet_outputs(device) if device.whole else ()
-    return [*_parameters(device), *_inputs(device), *_outputs(magnet)]
+    return [*_parameters(device, control), *_inputs(device, control), *_outputs(magnet)]
 
 
-def _parameters(device: DeviceFile) -> Iterator[FmuVariable]:
+def _parameters(device: DeviceFile, control: bool) -> Iterator[FmuVariable]:
     values = device.values()
-    left_out = {*device.derived, *ELSEWHERE, *(f"motion.{name}" for name in inputs_of(device))}
+    elsewhere = {*ELSEWHERE} - ({"control"} if control else set())
+    left_out = {*device.derived, *elsewhere, *(f"motion.{name}" for name in inputs_of(device))}
     for contact in ("plate", "finger"):
         for kinetic, static, rows in (tuple(COEFFICIENTS), tuple(COEFFICIENTS.values())):
             if values[f"{contact}.{rows}"] is not None:  # the first row is the kinetic friction
@@ -141,7 +155,7 @@ def _parameters(device: DeviceFile) -> Iterator[FmuVariable]:
     if device.whole and device.whole.magnet().coil:
         left_out.update(f"magnet.{name}" for name in DIRECT)
     for key, value in values.items():
-        if value is None or key in left_out or key.partition(".")[0] in ELSEWHERE:
+        if value is None or key in left_out or key.partition(".")[0] in elsewhere:
             continue
         row = NUMERIC_KEYS[key]
         if not isinstance(value, tuple):
@@ -166,7 +180,7 @@ def inputs_of(device: DeviceFile) -> tuple[str, ...]:
     return tuple(name for name in INPUTS if not (device.whole and name == "plate_load"))
 
 
-def _inputs(device: DeviceFile) -> Iterator[FmuVariable]:
+def _inputs(device: DeviceFile, control: bool) -> Iterator[FmuVariable]:
     for name in inputs_of(device):
         row = QUANTITIES[name]
         given: float | Profile = getattr(device.release, name)
@@ -175,7 +189,10 @@ def _inputs(device: DeviceFile) -> Iterator[FmuVariable]:
         yield FmuVariable(name, "input", row.meaning, row.unit, value, limits.lower, limits.upper)
         meaning = f"rate at which {name} continues until it is set again"
         yield FmuVariable(f"{name}_rate", "input", meaning, _RATES[row.unit], 0.0)
-    if device.whole:
+    if control:
+        meaning = "luminance under the spot of the pin, which the control block samples"
+        yield FmuVariable(LUMINANCE, "luminance", meaning, "1", 1.0, 0.0, 1.0)
+    elif device.whole:
         meaning = "whether the magnet is commanded on, as by the control block"
         yield FmuVariable(COMMAND, "command", meaning, "", 0.0)
 
@@ -207,23 +224,25 @@ def _magnet_outputs(device: DeviceFile) -> Iterator[FmuVariable]:
 # ---- the archive ---------------------------------------------------------------------------------
 
 
-def write_fmu(device: DeviceFile, path: Path, version: int = 3) -> None:
+def write_fmu(device: DeviceFile, path: Path, version: int = 3, *, control: bool = False) -> None:
     """Write a device's drive as a functional mock-up unit for co-simulation.
 
     Args:
         device: A device file; of the whole device one pin with its magnet.
         path: The archive.
         version: Version of FMI, one of `VERSIONS`.
+        control: True for a unit with the control block of a whole device, whose input is luminance.
 
     Raises:
-        ValueError: Another version; this installation has no library for an FMU.
+        ValueError: Another version; this installation has no library for an FMU; a control block
+            of a file that describes no whole device.
     """
     if version not in VERSIONS:
         raise ValueError(f"version must be one of {', '.join(map(str, VERSIONS))}, got {version}")
     libraries = dict(_libraries(version))
     if not libraries:
         raise ValueError("fmu: this installation has no library for an FMU; install pindrive again")
-    variables = variables_of(device)
+    variables = variables_of(device, control)
     token, listed = _listed(variables)
     describe = _description_2 if version == 2 else _description_3
     files = {
