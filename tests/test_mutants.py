@@ -35,10 +35,10 @@ def test_every_text_is_once_in_its_file() -> None:
 
 
 def test_a_mutant_that_is_none_is_an_error() -> None:
-    gone = replace(POUND, text="percent = 0.02")
+    gone = replace(POUND, text="pound = 0.02")
     nowhere = replace(POUND, name="other", tests=("tests/test_none.py", UNITS + "_not"))
     assert mutants.problems([gone, nowhere]) == [
-        "percent: its text is 0 times in quantities/units.py, not once",
+        "pound: its text is 0 times in quantities/units.py, not once",
         "other: there is no tests/test_none.py",
         f"other: there is no {UNITS}_not",
     ]
