@@ -12,7 +12,17 @@ from numpy.typing import NDArray
 
 import pindrive as pd
 from command import refused, run
-from pindrive.device import Device, HandPath, HandRecording, Scene, read_csv, strokes
+from pindrive.device import (
+    Device,
+    HandPath,
+    HandRecording,
+    Page,
+    PinArray,
+    Reading,
+    Scene,
+    read_csv,
+    strokes,
+)
 from pindrive.device.recording import PEAK_LOSS
 
 Values = NDArray[np.float64]
@@ -129,6 +139,24 @@ def test_the_peak_that_is_lost_is_the_one_stated(lasts: float) -> None:
 
 
 # ---- what a recording is -------------------------------------------------------------------------
+
+
+def test_a_page_says_whether_its_path_is_smoothed(tmp_path: Path) -> None:
+    t = np.arange(0.0, 0.4, 1e-3)
+    counts = np.diff(np.round(39370.0 * 0.06 * t), prepend=0.0)
+    header = "time [s], dx [count], dy [count]"
+    file = write(tmp_path / "raw.csv", header, t, counts, 0.0 * counts)
+    reading, array = Reading(), PinArray([(0.0, 0.0)])
+    scene = reading.text("a", array)
+    peaks = {}
+    for smooth in (None, True, False):
+        page = Page(text="a", path=file, smooth=smooth)
+        page.check("{}")
+        peaks[smooth] = page.hand(reading, scene, array).peak_speed
+    assert peaks[None] == peaks[True] < 0.9 * peaks[False]
+    assert Page(text="a", path=file, smooth=False).options.endswith(f'--path "{file}" --no-smooth')
+    with pytest.raises(ValueError, match="--smooth must be left out without a recorded --path"):
+        Page(text="a", smooth=True).check("--{}")
 
 
 def test_only_recordings_in_coarse_steps_are_raw() -> None:

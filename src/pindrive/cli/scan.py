@@ -57,6 +57,14 @@ def scan(
         str,
         option(PAGE, "Path of the hand: strokes, or a CSV of time, x, y.", metavar="strokes|FILE"),
     ] = STROKES,
+    smooth: Annotated[
+        bool | None,
+        option(
+            PAGE,
+            "Smooth the recorded path or not; default as its data require.",
+            "--smooth/--no-smooth",
+        ),
+    ] = None,
     overrides: OverridesOption = None,
     output: Annotated[
         list[Path] | None,
@@ -100,6 +108,7 @@ def scan(
             else tuple(measures(grating, "pitch", "4 mm", "--grating")),
             font=font,
             path=None if path == STROKES else Path(path),
+            smooth=smooth,
         )
         page.check("--{}")
         targets = pictures(plot, partial(Evaluation.plot, pin=pin))

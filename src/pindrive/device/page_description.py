@@ -17,13 +17,14 @@ from pindrive.quantities.table import check
 from pindrive.quantities.value import concise
 
 
-def recorded(file: str | PathLike[str], reading: Reading) -> HandPath:
+def recorded(file: str | PathLike[str], reading: Reading, smooth: bool | None = None) -> HandPath:
     """A recorded path, with what a hand's reading says of recordings; errors as for `read_csv`."""
     return read_csv(
         file,
         acceleration=reading.hand_acceleration,
         resolution=reading.mouse_resolution,
         cutoff=reading.smoothing_cutoff,
+        smooth=smooth,
     )
 
 
@@ -38,6 +39,8 @@ class Page:
         grating: Distances between lines in each of several groups, m.
         font: A file for the text; None: DejaVu Sans.
         path: A CSV of the hand's path; None: strokes.
+        smooth: True to smooth this path, False to use its places as they are; None: as its data
+            require.
 
     Raises:
         ValueError: A pitch is not a number or out of its range.
@@ -48,6 +51,7 @@ class Page:
     grating: tuple[float, ...] | None
     font: Path | None
     path: Path | None
+    smooth: bool | None
 
     def __init__(
         self,
@@ -57,6 +61,7 @@ class Page:
         grating: Iterable[float | str] | None = None,
         font: str | PathLike[str] | None = None,
         path: str | PathLike[str] | None = None,
+        smooth: bool | None = None,
     ) -> None:
         """Validate the pitches, and keep paths."""
         if grating is not None:
@@ -65,11 +70,12 @@ class Page:
         else:
             object.__setattr__(self, "grating", None)
         object.__setattr__(self, "text", text)
+        object.__setattr__(self, "smooth", smooth)
         for name, file in (("image", image), ("font", font), ("path", path)):
             object.__setattr__(self, name, None if file is None else Path(file))
 
     def check(self, label: str, where: str = "") -> None:
-        """Reject zero or several contents, and a font without text.
+        """Reject zero or several contents, and a font or a smoothing with nothing to act on.
 
         Args:
             label: Notation of a part in messages, such as "--{}".
@@ -87,6 +93,10 @@ class Page:
         if self.font and self.text is None:
             font, text = label.format("font"), label.format("text")
             raise ValueError(f"{place}{font} {self.font}: goes with {text} alone")
+        if self.smooth is not None and self.path is None:
+            smooth, path = label.format("smooth"), label.format("path")
+            required = f"left out without a recorded {path}"
+            raise ValueError(f"{place}{refusal(smooth, required, str(self.smooth))}")
 
     @property
     def files(self) -> dict[str, Path]:
@@ -111,7 +121,11 @@ class Page:
         pitches = ", ".join(f"{1e3 * pitch:.12g} mm" for pitch in self.grating or ())
         text = None if self.text is None else self.text.replace("\n", "\\n")
         given = {"text": text, "grating": pitches or None} | self.files
-        return " ".join(f'--{name} "{part}"' for name, part in given.items() if part is not None)
+        flags = {None: "", True: " --smooth", False: " --no-smooth"}
+        return (
+            " ".join(f'--{name} "{part}"' for name, part in given.items() if part is not None)
+            + flags[self.smooth]
+        )
 
     def scene(self, reading: Reading, array: PinArray) -> Scene:
         """Return the scene of the page in a fitting size; errors as for `Reading`."""
@@ -125,4 +139,6 @@ class Page:
 
     def hand(self, reading: Reading, scene: Scene, array: PinArray) -> HandPath:
         """Return the hand's path over the page; errors as for `Reading.strokes` and `read_csv`."""
-        return reading.strokes(scene, array) if self.path is None else recorded(self.path, reading)
+        if self.path is None:
+            return reading.strokes(scene, array)
+        return recorded(self.path, reading, self.smooth)
