@@ -133,9 +133,9 @@ pindrive_error pindrive_c::check(const char* label, const pd::device::InputQuant
 
 namespace {
 
-/// The input of a key, found by the compiler.
+/// The input of a key, found by the compiler: a copy, so that a library without a device has no table.
 template <std::size_t N>
-constexpr const pd::device::InputQuantity& input(const char (&key)[N]) {
+constexpr pd::device::InputQuantity input(const char (&key)[N]) {
   return *pd::device::find_input(key);
 }
 
@@ -163,8 +163,8 @@ pindrive_error check_contact(const char* name, const pd::ContactNumbers& contact
     return of;
   };
   // The bounds of both contacts are alike.
-  static constexpr const auto& force = input("plate.kinetic");
-  static constexpr const auto& stiffness = input("finger.stiffness");
+  static constexpr auto force = input("plate.kinetic");
+  static constexpr auto stiffness = input("finger.stiffness");
   const double kinetic = contact.kinetic, at_rest = contact.static_limit;
   pindrive_error error = check(named("kinetic"), force, kinetic);
   if (!error) error = check(named("static"), force, at_rest);
@@ -186,15 +186,15 @@ pindrive_error check_contact(const char* name, const pd::ContactNumbers& contact
 }  // namespace
 
 pindrive_error pindrive_c::check(const pindrive_drive& drive, const pindrive_release& release) {
-  static constexpr const auto& mass = input("drive.mass");
-  static constexpr const auto& spring = input("drive.stiffness");
-  static constexpr const auto& damping = input("drive.damping");
-  static constexpr const auto& travel = input("drive.travel");
-  static constexpr const auto& stop_stiffness = input("drive.stop_stiffness");
-  static constexpr const auto& stop_damping = input("drive.stop_damping");
-  static constexpr const auto& displacement = input("motion.displacement");
-  static constexpr const auto& velocity = input("motion.velocity");
-  static constexpr const auto& stretch = input("motion.skin_stretch");
+  static constexpr auto mass = input("drive.mass");
+  static constexpr auto spring = input("drive.stiffness");
+  static constexpr auto damping = input("drive.damping");
+  static constexpr auto travel = input("drive.travel");
+  static constexpr auto stop_stiffness = input("drive.stop_stiffness");
+  static constexpr auto stop_damping = input("drive.stop_damping");
+  static constexpr auto displacement = input("motion.displacement");
+  static constexpr auto velocity = input("motion.velocity");
+  static constexpr auto stretch = input("motion.skin_stretch");
   const pd::StopNumbers& stops = drive.stops;
   pindrive_error error = check("mass", mass, drive.mass);
   if (!error) error = check("stiffness", spring, drive.stiffness);
@@ -229,7 +229,7 @@ pindrive_error pindrive_c::check(const pindrive_drive& drive, const pindrive_rel
 }
 
 pindrive_error pindrive_c::check_duration(const pindrive_release& release) {
-  static constexpr const auto& duration = input("motion.duration");
+  static constexpr auto duration = input("motion.duration");
   return release.duration == infinity ? PINDRIVE_OK : check("duration", duration, release.duration);
 }
 
@@ -275,7 +275,7 @@ void pindrive_c::start(pd::Numbers& at, pd::Numbers& along) {
 }
 
 pindrive_error pindrive_c::check_band(double band) {
-  static constexpr const auto& share = input("motion.settling_band");
+  static constexpr auto share = input("motion.settling_band");
   return check("settling_band", share, band);
 }
 

@@ -17,7 +17,7 @@ async function bundle(entry, format, define = {}) {
     define,
     target: "es2022",
     charset: "utf8",
-    legalComments: "none",
+    legalComments: "eof",
     loader: { ".css": "text" },
   });
   // A script must not hold what ends it.

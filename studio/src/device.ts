@@ -83,7 +83,7 @@ function readTables(text: string, file: string): TomlTable {
     return parseToml(text);
   } catch (error) {
     if (!(error instanceof TomlError)) throw error;
-    const unquoted = error.message.includes("Expected newline");
+    const unquoted = error.message.includes("followed by an end-of-line");
     const hint = unquoted ? "; a value with a unit stands in quotes" : "";
     throw new DeviceError([`${file}: is not valid TOML: ${error.message}${hint}`]);
   }

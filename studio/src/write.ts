@@ -62,6 +62,7 @@ function toml(value: TomlValue): string {
     const entries = Object.entries(value as TomlTable);
     return `{${entries.map(([key, item]) => `${JSON.stringify(key)} = ${toml(item)}`).join(", ")}}`;
   }
+  if (value instanceof TomlDate) return value.toISOString();
   return String(value);
 }
 

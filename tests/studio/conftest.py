@@ -68,7 +68,10 @@ def spoiled(node_program: str, tmp_path: Path) -> Callable[[str, str, str], Ask]
         bundler = STUDIO / "node_modules" / "esbuild" / "bin" / "esbuild"
         bundle = ("--bundle", "--format=esm", "--platform=node", f"--outfile={program}")
         subprocess.run(
-            [node_program, bundler, source / "node.ts", *bundle], check=True, capture_output=True
+            [node_program, bundler, source / "node.ts", *bundle],
+            check=True,
+            capture_output=True,
+            env={**os.environ, "NODE_PATH": str(STUDIO / "node_modules")},
         )
         return asking(node_program, program)
 
