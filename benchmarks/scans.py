@@ -2,7 +2,8 @@
 
 Cases are the reader of examples/tactile-reader.toml over three gratings and over two lines of text,
 and over the gratings with the drive at 0.15 rad to the hand; stages are reading and switching, the
-motions, and the evaluation. A study of scans is timed with one thread and with two.
+motions, and the evaluation. A study of scans is timed with one thread and with two, and a
+millisecond of sixteen pins under a hand that is given as it moves, through C.
 
 `--against COMMIT` builds that commit beside this one and times the same cases by turns.
 """
@@ -130,6 +131,24 @@ def print_study(count: int) -> None:
     )
 
 
+def print_stream() -> None:
+    """A millisecond of the reader under a live hand, by `stream.c`."""
+    sources = ("scan", "device", "device_parameters", "drive", "stepper")
+    with TemporaryDirectory() as folder:
+        c, program = Path(folder, "stream.o"), Path(folder, "stream")
+        capi = f"-I{ROOT / 'capi'}"
+        subprocess.run(
+            ["cc", "-std=c99", "-O2", capi, "-c", ROOT / "benchmarks" / "stream.c", "-o", c],
+            check=True,
+        )
+        options = ("-std=c++17", "-O3", "-DNDEBUG", "-ffp-contract=off", "-fno-tree-slp-vectorize")
+        files = [ROOT / "capi" / f"{name}.cpp" for name in sources]
+        include = f"-I{ROOT / 'include'}"
+        subprocess.run(["c++", *options, include, capi, *files, c, "-o", program], check=True)
+        print("a millisecond of sixteen pins under a live hand:")
+        print(subprocess.run([program], check=True, capture_output=True, text=True).stdout, end="")
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--repeats", type=int, default=9)
@@ -141,6 +160,7 @@ def main() -> None:
         return
     print_stages(arguments.repeats)
     print_study(400)
+    print_stream()
     if not arguments.against:
         return
     with TemporaryDirectory() as folder:
