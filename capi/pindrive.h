@@ -464,8 +464,8 @@ PINDRIVE_API pindrive_error pindrive_scan_set_page(pindrive_scan *scan, const do
 PINDRIVE_API pindrive_error pindrive_scan_move(pindrive_scan *scan, double time, double vx,
                                                double vy, double finger_load);
 
-/* Advances the pins to a time (s) that is not before now and not after the last row of the hand. go_on is that of
- * pindrive_stepper_step(). */
+/* Advances the pins to a time (s) that is not before now and not after the last row of the hand. go_on may be null;
+ * where it returns 0 the error is PINDRIVE_STOPPED, and the next call goes on, to the same time or beyond. */
 PINDRIVE_API pindrive_error pindrive_scan_advance(pindrive_scan *scan, double until,
                                                   pindrive_go_on go_on, void *context);
 

@@ -51,7 +51,7 @@ void exchange(Bytes& bytes, device::PinFollower::State& s) {
 
 /// State of a scan as bytes hold it.
 struct Kept {
-  double now{0}, begin{0};
+  double now{0}, least{0}, begin{0};
   std::vector<std::pair<device::LiveHand::Row, device::Place>> rows;
   std::vector<device::PinState> begins;
   std::vector<device::PinFollower::State> pins;
@@ -59,7 +59,7 @@ struct Kept {
   template <class Bytes>
   void operator()(Bytes& bytes) {
     const auto number = [&](auto&... each) { (bytes.item(each), ...); };
-    number(now, begin);
+    number(now, least, begin);
     exchange_list(bytes, rows, 6 * sizeof(double), [&](auto& each) {
       auto& [row, place] = each;
       number(row.time, row.velocity.x, row.velocity.y, row.finger_load, place.x, place.y);
@@ -71,7 +71,12 @@ struct Kept {
 
 Kept kept(const pindrive_scan& scan) {
   device::DeviceState state = scan.stream->state();
-  Kept found{state.now, state.hand.begin(), {}, std::move(state.begins), std::move(state.pins)};
+  Kept found{state.now,
+             state.least,
+             state.hand.begin(),
+             {},
+             std::move(state.begins),
+             std::move(state.pins)};
   for (std::size_t i = 0; i < state.hand.size(); ++i)
     found.rows.emplace_back(state.hand.row(i), state.hand.place(i));
   return found;
@@ -190,10 +195,10 @@ pindrive_error pindrive_scan_advance(pindrive_scan* scan, double until, pindrive
                                      void* context) {
   if (!scan) return null_pointer("scan");
   device::DeviceStream& stream = *scan->stream;
-  if (const bool known = until >= stream.now() && until <= stream.hand().end(); !known)
+  if (const bool known = until >= stream.least() && until <= stream.hand().end(); !known)
     return fail(PINDRIVE_BAD_VALUE,
-                "until must be from now, %.17g s, to the last row of the hand, %.17g s, not %.17g",
-                stream.now(), stream.hand().end(), until);
+                "until must be from %.17g s to the last row of the hand, %.17g s, not %.17g",
+                stream.least(), stream.hand().end(), until);
   return guarded([&]() -> pindrive_error {
     Attended attended(go_on, context);
     const auto sink = [&](std::size_t pin, const pd::Segment<double>& segment, const auto& after) {
@@ -296,7 +301,8 @@ pindrive_error pindrive_scan_read(const pindrive_device* device, const void* byt
     const device::LiveHand hand(found.begin, found.rows, made->owned->device.axis);
     made->stream = std::make_unique<device::DeviceStream>(
         made->owned->device, made->page->raster(),
-        device::DeviceState{found.now, hand, std::move(found.begins), std::move(found.pins)});
+        device::DeviceState{found.now, found.least, hand, std::move(found.begins),
+                            std::move(found.pins)});
     *scan = made.release();
     return PINDRIVE_OK;
   });

@@ -105,8 +105,10 @@ void an_advance_that_is_stopped() {
     other.move(page.raster(), rows[i]);
   }
   int calls = 0;
-  while (!one.advance(page.raster(), 0.2, [&] { return ++calls % 7 != 0; })) {
-  }
+  bool stopped = false;
+  while (!one.advance(page.raster(), 0.2, [&] { return ++calls % 7 != 0; }))
+    stopped = one.now() == 0 && one.least() == 0.2;
+  expect(stopped, "a stopped advance says where it goes on to");
   other.advance(page.raster(), 0.2);
   expect(calls > 100 && one.now() == 0.2, "a stopped advance goes on where it was");
   expect(one.pin(1).stepper().pin().x == other.pin(1).stepper().pin().x, "to the same bits");

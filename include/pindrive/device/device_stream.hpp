@@ -16,7 +16,8 @@ namespace pindrive::device {
 
 /// State of a device at a time: a stream constructed from it gives identical bits.
 struct DeviceState {
-  double now;  ///< s
+  double now;    ///< s
+  double least;  ///< where an incomplete advance goes on to at least, s
   LiveHand hand;
   std::vector<PinState> begins;          ///< before the second row of the hand
   std::vector<PinFollower::State> pins;  ///< from then on
@@ -31,16 +32,21 @@ class DeviceStream {
                std::vector<PinState> begins)
       : device_(device),
         now_(first.time),
+        least_(now_),
         hand_(first, place, device.axis),
         begins_(std::move(begins)) {}
   DeviceStream(const Device& device, const Raster& raster, const DeviceState& state)
-      : device_(device), now_(state.now), hand_(state.hand), begins_(state.begins) {
+      : device_(device),
+        now_(state.now),
+        least_(state.least),
+        hand_(state.hand),
+        begins_(state.begins) {
     for (const PinFollower::State& pin : state.pins)
       pins_.push_back(std::make_unique<PinFollower>(inputs(raster), pin));
   }
 
   DeviceState state() const {
-    DeviceState found{now_, hand_, begins_, {}};
+    DeviceState found{now_, least_, hand_, begins_, {}};
     for (const auto& pin : pins_) found.pins.push_back(pin->state());
     return found;
   }
@@ -54,12 +60,13 @@ class DeviceStream {
     begins_.clear();
   }
 
-  /// Advances all pins to a time (s) from now() to hand().end(). `sink(pin, segment, after)` is called with each segment
+  /// Advances all pins to a time (s) from least() to hand().end(). `sink(pin, segment, after)` is called with each segment
   /// that ends, and `go_on` after each event and row. False if the advance is incomplete: status() is not ok, or
   /// go_on() returned false; the next call continues from there.
   template <class GoOn = Unattended, class Sink = Unattended>
   bool advance(const Raster& raster, double until, GoOn go_on = {}, Sink&& sink = {}) {
     const ScanInputs given = inputs(raster);
+    least_ = until;
     for (std::size_t i = 0; i < pins_.size(); ++i) {
       pins_[i]->sample(given, i, until);
       if (!pins_[i]->advance(
@@ -72,7 +79,8 @@ class DeviceStream {
     return true;
   }
 
-  double now() const { return now_; }  ///< s
+  double now() const { return now_; }      ///< s
+  double least() const { return least_; }  ///< where an incomplete advance goes on to at least, s
   const LiveHand& hand() const { return hand_; }
   const Device& device() const { return device_; }
   std::size_t size() const { return pins_.size(); }  ///< pins; none before the second row
@@ -90,7 +98,7 @@ class DeviceStream {
   }
 
   const Device& device_;
-  double now_;
+  double now_, least_;
   LiveHand hand_;
   std::vector<PinState> begins_;  ///< states of the pins until they exist
   std::vector<std::unique_ptr<PinFollower>> pins_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <vector>
@@ -53,7 +54,10 @@ class PinFollower {
   }
 
   State state() const {
-    return {stepper_.state(), coil_.state(), sampled_, passed_, decision_, pending_};
+    return {
+        stepper_.state(), coil_.state(),
+        sampled_,         passed_,
+        decision_,        {pending_.begin() + static_cast<std::ptrdiff_t>(given_), pending_.end()}};
   }
 
   /// Samples the page under the spot of the pin before a time, s.
@@ -106,7 +110,14 @@ class PinFollower {
     return {device_->load(coil_.pull(time)), coil_.rate() / device_->normal_force};
   }
 
-  double command() const { return pending_.empty() ? infinity : pending_.front(); }
+  /// Time of the next switching that is due, s.
+  double command() const { return given_ < pending_.size() ? pending_[given_] : infinity; }
+  void give_command() {
+    coil_.command(!coil_.state().command, pending_[given_]);
+    if (2 * ++given_ <= pending_.size()) return;  // so each switching is moved once on average
+    pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(given_));
+    given_ = 0;
+  }
   /// Time of the next row or switching, s since the begin.
   double next(const ScanInputs& scan) const {
     return std::min(std::min(command(), coil_.next()) - begin_, scan.next_row(passed_));
@@ -119,12 +130,10 @@ class PinFollower {
     InputLines<double> lines = stepper_.inputs();
     if (passed_ == -infinity) lines.plate_load = load(begin_);
     for (double at; (at = std::min(command(), coil_.next())) - begin_ <= time;) {
-      if (at == command()) {
-        coil_.command(!coil_.state().command, at);
-        pending_.erase(pending_.begin());
-      } else {
+      if (at == command())
+        give_command();
+      else
         coil_.pass(at);
-      }
       lines.plate_load = load(at);
     }
     if (scan.next_row(passed_) <= time) {
@@ -145,6 +154,7 @@ class PinFollower {
   double sampled_, passed_{-infinity};
   bool decision_;
   std::vector<double> pending_;
+  std::size_t given_{0};  ///< number of the pending switchings that were given to the coil
   Stepper<double> stepper_;
 };
 
