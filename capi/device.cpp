@@ -64,7 +64,7 @@ DeviceParameters parameters_of(const pindrive_device& device, std::vector<std::s
           names.push_back(key + "." + column + "[" + std::to_string(i + 1) + "]");
           found.add(names.back().c_str(), value);
         }
-  constexpr const char pull[] = "magnet.hold_force";
+  static constexpr const char pull[] = "magnet.hold_force";  // kept by reference
   if (!found.has(pull) && !found.has("magnet.turns"))
     found.add(pull, pd::device::find_input(pull)->absent);
   return found;
@@ -81,7 +81,12 @@ pindrive_error pindrive_c::made_of(const pindrive_device& device,
   std::unique_ptr<const pd::device::Electromagnet> magnet;
   pd::device::Controller controller{};
   pindrive_error error = parameters.fill(&drive, &DeviceParameters::Number::value);
+  if (!error) error = parameters.check_together();
   if (!error) error = check(drive, release);
+  if (!error && drive.plate.kinetic == 0)
+    error =
+        fail(PINDRIVE_BAD_VALUE,
+             "plate.kinetic must be greater than 0 N where a magnet holds by friction, got 0.0 N");
   if (!error) error = parameters.read(magnet);
   if (!error) error = parameters.read(controller);
   const double axis = parameters.of("array.axis").value;

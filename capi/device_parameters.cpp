@@ -12,6 +12,7 @@
 #include "interface.hpp"
 #include "pindrive/device/inputs.hpp"
 #include "pindrive/device/magnet_construction.hpp"
+#include "wording.hpp"
 
 namespace pindrive_c {
 
@@ -40,6 +41,20 @@ struct Friction {
 constexpr Friction by_force = {"kinetic", "static", "curve.speed", "curve.force"};
 constexpr Friction by_coefficient = {"coefficient", "static_coefficient", "coefficient_curve.speed",
                                      "coefficient_curve.coefficient"};
+// The magnet by its behaviour, or by its construction.
+constexpr const char* by_times[] = {"hold_force", "rise_time", "fall_time", "saturation"};
+constexpr const char* by_coil[] = {"turns",
+                                   "pole_area",
+                                   "gap",
+                                   "wire_diameter",
+                                   "turn_length",
+                                   "supply_voltage",
+                                   "release_resistance",
+                                   "saturation_field",
+                                   "thermal_resistance",
+                                   "heat_capacity",
+                                   "lift",
+                                   "closing_force"};
 
 }  // namespace
 
@@ -94,6 +109,72 @@ pindrive_error DeviceParameters::fill_friction(pindrive_drive* drive, const char
   if (!error && has(stiffness.text))
     error = pindrive_drive_set(drive, stiffness.text, of(stiffness.text).*part);
   return error;
+}
+
+pindrive_error DeviceParameters::check_together() const {
+  const auto refused = [](const char* key, const char* required, const char* given) {
+    return fail(PINDRIVE_BAD_VALUE, "%s must be %s, got %s", key, required, given);
+  };
+  const auto shown = [&](const char* key) {
+    Text given;
+    given.add_number(of(key).value, unit_of(*device::find_input(key)));
+    return given;
+  };
+  for (const char* const contact : {"plate", "finger"}) {
+    const char* const forces[] = {"kinetic", "static", "curve"};
+    const char* const coefficients[] = {"coefficient", "static_coefficient", "coefficient_curve"};
+    const auto first = [&](const char* const(&names)[3]) -> const char* {
+      for (const char* const name : names) {
+        const Key key(contact, name);
+        if (has(key.text) || !list(Key(key.text, "speed").text).empty()) return name;
+      }
+      return nullptr;
+    };
+    const char *const force = first(forces), *const coefficient = first(coefficients);
+    const bool by_coefficient = coefficient != nullptr;
+    if (force && coefficient)
+      return fail(PINDRIVE_BAD_VALUE,
+                  "%s.%s must be left out where %s.%s gives the friction as a force, got both, "
+                  "%s.%s and %s.%s",
+                  contact, coefficient, contact, force, contact, coefficient, contact, force);
+    const Key limit(contact, by_coefficient ? "static_coefficient" : "static");
+    const Key kinetic(contact, by_coefficient ? "coefficient" : "kinetic");
+    if (has(limit.text) && has(kinetic.text))
+      if (const pindrive_error error = pindrive_c::check(
+              limit.text, of(limit.text).value, of(limit.text).value >= of(kinetic.text).value,
+              by_coefficient ? "at least the kinetic friction coefficient"
+                             : "at least the kinetic friction",
+              of(kinetic.text).value, unit_of(*device::find_input(limit.text))))
+        return error;
+    if (std::strcmp(contact, "plate") == 0) continue;
+    constexpr const char touch[] = "finger.touch_force";
+    if (by_coefficient && !has(touch))
+      return refused(touch, "given where a coefficient gives the finger's friction", "none");
+    if (force && has(touch))
+      return refused(touch, "left out where the finger's friction is given as a force",
+                     shown(touch).get());
+  }
+  for (const char* const key : {"drive.stop_stiffness", "drive.stop_damping"})
+    if (has(key) && !has("drive.travel"))
+      return refused(key, "left out without travel, as there are no end stops", shown(key).get());
+  if (of("drive.stop_damping").value != 0 && !has("drive.stop_stiffness"))
+    return refused("drive.stop_damping", "left out for rigid end stops; give stop_stiffness too",
+                   shown("drive.stop_damping").get());
+  const auto first_of_magnet = [&](const auto& names) -> const char* {
+    for (const char* const name : names)
+      if (has(Key("magnet", name).text)) return name;
+    return nullptr;
+  };
+  const char *const direct = first_of_magnet(by_times), *const made = first_of_magnet(by_coil);
+  if (direct && made)
+    return fail(PINDRIVE_BAD_VALUE,
+                "magnet.%s must be left out where %s describes the coil, got both, %s and %s",
+                direct, made, direct, made);
+  const bool lift = has("magnet.lift"), closing = has("magnet.closing_force");
+  if (lift != closing)
+    return refused(lift ? "magnet.lift" : "magnet.closing_force",
+                   lift ? "given with closing_force" : "given with lift", "it alone");
+  return PINDRIVE_OK;
 }
 
 pindrive_error DeviceParameters::fill(pindrive_drive* drive, double Number::* part) const {
@@ -175,10 +256,13 @@ void read_gap(Checks& checks, device::MagnetParameters& magnet) {
   const double open = magnet.open_inductance / magnet.saturation;
   const double most =
       magnet.residual + (magnet.hold_force - magnet.residual) * std::min(open * open, 1.0);
-  checks.allow(
-      "magnet.closing_force", force,
-      force > magnet.residual && force < most && magnet.closing_flux < magnet.open_inductance,
-      "more than the residual pull and less than that with the open gap");
+  if (!checks.error)
+    checks.error = check("magnet.closing_force", force, force > magnet.residual,
+                         "more than the residual pull", magnet.residual, "N");
+  if (!checks.error)
+    checks.error = check("magnet.closing_force", force,
+                         force < most && magnet.closing_flux < magnet.open_inductance,
+                         "less than the pull of full current with the open gap", most, "N");
 }
 
 void read_voltage(Checks& checks, std::vector<device::VoltageStep>& steps) {
@@ -207,8 +291,14 @@ pindrive_error DeviceParameters::read(std::unique_ptr<const device::Electromagne
   device::MagnetParameters found =
       has("magnet.turns") ? from_coil(checks, deviation) : from_times(checks, deviation);
   found.residual = checks.number("magnet.residual");
-  checks.allow("magnet.residual", found.residual, found.residual < found.hold_force,
-               "less than the full pull");
+  if (!checks.error)
+    checks.error = check("magnet.residual", found.residual, found.residual < found.hold_force,
+                         "less than the hold force", found.hold_force, "N");
+  if (const bool frequency = has("magnet.pwm_frequency"), duty = has("magnet.pwm_duty");
+      !checks.error && frequency != duty)
+    checks.error =
+        fail(PINDRIVE_BAD_VALUE, "magnet.%s must be given with %s, got it alone",
+             frequency ? "pwm_frequency" : "pwm_duty", frequency ? "pwm_duty" : "pwm_frequency");
   read_gap(checks, found);
   found.pulse_duty = checks.number_or("magnet.pwm_duty", 1);
   found.pulse_frequency = checks.number_or("magnet.pwm_frequency", 1);
@@ -228,8 +318,14 @@ pindrive_error DeviceParameters::read(device::Controller& controller) const {
   controller = {checks.number("control.sample_rate"), checks.number("control.latency"),
                 checks.number("control.threshold"), checks.number("control.hysteresis")};
   const double threshold = controller.threshold, band = controller.hysteresis;
-  checks.allow("control.hysteresis", band, band <= 2 * std::min(threshold, 1 - threshold),
-               "such that the band about the threshold is within 0 and 1");
+  const double widest = 2 * std::min(threshold, 1 - threshold);
+  if (!checks.error && band > widest) {
+    Text given;
+    given.add_number(band);
+    checks.error = fail(PINDRIVE_BAD_VALUE,
+                        "control.hysteresis must be at most %g about a threshold of %g, got %s",
+                        widest, threshold, given.get());
+  }
   return checks.error;
 }
 

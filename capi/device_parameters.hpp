@@ -31,6 +31,8 @@ class DeviceParameters {
   /// Plate load without a current: that of the residual pull.
   Number residual_load() const;
 
+  /// Checks that the parameters, each in its range, do not contradict each other.
+  pindrive_error check_together() const;
   /// Sets the numbers of a drive, or, by `part`, their derivatives.
   pindrive_error fill(pindrive_drive* drive, double Number::* part) const;
   /// Reads the electromagnet; null without one. Refused where a parameter is out of its range.

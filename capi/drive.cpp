@@ -124,11 +124,19 @@ pindrive_error pindrive_c::check(const char* label, const pd::device::InputQuant
   const pd::device::Bounds* const violated = input.violated(value);
   if (!violated) return PINDRIVE_OK;
   Text required, given;
-  const char* const unit = unit_of(input);
-  add_bounds(required, *violated, unit);
-  given.add_number(value);
-  return fail(PINDRIVE_BAD_VALUE, "%s must be %s, got %s%s%s", label, required.get(), given.get(),
-              *unit != 0 ? " " : "", unit);
+  add_bounds(required, *violated, unit_of(input));
+  given.add_number(value, unit_of(input));
+  return fail(PINDRIVE_BAD_VALUE, "%s must be %s, got %s", label, required.get(), given.get());
+}
+
+pindrive_error pindrive_c::check(const char* label, double value, bool good, const char* words,
+                                 double limit, const char* unit, const char* rest) {
+  if (good) return PINDRIVE_OK;
+  Text most, given;
+  most.add_number(limit, unit);
+  given.add_number(value, unit);
+  return fail(PINDRIVE_BAD_VALUE, "%s must be %s, %s%s, got %s", label, words, most.get(), rest,
+              given.get());
 }
 
 namespace {
@@ -169,7 +177,8 @@ pindrive_error check_contact(const char* name, const pd::ContactNumbers& contact
   pindrive_error error = check(named("kinetic"), force, kinetic);
   if (!error) error = check(named("static"), force, at_rest);
   if (!error)
-    error = check(named("static"), at_rest, at_rest >= kinetic, "at least the kinetic friction");
+    error = check(named("static"), at_rest, at_rest >= kinetic, "at least the kinetic friction",
+                  kinetic, "N");
   if (!error && contact.stiffness != infinity)
     error = check(named("stiffness"), stiffness, contact.stiffness);
   if (!error && !contact.curve.empty()) {
@@ -212,8 +221,9 @@ pindrive_error pindrive_c::check(const pindrive_drive& drive, const pindrive_rel
   if (!error) error = check_rows("finger_load", release.finger_load, false, true);
   if (!error) error = check("displacement", displacement, release.displacement);
   if (!error && stops.stiffness == infinity)
-    error = check("displacement", release.displacement,
-                  std::abs(release.displacement) <= stops.travel, "at most travel, either way");
+    error =
+        check("displacement", release.displacement, std::abs(release.displacement) <= stops.travel,
+              "at most travel", stops.travel, "m", ", either way");
   if (!error && !std::isnan(release.velocity))
     error = check("velocity", velocity, release.velocity);
   if (!error && !std::isnan(release.skin_stretch))
@@ -225,7 +235,8 @@ pindrive_error pindrive_c::check(const pindrive_drive& drive, const pindrive_rel
   if (!std::isfinite(drive.finger.stiffness))
     return fail(PINDRIVE_UNSUPPORTED, "skin_stretch must be NaN for a rigid finger");
   return check("skin_stretch", skin, std::abs(skin) * drive.finger.stiffness <= most,
-               "what the finger's static friction can hold");
+               "at most static friction over stiffness", most / drive.finger.stiffness, "m",
+               ", either way");
 }
 
 pindrive_error pindrive_c::check_duration(const pindrive_release& release) {

@@ -99,6 +99,9 @@ constexpr const char* release_names =
 
 /// Checks a value of an input, which a message calls by a label.
 pindrive_error check(const char* label, const pd::device::InputQuantity& input, double value);
+/// Checks a value against a limit, which a message tells: "less than the hold force, 1.0 N".
+pindrive_error check(const char* label, double value, bool good, const char* words, double limit,
+                     const char* unit, const char* rest = "");
 pindrive_error check_band(double band);
 /// Checks that the core can simulate the drive, and that the direction of a derivative fits.
 pindrive_error check(const pindrive_drive& drive, const pindrive_release& release);

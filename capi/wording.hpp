@@ -40,14 +40,26 @@ class Text {
     *exponent = 0;
     add("%se%s%s", digits, negative ? "-" : "", rest);
   }
-  /// Adds a number with the fewest digits that identify it.
+  /// Adds a number with the fewest digits that identify it, as Python writes it: "0.02", "1.0", "1e-05".
   void add_number(double value) {
-    char digits[32];
-    for (int precision = 1; precision <= 17; ++precision) {
-      std::snprintf(digits, sizeof digits, "%.*g", precision, value);
-      if (std::strtod(digits, nullptr) == value) break;
+    char digits[400];
+    int decimals = 0;
+    do {
+      std::snprintf(digits, sizeof digits, "%.*e", decimals, value);
+    } while (std::strtod(digits, nullptr) != value && ++decimals < 17);
+    const char* const mark = std::strchr(digits, 'e');
+    if (!std::isfinite(value) || !mark) return add("%s", std::isnan(value) ? "nan" : digits);
+    const int exponent = std::atoi(mark + 1);
+    if (exponent >= -4 && exponent < 16) {
+      const int places = decimals - exponent;
+      std::snprintf(digits, sizeof digits, "%.*f", places > 1 ? places : 1, value);
     }
     add("%s", digits);
+  }
+  /// Adds a number with its unit, which may be empty.
+  void add_number(double value, const char* unit) {
+    add_number(value);
+    if (*unit != 0) add(" %s", unit);
   }
 
  private:

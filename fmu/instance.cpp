@@ -97,6 +97,7 @@ pindrive_error Instance::make(Stepper& stepper, Magnet& magnet) const {
   pindrive_stepper* made = nullptr;
   pindrive_error error = make_magnet(given, values_.begin, magnet);
   if (!error) error = given.fill(drive.get(), release.get(), &Number::value);
+  if (!error) error = given.parameters().check_together();
   if (!error && magnet.present())
     error =
         pindrive_release_set(release.get(), "plate_load", given.parameters().residual_load().value);

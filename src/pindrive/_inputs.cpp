@@ -31,8 +31,8 @@ void bind_inputs(nb::module_& m) {
       [] {
         nb::list rows;
         for (const device::InputQuantity& row : device::input_quantities)
-          rows.append(nb::make_tuple(row.key, row.unit, numbers_of(row.bounds),
-                                     numbers_of(row.computable), row.absent));
+          rows.append(nb::make_tuple(nb::str(row.key), nb::str(row.unit), numbers_of(row.bounds),
+                                     numbers_of(row.computable_bounds()), row.absent));
         return rows;
       },
       "Key, unit, bounds, computable bounds and value without the key, of each input.");

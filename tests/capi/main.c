@@ -174,17 +174,17 @@ static void mistakes(void) {
     const char *words;
   } cases[] = {
       {"mass", 1e-13, PINDRIVE_BAD_VALUE, "mass must be finite and at least 1e-12 kg and at most 1e12 kg"},
-      {"mass", 0, PINDRIVE_BAD_VALUE, "mass must be finite and greater than 0 kg, got 0 kg"},
+      {"mass", 0, PINDRIVE_BAD_VALUE, "mass must be finite and greater than 0 kg, got 0.0 kg"},
       {"stiffness", INFINITY, PINDRIVE_BAD_VALUE, "stiffness must be finite and greater than 0 N/m, got inf N/m"},
-      {"damping", -1, PINDRIVE_BAD_VALUE, "damping must be finite and at least 0 N*s/m, got -1 N*s/m"},
+      {"damping", -1, PINDRIVE_BAD_VALUE, "damping must be finite and at least 0 N*s/m, got -1.0 N*s/m"},
       {"plate.kinetic", -0.5, PINDRIVE_BAD_VALUE, "plate.kinetic must be finite and at least 0 N, got -0.5 N"},
-      {"plate.static", 0.01, PINDRIVE_BAD_VALUE, "plate.static must be at least the kinetic"},
+      {"plate.static", 0.01, PINDRIVE_BAD_VALUE, "plate.static must be at least the kinetic friction, 0.02 N, got 0.01 N"},
       {"finger.stiffness", 0, PINDRIVE_BAD_VALUE, "finger.stiffness must be finite and greater than 0 N/m"},
       {"displacement", NAN, PINDRIVE_BAD_VALUE, "displacement must be finite"},
       {"velocity", INFINITY, PINDRIVE_BAD_VALUE, "velocity must be finite, got inf m/s"},
       {"plate_load", -1, PINDRIVE_BAD_VALUE, "row 0 of plate_load must be from 0 to 1e12"},
       {"skin_stretch", 1e-3, PINDRIVE_UNSUPPORTED, "skin_stretch must be NaN for a rigid finger"},
-      {"duration", 0, PINDRIVE_BAD_VALUE, "duration must be finite and greater than 0 s, got 0 s"},
+      {"duration", 0, PINDRIVE_BAD_VALUE, "duration must be finite and greater than 0 s, got 0.0 s"},
       {"weight", 1, PINDRIVE_BAD_NAME, "has no weight, but"},
   };
   const double speeds[] = {0, 0.1, 0.05}, forces[] = {0.02, 0.01, 0.01};

@@ -16,7 +16,7 @@ int main() {
   static constexpr const device::InputQuantity& mass = *device::find_input("drive.mass");
   expect(mass.allows(0.01) && !mass.allows(0) && !mass.allows(infinity) && !mass.allows(nan),
          "a mass is finite and greater than 0");
-  expect(mass.violated(-1) == &mass.bounds && mass.violated(1e13) == &mass.computable &&
+  expect(mass.violated(-1) == &mass.bounds && mass.violated(1e13) == &mass.computable_bounds() &&
              mass.violated(1) == nullptr,
          "the bounds of what may be come before those of what can be computed");
   const device::InputQuantity& ratio = *device::find_input("drive.damping_ratio");

@@ -348,7 +348,7 @@ def test_refusal_names_the_value(archive: Archive, capsys: pytest.CaptureFixture
         ),
         (
             lambda: bad.begin(drive__mass=-1.0),
-            "drive.mass must be finite and greater than 0 kg, got -1 kg",
+            "drive.mass must be finite and greater than 0 kg, got -1.0 kg",
         ),
     ):
         with pytest.raises(FMICallException):

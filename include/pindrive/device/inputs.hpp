@@ -17,22 +17,28 @@ struct Bounds {
   }
 };
 
-/// An input, in SI units.
+/// Values far outside of any device, between which nothing overflows.
+enum class Computable : signed char { any, either_way, from_zero, above_zero, ratio };
+
+/// An input, in SI units. A table of its kind needs no relocations.
 struct InputQuantity {
-  const char* key;
-  const char* unit;   ///< "1": dimensionless
-  Bounds bounds;      ///< possible values
-  Bounds computable;  ///< values far outside of any device, between which nothing overflows
-  double absent;      ///< value that holds where a device file leaves the key out; NaN: none
+  char key[28];
+  char unit[8];   ///< "1": dimensionless
+  Bounds bounds;  ///< possible values
+  Computable computable;
+  double absent;  ///< value that holds where a device file leaves the key out; NaN: none
 
   /// True if the value is allowed.
   constexpr bool allows(double value) const {
-    return bounds.contains(value) && computable.contains(value);
+    return bounds.contains(value) && computable_bounds().contains(value);
   }
   /// The bounds that a value violates first; null if it is allowed.
   constexpr const Bounds* violated(double value) const {
-    return !bounds.contains(value) ? &bounds : computable.contains(value) ? nullptr : &computable;
+    return !bounds.contains(value)               ? &bounds
+           : computable_bounds().contains(value) ? nullptr
+                                                 : &computable_bounds();
   }
+  constexpr const Bounds& computable_bounds() const;
 };
 
 namespace ranges {
@@ -41,7 +47,6 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr Bounds between(double lower, double upper) { return {lower, upper, true, true, none}; }
 
-constexpr Bounds any = between(-infinity, infinity);
 constexpr Bounds finite{-infinity, infinity, false, false, none};
 constexpr Bounds positive{0, infinity, false, false, none};
 constexpr Bounds non_negative{0, infinity, true, false, none};
@@ -51,11 +56,15 @@ constexpr Bounds fine = between(1e-8, 0.1);  // points of a curve grow with one 
 // Inputs of the core stay within 1e12 SI. Then rates, sqrt(k/m) and b/m, stay within 1e24, forces under load
 // below 1e24, lengths F/k below 1e36, energies below 1e84, and what the certificate bounds, the fifth derivative
 // of a length, below 1e156: in doubles nothing overflows, and nothing that matters vanishes.
-constexpr Bounds either_way = between(-1e12, 1e12);
-constexpr Bounds from_zero = between(0, 1e12);
-constexpr Bounds above_zero = between(1e-12, 1e12);
-// Beyond these the two rates of a mode lie so far apart that a velocity loses four of its digits.
-constexpr Bounds ratios{1e-11, 1e6, true, true, 0};
+// Beyond the ratios the two rates of a mode lie so far apart that a velocity loses four of its digits.
+inline constexpr Bounds computable[] = {between(-infinity, infinity),
+                                        between(-1e12, 1e12),
+                                        between(0, 1e12),
+                                        between(1e-12, 1e12),
+                                        {1e-11, 1e6, true, true, 0}};
+constexpr Computable any = Computable::any, either_way = Computable::either_way,
+                     from_zero = Computable::from_zero, above_zero = Computable::above_zero,
+                     ratios = Computable::ratio;
 
 inline constexpr InputQuantity input_quantities[] = {
     {"drive.mass", "kg", positive, above_zero, none},
@@ -148,6 +157,10 @@ inline constexpr InputQuantity input_quantities[] = {
 }  // namespace ranges
 
 using ranges::input_quantities;
+
+constexpr const Bounds& InputQuantity::computable_bounds() const {
+  return ranges::computable[static_cast<int>(computable)];
+}
 
 namespace ranges {
 

@@ -27,7 +27,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pindrive import _core
-from pindrive.lazy import Image, ImageDraw, ImageFont, ImageOps, features, ft2font
+from pindrive.lazy import Image, ImageDraw, ImageFont, ImageOps, features, ft2font, matplotlib
 from pindrive.quantities import budgets
 from pindrive.quantities.refusal import check_whole, quoted, refusal
 from pindrive.quantities.table import check, default
@@ -323,7 +323,8 @@ PLAIN_SCRIPTS: Final = (
 def default_font() -> str:
     """DejaVu Sans, which comes with Matplotlib: Latin, Greek, Cyrillic, Arabic, Hebrew and more."""
     found = find_spec("matplotlib")  # not imported: a page needs no more of it
-    assert found is not None and found.origin is not None
+    if found is None or found.origin is None:
+        return str(matplotlib.get_data_path())  # says how Matplotlib is installed
     return str(Path(found.origin).parent / "mpl-data" / "fonts" / "ttf" / "DejaVuSans.ttf")
 
 
