@@ -17,7 +17,7 @@ namespace pindrive::device {
 /// State of a device at a time: a stream constructed from it gives identical bits.
 struct DeviceState {
   double now;    ///< s
-  double least;  ///< where an incomplete advance goes on to at least, s
+  double least;  ///< earliest end of the next advance, s
   LiveHand hand;
   std::vector<PinState> begins;          ///< before the second row of the hand
   std::vector<PinFollower::State> pins;  ///< from then on
@@ -80,7 +80,7 @@ class DeviceStream {
   }
 
   double now() const { return now_; }      ///< s
-  double least() const { return least_; }  ///< where an incomplete advance goes on to at least, s
+  double least() const { return least_; }  ///< earliest end of the next advance, s
   const LiveHand& hand() const { return hand_; }
   const Device& device() const { return device_; }
   std::size_t size() const { return pins_.size(); }  ///< pins; none before the second row
