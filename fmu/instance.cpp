@@ -44,9 +44,7 @@ pindrive_error pulled(pindrive_stepper* stepper, const Magnet& magnet, double ti
 
 void Magnet::pass(double until) {
   while (next_sample() <= until) {
-    const bool on = controller->decides(control.decision, control.luminance);
-    if (on != control.decision) control.pending.push_back(control.sample + controller->latency);
-    control.decision = on;
+    controller->sample(control.sample, control.luminance, control.decision, control.pending);
     control.sample = controller->sample_after(control.sample);
   }
   for (double time = next(); time <= until; time = next()) {

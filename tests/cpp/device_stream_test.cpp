@@ -15,20 +15,12 @@
 namespace pd = pindrive;
 namespace device = pindrive::device;
 using check::expect;
+using scanned::equal;
+using scanned::Segments;
 
 namespace {
 
-using Segments = std::vector<pd::Segment<double>>;
 using Random = std::mt19937_64;
-
-bool equal(const Segments& one, const Segments& other) {
-  const auto same = [](const pd::Segment<double>& a, const pd::Segment<double>& b) {
-    return a.begin == b.begin && a.end == b.end && pd::same_mode(a.mode, b.mode) &&
-           a.flow.position.start == b.flow.position.start &&
-           a.flow.velocity.start == b.flow.velocity.start && a.moved.gain == b.moved.gain;
-  };
-  return std::equal(one.begin(), one.end(), other.begin(), other.end(), same);
-}
 
 /// Rows of a hand that shakes, one for each millisecond.
 std::vector<device::LiveHand::Row> shaking() {

@@ -19,10 +19,11 @@
 namespace pd = pindrive;
 namespace device = pindrive::device;
 using check::expect;
+using scanned::equal;
+using scanned::Segments;
 
 namespace {
 
-using Segments = std::vector<pd::Segment<double>>;
 using Random = std::mt19937_64;
 
 double between(Random& random, double low, double high) {
@@ -73,15 +74,6 @@ struct Setting {
   Setting(const Setting&) = delete;
   Setting& operator=(const Setting&) = delete;
 };
-
-bool equal(const Segments& one, const Segments& other) {
-  const auto same = [](const pd::Segment<double>& a, const pd::Segment<double>& b) {
-    return a.begin == b.begin && a.end == b.end && pd::same_mode(a.mode, b.mode) &&
-           a.flow.position.start == b.flow.position.start &&
-           a.flow.velocity.start == b.flow.velocity.start && a.moved.gain == b.moved.gain;
-  };
-  return std::equal(one.begin(), one.end(), other.begin(), other.end(), same);
-}
 
 /// Follows a pin to the end, with pauses at random times; if `kept`, from the state at each pause.
 Segments follow(const Setting& s, Random* pauses, bool kept) {

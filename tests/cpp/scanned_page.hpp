@@ -1,6 +1,7 @@
-// A page with two lines under a hand, and a device, for the tests of scans.
+// A page with two lines under a hand, a device, and equal motions, for the tests of scans.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <vector>
 
@@ -32,6 +33,18 @@ inline pindrive::device::Device device_with(double skin = std::numeric_limits<do
           {1000, 0.002, 0.5, 0.1},
           pindrive::device::Axis(0),
           {{0, 0}, {0.001, 0}}};
+}
+
+using Segments = std::vector<pindrive::Segment<double>>;
+
+/// True if two motions have the same segments, to the bit.
+inline bool equal(const Segments& one, const Segments& other) {
+  const auto same = [](const pindrive::Segment<double>& a, const pindrive::Segment<double>& b) {
+    return a.begin == b.begin && a.end == b.end && pindrive::same_mode(a.mode, b.mode) &&
+           a.flow.position.start == b.flow.position.start &&
+           a.flow.velocity.start == b.flow.velocity.start && a.moved.gain == b.moved.gain;
+  };
+  return std::equal(one.begin(), one.end(), other.begin(), other.end(), same);
 }
 
 }  // namespace scanned

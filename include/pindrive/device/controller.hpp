@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 namespace pindrive::device {
 
@@ -18,6 +19,12 @@ struct Controller {
     return on && !(luminance > threshold + 0.5 * hysteresis);
   }
 
+  /// Decides after a sample at a time, s; adds the switching that follows to those that are due.
+  void sample(double time, double luminance, bool& decision, std::vector<double>& due) const {
+    const bool on = decides(decision, luminance);
+    if (on != decision) due.push_back(time + latency);
+    decision = on;
+  }
   /// First sample at a time or later, s.
   double sample_from(double time) const {
     double k = std::ceil(time * sample_rate) - 1;

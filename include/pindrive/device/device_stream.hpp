@@ -60,9 +60,9 @@ class DeviceStream {
     begins_.clear();
   }
 
-  /// Advances all pins to a time (s) from least() to hand().end(). `sink(pin, segment, after)` is called with each segment
-  /// that ends, and `go_on` after each event and row. False if the advance is incomplete: status() is not ok, or
-  /// go_on() returned false; the next call continues from there.
+  /// Advances all pins to a time (s) from least() to hand().end(). `sink(pin, segment, after)` is called with each
+  /// segment that ends and the state of the pin after, and `go_on` after each event and row. False if the advance is
+  /// incomplete: status() is not ok, or go_on() returned false; the next call continues from there.
   template <class GoOn = Unattended, class Sink = Unattended>
   bool advance(const Raster& raster, double until, GoOn go_on = {}, Sink&& sink = {}) {
     const ScanInputs given = inputs(raster);

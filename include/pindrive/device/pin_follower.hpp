@@ -64,9 +64,7 @@ class PinFollower {
   void sample(const ScanInputs& scan, std::size_t pin, double until) {
     const Controller& controller = device_->controller;
     controller.each_sample(sampled_, until, [&](double time) {
-      const bool on = controller.decides(decision_, scan.luminance(pin, time));
-      if (on != decision_) pending_.push_back(time + controller.latency);
-      decision_ = on;
+      controller.sample(time, scan.luminance(pin, time), decision_, pending_);
       return true;
     });
     sampled_ = until;

@@ -43,9 +43,7 @@ struct PinRun {
     std::vector<double> due = from.pending;
     decision = from.decision;
     controller.each_sample(begin, end, [&](double time) {
-      const bool on = controller.decides(decision, scan.luminance(pin, time));
-      if (on != decision) due.push_back(time + controller.latency);
-      decision = on;
+      controller.sample(time, scan.luminance(pin, time), decision, due);
       return true;
     });
     const auto later = std::find_if(due.begin(), due.end(), [&](double t) { return !(t < end); });
