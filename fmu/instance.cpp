@@ -175,6 +175,7 @@ pindrive_error Instance::next_event(double& time) {
     ahead.pass(now.time);
     time = std::min(time > now.time ? time : ahead.next(), ahead.next());
   }
+  time = std::min(time, std::max(magnet_.next_switching(), now.time));
   return PINDRIVE_OK;
 }
 

@@ -44,6 +44,12 @@ struct Magnet {
   bool present() const { return coil != nullptr; }
   /// Time of the next change by itself, or of the next switching, s.
   double next() const { return std::min(coil->next(), control.due()); }
+  /// Time of the next switching while the luminance holds, s: one that is due, or that of the next sample.
+  double next_switching() const {
+    const bool follows =
+        controller && controller->decides(control.decision, control.luminance) != control.decision;
+    return follows ? std::min(control.due(), control.sample + controller->latency) : control.due();
+  }
   /// Time of the next sample, s.
   double next_sample() const {
     return controller ? control.sample : std::numeric_limits<double>::infinity();

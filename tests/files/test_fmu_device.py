@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
@@ -187,6 +188,23 @@ def test_luminance_leads_to_what_a_scan_has(
     print(f"luminance, FMI {version}: within {worst:.1e}, {astray} states gone back to")
     assert worst < 1e-12 and astray > 5
     assert size > 1e-4
+
+
+def test_the_next_event_is_not_beyond_a_switching(
+    tmp_path_factory: pytest.TempPathFactory,
+) -> None:
+    """The pin rests; what comes next is the command that follows the next sample."""
+    folder = tmp_path_factory.getbasetemp() / "times"
+    folder.mkdir(exist_ok=True)
+    device, _ = scanned("times", folder)
+    latency = device.device.control.latency
+    unit = Unit(*unpacked(device, folder / "next.fmu", 3, control=True)).begin(mouse_velocity=0.0)
+    assert unit.get("next_event_time") == [sys.float_info.max]
+    unit.step(0.0015)
+    unit.set(luminance=0.0)
+    assert unit.get("next_event_time") == [pytest.approx(0.002 + latency, rel=1e-12)]
+    unit.step(0.0045)
+    assert unit.get("next_event_time") == [pytest.approx(0.002 + latency, rel=1e-12)]
 
 
 def test_luminance_is_checked(
