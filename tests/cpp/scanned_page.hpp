@@ -37,7 +37,7 @@ inline pindrive::device::Device device_with(double skin = std::numeric_limits<do
 
 using Segments = std::vector<pindrive::Segment<double>>;
 
-/// True if two motions have the same segments, to the bit.
+/// True if two motions are equal segment by segment, to the bit.
 inline bool equal(const Segments& one, const Segments& other) {
   const auto same = [](const pindrive::Segment<double>& a, const pindrive::Segment<double>& b) {
     return a.begin == b.begin && a.end == b.end && pindrive::same_mode(a.mode, b.mode) &&
