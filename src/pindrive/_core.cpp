@@ -350,6 +350,8 @@ nb::class_<CoreMotion<T>> bind(nb::module_& m, const char* name, const char* mea
 
 void bind_batch(nb::module_& m);
 void bind_device(nb::module_& m);
+void bind_scan(nb::module_& m);
+void bind_evaluation(nb::module_& m);
 void bind_inputs(nb::module_& m);
 
 NB_MODULE(_core, m) {
@@ -397,6 +399,8 @@ NB_MODULE(_core, m) {
         "The derivatives of a motion along a direction; both as the arguments of simulate.");
   bind_batch(m);
   bind_device(m);
+  bind_scan(m);
+  bind_evaluation(m);
   bind_inputs(m);
   m.attr("settling_band") = pd::settling_band;
   m.attr("event_limit") = pd::event_limit;

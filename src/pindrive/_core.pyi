@@ -144,20 +144,25 @@ def plate_velocity(path: tuple[Annotated[NDArray[numpy.float64], dict(shape=(Non
     Times since the begin; velocity along and across the axis; whether across it moves.
     """
 
-def closest_approaches(motions: Sequence[Motion], pairs: Sequence[tuple[int, int]], duration: float) -> tuple:
-    """
-    Smallest x(behind) - x(ahead) of each pair of motions, m, and its time, s.
-    """
-
 def coil_course(magnet: tuple[Sequence[float], Sequence[tuple[float, float]]], state: tuple[float, float, float, float, float, float, bool, bool], switchings: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], begin: float, end: float, most: int) -> tuple:
     """
     Pieces of a coil under commands, rows of its pull (times, N), and its state at the end.
     """
 
+def closest_approaches(motions: Sequence[Motion], pairs: Sequence[tuple[int, int]], duration: float) -> tuple:
+    """
+    Smallest x(behind) - x(ahead) of each pair of motions, m, and its time, s.
+    """
+
+class Device:
+    """Device whose pins are alike."""
+
+    def __init__(self, drive: tuple[float, float, float, tuple[float, float, float, Sequence[tuple[float, float]]], tuple[float, float, float, Sequence[tuple[float, float]]], tuple[float, float, float]], normal_force: float, magnet: tuple[Sequence[float], Sequence[tuple[float, float]]], control: tuple[float, float, float, float], axis: float, spots: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> None: ...
+
 class Scan:
     """Pins under a hand that moves over a page."""
 
-    def __init__(self, drive: tuple[float, float, float, tuple[float, float, float, Sequence[tuple[float, float]]], tuple[float, float, float, Sequence[tuple[float, float]]], tuple[float, float, float]], normal_force: float, magnet: tuple[Sequence[float], Sequence[tuple[float, float]]], control: tuple[float, float, float, float], axis: float, raster: tuple[Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], float, float, float], path: tuple[Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]], spots: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], touch: Sequence[tuple[float, float]], states: Sequence[tuple[float, float, float, tuple[float, float, float, float, float, float, bool, bool], bool, Sequence[float], Sequence[float]]]) -> None: ...
+    def __init__(self, device: Device, raster: tuple[Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], float, float, float], path: tuple[Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]], touch: Sequence[tuple[float, float]], states: Sequence[tuple[float, float, float, tuple[float, float, float, float, float, float, bool, bool], bool, Sequence[float], Sequence[float]]]) -> None: ...
 
     def energise(self, most_switchings: int, most_rows: int) -> tuple: ...
 
@@ -171,6 +176,9 @@ class Scan:
 
     def load(self, pin: int) -> tuple: ...
 
+    def energised(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]:
+        """Time for which the magnet of each pin is switched on, s."""
+
     def control(self, pin: int) -> tuple:
         """
         Whether it was commanded on at first; the last decision; pending switchings.
@@ -181,7 +189,25 @@ class Scan:
         State of the pin at the end: time, twice, and its error; x, v, skin force; ...
         """
 
-    def evaluate(self, criteria: tuple[float, float, float, float, float], lines: Sequence[tuple[Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', writable=False)]]]) -> dict: ...
+class Evaluation:
+    """Lines and false lines under the pins of a scan."""
+
+    def columns(self) -> dict: ...
+
+    def counts(self) -> dict: ...
+
+    def spreads(self) -> dict:
+        """Least, median and largest of each number of the lines shown."""
+
+def evaluate(scan: Scan, criteria: tuple[float, float, float, float, float], most: int) -> tuple: ...
+
+tried_speeds: int = 32
+
+speed_precision: float = 0.001
+
+def two_lines(device: Device, pitch: float, width: float, criteria: tuple[float, float, float, float, float], speed: float) -> tuple[float, float, float, int]: ...
+
+def speed_limit(device: Device, pitch: float, width: float, criteria: tuple[float, float, float, float, float], part: float, tried: tuple[float, float], progress: object | None) -> tuple[list[tuple[float, float]], list[tuple[float, float]], tuple[float, float, float, int] | None, int]: ...
 
 def input_quantities() -> list:
     """

@@ -4,6 +4,7 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 
+#include <cstddef>
 #include <utility>
 #include <vector>
 
@@ -19,4 +20,12 @@ Array<T> to_array(std::vector<T>&& values) {
   auto* owned = new std::vector<T>(std::move(values));
   nanobind::capsule owner(owned, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
   return Array<T>(owned->data(), {owned->size()}, owner);
+}
+
+/// Array of f(0), f(1), ..., f(count - 1).
+template <class N, class Function>
+Array<N> mapped(std::size_t count, Function&& f) {
+  std::vector<N> found(count);
+  for (std::size_t i = 0; i < count; ++i) found[i] = static_cast<N>(f(i));
+  return to_array(std::move(found));
 }

@@ -170,7 +170,14 @@ OF_THE_DEVICE = {
     "plate_velocity",
     "coil_course",
     "closest_approaches",
+    "Device",
     "Scan",
+    "Evaluation",
+    "evaluate",
+    "two_lines",
+    "speed_limit",
+    "tried_speeds",
+    "speed_precision",
 }
 """Names of the device layer, whose functions in C are those of a device and its scan."""
 OF_THE_EXTENSION = {

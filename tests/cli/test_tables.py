@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from math import isfinite, isnan
+from math import isfinite, isnan, nan
 from pathlib import Path
+from statistics import median
 
 import numpy as np
 import pytest
+from numpy.testing import assert_array_equal
 
 from pindrive import Contact, Motion, Release, simulate
 from pindrive.cli.scan_tables import (
@@ -20,7 +21,7 @@ from pindrive.cli.tables import device_words, ending, motion_report, path_words,
 from pindrive.device import Criteria, Device, HandPath, PinArray, Scene, lines, scan
 from pindrive.device.dataset import numbers as pin_numbers
 from pindrive.evaluation import Evaluation, evaluate
-from pindrive.evaluation.line_crossings import CUES, FATES, Cue
+from pindrive.evaluation.line_crossings import FATES
 from pindrive.evaluation.resolution import SpeedLimit, Trial
 from pindrive.files.device import load_device
 from pindrive.motion.simulate import motion_of
@@ -156,13 +157,18 @@ def test_fates_of_the_lines(evaluated: Evaluation) -> None:
     assert numbers(first)[-1] == counts["lines.false"]
 
 
-def test_cues_are_counted(evaluated: Evaluation) -> None:
-    cues: tuple[Cue, ...] = ("none", "felt", "direction", "sure", "sure")
-    rows = np.flatnonzero(evaluated.table["fate"] == FATES.index("shown"))[: len(cues)]
-    table = {name: column[rows] for name, column in evaluated.table.items() if "false" not in name}
-    table |= {"cue_on": np.array([CUES.index(cue) for cue in cues]), "false_line_pin": np.zeros(0)}
-    counts = replace(evaluated, table=table).counts
-    assert (counts["lines.direction"], counts["lines.sure"]) == (3, 2)
+def test_counts_and_spreads_are_those_of_the_lines(evaluated: Evaluation) -> None:
+    shown, counts = evaluated.shown, evaluated.counts
+    cues = [line.begin.cue for line in shown]
+    assert counts["lines.sure"] == cues.count("sure")
+    assert counts["lines.direction"] == cues.count("direction") + cues.count("sure") > 0
+    assert counts["lines.unsettled"] == sum(isnan(line.settled) for line in shown)
+    for fate in FATES:
+        assert counts[f"lines.{fate}"] == sum(line.fate == fate for line in evaluated.lines)
+    for name in evaluated.lines[0].numbers:
+        known = [line.numbers[name] for line in shown if not isnan(line.numbers[name])]
+        expected = (min(known), median(known), max(known)) if known else (nan, nan, nan)
+        assert_array_equal(evaluated.spread(name), expected)
 
 
 def test_lines_shown(evaluated: Evaluation) -> None:
@@ -197,7 +203,7 @@ def test_speeds() -> None:
             tried=(0.005, 1.0),
             distinct=((0.005, 0.2), (0.3, 0.4)),
             settled=((0.005, 0.1),),
-            beyond=Trial(0.21, 0.25, 1e-4, ()),
+            beyond=Trial(0.21, 0.25, 1e-4),
         ),
         SpeedLimit(
             pitch=0.004,

@@ -15,13 +15,21 @@ from pindrive import Contact, Drive
 from pindrive.cli.app import app
 from pindrive.cli.scan_tables import beyond, speed_report
 from pindrive.cli.tables import console
-from pindrive.device import Criteria, Device, Electromagnet, HandPath, PinArray, Scene, scan
+from pindrive.device import (
+    Criteria,
+    Device,
+    Electromagnet,
+    HandPath,
+    PinArray,
+    PinState,
+    Scene,
+    scan,
+)
 from pindrive.evaluation import evaluate
 from pindrive.evaluation.resolution import (
     SpeedLimit,
     SpeedLimits,
     largest_speeds,
-    steady,
     two_lines,
 )
 from pindrive.plot.resolution import plot_speeds
@@ -38,6 +46,19 @@ def drive(finger: Contact = RIGID, damping: float = 0.32) -> Drive:
 
 
 DEVICE = Device(drive=drive())
+
+
+def steady(device: Device) -> PinState:
+    """State of a pin under a hand in long uniform motion: dragged, and at rest."""
+    finger, along = device.drive.finger, cos(device.array.axis)
+    position = copysign(device.drag(device.array.axis), along)
+    if finger.rigid:
+        return PinState(position=position)
+    plate = device.drive.plate.kinetic * device.load(device.magnet.residual) * abs(along)
+    held = plate if plate <= finger.static_friction else finger.kinetic
+    return PinState(position=position, skin_stretch=copysign(held / finger.stiffness, along))
+
+
 TRIED = (0.01, 0.4)
 
 

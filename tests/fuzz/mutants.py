@@ -340,6 +340,36 @@ MUTANTS = (
         "true",
     ),
     Mutant(
+        "sure directions count with all",
+        "device/scan_evaluation.hpp",
+        "if (line.begin.cue >= Cue::sure) ++found.sure;",
+        "if (line.begin.cue >= Cue::direction) ++found.sure;",
+    ),
+    Mutant(
+        "the larger of the middle values for the median",
+        "device/scan_evaluation.hpp",
+        "0.5 * (known[half - 1] + known[half])",
+        "known[half]",
+    ),
+    Mutant(
+        "the last phase for the worst",
+        "device/two_lines.hpp",
+        "trial.back = std::min(trial.back, merged ? 0 : part_back(first));",
+        "trial.back = merged ? 0 : part_back(first);",
+    ),
+    Mutant(
+        "lines that merge count as apart",
+        "device/two_lines.hpp",
+        "merged ? 0 : part_back(first)",
+        "merged ? 1 : part_back(first)",
+    ),
+    Mutant(
+        "a border of a speed is found to a tenth",
+        "device/speed_limit.hpp",
+        "fast - slow > search_.precision * slow",
+        "fast - slow > 0.1 * slow",
+    ),
+    Mutant(
         "the highest value is that of a begin",
         "device/monotone_pieces.hpp",
         "if (b.value > end.value) end = b;",

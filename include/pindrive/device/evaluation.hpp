@@ -97,6 +97,20 @@ inline double settling_patience(const Drive<double>& drive) {
   return std::max(half_period, slowest);
 }
 
+/// Rate at which the slowest part of a free motion decays, 1/s; 0 without damping.
+inline double slowest_rate(const Drive<double>& drive) {
+  const double frequency = std::sqrt(drive.stiffness / drive.mass);
+  const double ratio = drive.damping / (2 * std::sqrt(drive.mass) * std::sqrt(drive.stiffness));
+  if (!(ratio > 1)) return ratio * frequency;
+  return frequency / (ratio + std::sqrt(ratio - 1) * std::sqrt(ratio + 1));
+}
+
+/// Deflection at which the spring balances a dragging plate, m; 0 in stick on the finger.
+inline double drag_of_plate(const Drive<double>& drive, double plate_friction, double finger_load) {
+  if (plate_friction <= drive.finger.static_limit * finger_load) return 0;
+  return (plate_friction - drive.finger.kinetic * finger_load) / drive.stiffness;
+}
+
 /// Times at which a finger under a load touches the pin, s; between them it is lifted.
 inline std::vector<Span> touches(const Profile<double>& load) {
   constexpr double infinity = std::numeric_limits<double>::infinity();

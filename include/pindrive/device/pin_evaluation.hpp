@@ -181,9 +181,7 @@ class PinEvaluation {
   /// Deflection at which the spring balances the dragging plate, m; 0 in stick on the finger.
   double drag(double t) const {
     const double pressed = pin_.motion->inputs().finger_load.from(t).value;
-    const double plate = drive_.plate.kinetic * setting_.residual_load;
-    if (plate <= drive_.finger.static_limit * pressed) return 0;
-    return (plate - drive_.finger.kinetic * pressed) / drive_.stiffness;
+    return drag_of_plate(drive_, drive_.plate.kinetic * setting_.residual_load, pressed);
   }
 
   /// True if the pin had not come back from the pull before when a pull moved it on.

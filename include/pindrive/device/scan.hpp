@@ -13,6 +13,7 @@
 #include "pindrive/device/pin_follower.hpp"
 #include "pindrive/device/scan_inputs.hpp"
 #include "pindrive/model/model.hpp"
+#include "pindrive/motion/motion.hpp"
 
 namespace pindrive::device {
 
@@ -94,6 +95,11 @@ struct PinRun {
     found.across_velocity = profile_of(plate.times, plate.across);
     found.finger_load = scan.finger_load;
     return found;
+  }
+
+  /// Motion that was simulated; refers to the rows and segments of the pin.
+  Motion<double> motion(const ScanInputs& scan, const PinState& from) const {
+    return {scan.device.drive, inputs(scan, from), segments.data(), segments.size(), outcome};
   }
 
   /// Simulates the motion; go_on() is called after each event and row.

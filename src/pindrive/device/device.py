@@ -9,11 +9,13 @@ from typing import overload
 import numpy as np
 from numpy.typing import NDArray
 
+from pindrive import _core
 from pindrive.device.controller import ControlBlock
 from pindrive.device.electromagnet import Electromagnet, check_holds
 from pindrive.device.pin_array import Neighbours, PinArray
 from pindrive.motion.coefficients import Coefficients
 from pindrive.motion.drive import Drive
+from pindrive.motion.release import drive_numbers
 from pindrive.quantities.part import Number
 from pindrive.quantities.table import checked, default
 from pindrive.quantities.value import concise
@@ -42,6 +44,19 @@ class Device:
     def __post_init__(self) -> None:
         """Validate what fits together."""
         check_holds(self.drive.plate)
+
+    @property
+    def core(self) -> _core.Device:
+        """Return the device as the core has it."""
+        drive, control, array = self.drive, self.control, self.array
+        return _core.Device(
+            drive_numbers(drive),
+            drive.normal_force,
+            self.magnet.core_numbers,
+            (control.sample_rate, control.latency, control.threshold, control.hysteresis),
+            array.axis,
+            np.ascontiguousarray(array.on_page(array.spots), np.float64),
+        )
 
     @property
     def magnet_neighbours(self) -> tuple[Neighbours, ...]:
@@ -118,3 +133,14 @@ class Criteria:
     direction_sure: Number = default("direction_sure")
     direction_speed: Number = default("direction_speed")
     false_line: Number = default("false_line")
+
+    @property
+    def numbers(self) -> tuple[float, float, float, float, float]:
+        """Values in the order of the core, SI."""
+        return (
+            self.felt,
+            self.direction,
+            self.direction_sure,
+            self.direction_speed,
+            self.false_line,
+        )

@@ -25,7 +25,6 @@ from pindrive.motion.profile import Profile
 from pindrive.motion.release import (
     Release,
     core_numbers,
-    drive_numbers,
     rows_of,
 )
 from pindrive.motion.results import Event
@@ -90,9 +89,7 @@ class ScanInputs:
 
     def core(self) -> _core.Scan:
         """Return the pins at the begin, as the core has them."""
-        device = self.device
-        drive, control, magnet = device.drive, device.control, device.magnet
-        pressed = self.finger_load
+        magnet = self.device.magnet
         begins = []
         for number, state in enumerate(self.states):
             _check_contacts(number, state)
@@ -110,15 +107,10 @@ class ScanInputs:
                 )
             )
         return _core.Scan(
-            drive_numbers(drive),
-            drive.normal_force,
-            magnet.core_numbers,
-            (control.sample_rate, control.latency, control.threshold, control.hysteresis),
-            device.array.axis,
+            self.device.core,
             self.scene.raster,
             self.path.rows,
-            np.ascontiguousarray(device.array.on_page(device.array.spots), np.float64),
-            rows_of(pressed),
+            rows_of(self.finger_load),
             begins,
         )
 

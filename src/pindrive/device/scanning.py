@@ -63,7 +63,6 @@ class Scan(lazy.NotebookHtml):
     """Motion of a device that a hand moved over a scene."""
 
     inputs: ScanInputs
-    pins: tuple[PinScan, ...]
     core: _core.Scan = field(repr=False, compare=False)
     max_angle: float
     """Between motion and drive axis beyond which a warning is given, rad."""
@@ -73,6 +72,12 @@ class Scan(lazy.NotebookHtml):
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickle the inputs of the scan, which is repeated."""
         return followed, (self.inputs, self.max_angle, self.criteria)
+
+    @cached_property
+    def pins(self) -> tuple[PinScan, ...]:
+        """Motion of each pin, in the order of the array."""
+        count = len(self.inputs.states)
+        return tuple(PinScan(number=i, inputs=self.inputs, core=self.core) for i in range(count))
 
     @property
     def device(self) -> Device:
@@ -326,5 +331,4 @@ def followed(
 ) -> Scan:
     """Simulate the pins of a scan; arguments and errors as for `scan`."""
     core = simulated(given, threads, progress)
-    pins = tuple(PinScan(number=i, inputs=given, core=core) for i in range(len(given.states)))
-    return Scan(inputs=given, core=core, pins=pins, max_angle=max_angle, criteria=criteria)
+    return Scan(inputs=given, core=core, max_angle=max_angle, criteria=criteria)

@@ -38,14 +38,15 @@ def printed_lines(device: Device, path: HandPath, scene: Scene) -> list[PrintedL
         ValueError: Too many lines.
     """
     spots = np.ascontiguousarray(device.array.on_page(device.array.spots), np.float64)
-    most = 2 * int(budgets.LINES.most) + 2
     found, edges = _core.printed_lines(
-        scene.raster, path.rows, device.array.axis, device.control.threshold, spots, most
+        scene.raster, path.rows, device.array.axis, device.control.threshold, spots, MOST_EDGES
     )
     budgets.LINES.check(0.5 * edges, f"up to pin {len(found)} of {len(spots)}")
     return [PrintedLines(*columns) for columns in found]
 
 
+MOST_EDGES: Final = 2 * int(budgets.LINES.most) + 2
+"""Number of edges of printed lines at which an evaluation ends."""
 Fate = Literal["shown", "unseen", "merged", "faint"]
 Cue = Literal["none", "felt", "direction", "sure"]
 

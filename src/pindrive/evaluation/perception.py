@@ -30,29 +30,28 @@ which the plate passes under the mouse while the line is read.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import nan
-from statistics import median
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pindrive import lazy
+from pindrive import _core, lazy
 from pindrive.device.device import Criteria
 from pindrive.device.scanning import Scan
 from pindrive.evaluation.line_crossings import (
     CUES,
     FATES,
+    MOST_EDGES,
     Edge,
     FalseLine,
     Line,
-    PrintedLines,
-    printed_lines,
 )
 from pindrive.lazy import mpl_figure, xr
+from pindrive.quantities import budgets
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.results import BAD_WHEN_SMALL, EDGES, LINE, last_part
 from pindrive.quantities.status import Status
@@ -77,8 +76,16 @@ class Evaluation(lazy.NotebookHtml):
 
     scan: Scan
     criteria: Criteria
-    table: Columns = field(repr=False)
-    """Numbers of all lines and false lines, SI, by name, as the core returns them."""
+    core: _core.Evaluation = field(repr=False, compare=False)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle the scan, whose evaluation is repeated."""
+        return evaluate, (self.scan, self.criteria)
+
+    @cached_property
+    def table(self) -> Columns:
+        """Numbers of all lines and false lines, SI, by name."""
+        return self.core.columns()
 
     @cached_property
     def lines(self) -> tuple[Line, ...]:
@@ -170,17 +177,7 @@ class Evaluation(lazy.NotebookHtml):
     @property
     def counts(self) -> dict[str, int]:
         """Counts of the lines, by the names of the table of quantities."""
-        fates = self.table["fate"]
-        shown = fates == FATES.index("shown")
-        cues = self.table["cue_on"][shown]
-        return {
-            "lines.crossed": len(fates),
-            **{f"lines.{fate}": _count(fates == code) for code, fate in enumerate(FATES)},
-            "lines.false": len(self.table["false_line_pin"]),
-            "lines.unsettled": _count(np.isnan(self.table["settled"][shown])),
-            "lines.direction": _count(cues >= CUES.index("direction")),
-            "lines.sure": _count(cues >= CUES.index("sure")),
-        }
+        return {f"lines.{name}": count for name, count in self.core.counts().items()}
 
     def spread(self, name: str) -> tuple[float, float, float]:
         """Least, median and largest of a number of the lines shown, SI; NaN where none has it.
@@ -188,19 +185,18 @@ class Evaluation(lazy.NotebookHtml):
         Args:
             name: Name of a number in `Line.numbers`.
         """
-        shown = self.table["fate"] == FATES.index("shown")
-        values = self.table[name.partition(".")[2]][shown]
-        known = sorted(values[~np.isnan(values)].tolist())
-        if not known:
-            return nan, nan, nan
-        return known[0], median(known), known[-1]
+        return self._spreads[name.partition(".")[2]]
+
+    @cached_property
+    def _spreads(self) -> dict[str, tuple[float, float, float]]:
+        return self.core.spreads()
 
     @property
     def numbers(self) -> dict[str, float]:
         """Numbers of a scan for studies, SI, by their names there; NaN for missing ones."""
         counts, path = self.counts, self.scan.path
         lines, duration = counts["lines.crossed"], path.end - path.begin
-        on = max(sum(end - begin for begin, end in pin.energised) for pin in self.scan.pins)
+        on = max(self.scan.core.energised())
         coil = self.scan.device.magnet.coil
         found: dict[str, float] = {
             "lines.shown_part": counts["lines.shown"] / lines if lines else nan,
@@ -225,37 +221,9 @@ def evaluate(scan: Scan, criteria: Criteria | None = None) -> Evaluation:
         criteria: Criteria of a felt line; None: the middle of the literature.
     """
     limits = criteria or Criteria()
-    lines = printed_lines(scan.device, scan.path, scan.scene)
-    table, _ = evaluated(scan, lines, limits)
-    return Evaluation(scan=scan, criteria=limits, table=table)
-
-
-def evaluated(
-    scan: Scan, lines: Sequence[PrintedLines], criteria: Criteria
-) -> tuple[dict[str, NDArray[Any]], list[NDArray[np.float64]]]:
-    """Evaluate the pins of a scan.
-
-    Args:
-        scan: The scan.
-        lines: Lines printed along the way of each pin.
-        criteria: Criteria of a felt line.
-
-    Returns:
-        Columns of the lines and the false lines; of each pin, the time of its lowest position
-        before each motion by its magnet, s since the begin of the scan.
-    """
-    limits = (
-        criteria.felt,
-        criteria.direction,
-        criteria.direction_sure,
-        criteria.direction_speed,
-        criteria.false_line,
-    )
-    found = scan.core.evaluate(limits, [(line.begin, line.end, line.whole) for line in lines])
-    found["latency_on"] = found["begin_response"] - found["begin_time"]
-    found["latency_off"] = found["end_response"] - found["end_time"]
-    found["smear_time"] = found["settled"] - found["release"]
-    return found, found.pop("dips")
+    found, edges, pins = _core.evaluate(scan.core, limits.numbers, MOST_EDGES)
+    budgets.LINES.check(0.5 * edges, f"up to pin {pins} of {len(scan.device.array)}")
+    return Evaluation(scan=scan, criteria=limits, core=found)
 
 
 def _line(row: Mapping[str, Any]) -> Line:
@@ -276,7 +244,3 @@ def _line(row: Mapping[str, Any]) -> Line:
     own = ("stroke", "height", "returned", "release", "settled", "smear", "overshoot", "contrast")
     numbers = {name: row[name] for name in own}
     return Line(pin=row["pin"], begin=begin, end=end, fate=FATES[row["fate"]], **numbers)
-
-
-def _count(where: NDArray[np.bool_]) -> int:
-    return int(np.count_nonzero(where))

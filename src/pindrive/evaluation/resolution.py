@@ -26,29 +26,21 @@ missed. Within a sampling interval of the control block a border is chance.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from itertools import pairwise
-from math import copysign, cos, inf, isnan, nan, pi, sin
+from dataclasses import dataclass
+from math import isnan, nan, pi
 from typing import Final, overload
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pindrive import lazy
+from pindrive import _core, lazy
 from pindrive.device.device import Criteria, Device
-from pindrive.device.hand import HandPath
-from pindrive.device.page import Scene
-from pindrive.device.pin_array import PinArray
-from pindrive.device.pin_scan import PinState, Progress
-from pindrive.device.scanning import scan
-from pindrive.device.trajectory import brackets, check_vibration
-from pindrive.evaluation.line_crossings import FATES, PrintedLines
-from pindrive.evaluation.perception import Columns, evaluated
+from pindrive.device.pin_scan import Progress
+from pindrive.device.trajectory import check_vibration
 from pindrive.lazy import mpl_figure, xr
 from pindrive.motion.drive import Drive
 from pindrive.quantities import budgets
 from pindrive.quantities.refusal import refusal
-from pindrive.quantities.status import Status
+from pindrive.quantities.status import SimulationError, Status
 from pindrive.quantities.table import QUANTITIES, check, default
 from pindrive.quantities.value import concise, equal_by_value
 
@@ -56,13 +48,13 @@ Band = tuple[float, float]
 
 PHASES: Final = 4
 """Largest number of phases: one between each two edges of two lines."""
-TRIED: Final = 32
+TRIED: Final = _core.tried_speeds
 """Speeds in the grid."""
 _TRIALS: Final = 3 * TRIED
 """Trials of one pitch: of the grid, of borders, and of single lines."""
 STUDIED: Final[Band] = (0.020, 0.100)
 """Hand speeds in finger studies, m/s (arXiv 2505.11162)."""
-PRECISION: Final = 1e-3
+PRECISION: Final = _core.speed_precision
 """Relative precision of a border."""
 FINE: Final = 40.0
 """Pixels in the thinner of line and gap."""
@@ -85,10 +77,6 @@ class Trial:
     """Part of its way that the pin comes back between the lines; 0 where they merge."""
     skin: float
     """Displacement of the skin by the fainter line, m."""
-    until: tuple[float, ...]
-    """Time at which the second line takes the pin along, per phase, s since the trial's begin."""
-    ahead: tuple[float, ...] = ()
-    """Phases: distance by which the spot is ahead, m."""
 
     def distinct(self, part: float, direction: float) -> bool:
         """Return True if two lines are felt; direction is in m."""
@@ -293,6 +281,8 @@ def check_work(
             pitch + width + fastest * (alone + MOMENT + 2.0 / device.control.sample_rate)
         ) / pixel
         budgets.PIXELS.check(most, of)
+        if pulses := device.magnet.pulses:
+            budgets.SWITCHINGS.check(PHASES * 2.0 * pulses.frequency * lasts, of)
     of = f"{len(pitches)} pitches, hands from {slowest:g} m/s, at {device.control.sample_rate:g} Hz"
     budgets.SAMPLES_OF_CONTROL.check(samples, of)
 
@@ -311,57 +301,18 @@ def _limit(
     criteria: Criteria,
     progress: Callable[[int], None],
 ) -> SpeedLimit:
-    """The limit for one pitch; tells the number of trials after each."""
-    speeds = np.geomspace(*tried, TRIED).tolist()
-    trials: dict[float, Trial] = {}
-    calm: dict[float, bool] = {}
-
-    def trial(speed: float) -> Trial:
-        if speed not in trials:
-            trials[speed] = two_lines(device, pitch, width, speed, criteria)
-            progress(len(trials) + len(calm))
-        return trials[speed]
-
-    def bands(holds: Callable[[Trial], bool]) -> list[Band]:
-        """The intervals in which something holds: from the grid, with borders by bisection."""
-        borders = [-inf] if holds(trial(speeds[0])) else []
-        for slow, fast in pairwise(speeds):
-            if holds(trial(slow)) != holds(trial(fast)):
-                borders.append(border(slow, fast, holds))
-        if holds(trials[speeds[-1]]):
-            borders.append(inf)
-        ends = np.clip(borders, *tried).tolist()
-        return list(zip(ends[::2], ends[1::2], strict=True))
-
-    def border(slow: float, fast: float, holds: Callable[[Trial], bool]) -> float:
-        """The speed at which it begins or ceases to hold, on the side on which it holds."""
-
-        def sign(speeds: NDArray[np.float64]) -> NDArray[np.float64]:
-            return np.array([[1.0 if holds(trial(v)) else -1.0 for v in speeds.ravel().tolist()]])
-
-        before = holds(trials[slow])
-        ends = np.array([slow]), np.array([fast])
-        low, high = brackets(sign, *ends, sign(ends[0]).ravel(), 2, PRECISION)
-        return float(low[0] if before else high[0])
-
-    def distinct(trial: Trial) -> bool:
-        return trial.distinct(part, criteria.direction)
-
-    def settled(trial: Trial) -> bool:
-        if distinct(trial) and trial.speed not in calm:
-            calm[trial.speed] = settles(device, pitch, width, trial, criteria)
-            progress(len(trials) + len(calm))
-        return calm.get(trial.speed, False)
-
-    apart = bands(distinct)
-    faster = [speed for speed in sorted(trials) if apart and speed > apart[0][1]]
+    """Return the limit for one pitch; report the number of trials after each."""
+    distinct, settled, beyond, status = _core.speed_limit(
+        device.core, pitch, width, criteria.numbers, part, tried, progress
+    )
+    _check_status(status, pitch)
     return SpeedLimit(
         pitch=pitch,
         width=width,
         tried=tried,
-        distinct=tuple(apart),
-        settled=tuple(bands(settled)),
-        beyond=trials[faster[0]] if faster else None,
+        distinct=tuple(distinct),
+        settled=tuple(settled),
+        beyond=None if beyond is None else Trial(*beyond[:3]),
     )
 
 
@@ -376,132 +327,23 @@ def two_lines(
         width: m.
         speed: m/s.
         criteria: Criteria of a felt line.
+
+    Raises:
+        SimulationError: The simulation had to be given up.
     """
-    after = _clear(device) + 4.0 * pi / device.drive.natural_frequency
-    ahead = _phases(device, (0.0, pitch), pitch, width, speed)
-    table, dips = _pass(device, (0.0, pitch), pitch, width, speed, after, criteria, ahead)
-    merged = (table["fate"] == FATES.index("merged")).any(axis=1)
-    back = np.where(merged, 0.0, _back(device, table["height"][:, 0], table["returned"][:, 0]))
-    skin = np.nan_to_num(np.fmax(table["skin_on"], table["skin_off"]))
-    until = tuple(float(each[1]) if len(each) > 1 else 0.0 for each in dips)
-    return Trial(speed, float(back.min()), float(skin.min()), until, ahead)
+    *numbers, status = _core.two_lines(device.core, pitch, width, criteria.numbers, speed)
+    _check_status(status, pitch)
+    return Trial(*numbers)
 
 
-def settles(device: Device, pitch: float, width: float, trial: Trial, criteria: Criteria) -> bool:
-    """Return True if the pin settles after the first line alone before the second line.
-
-    Args:
-        device: Device of the trial.
-        pitch: m, as in the trial.
-        width: m, as in the trial.
-        trial: Trial that `two_lines` returned.
-        criteria: Criteria of the trial.
-    """
-    after = _clear(device) + _followed(device.drive)
-    alone, _ = _pass(device, (0.0,), pitch, width, trial.speed, after, criteria, trial.ahead)
-    return bool((alone["settled"][:, 0] <= trial.until).all())
-
-
-def _begin(device: Device, speed: float) -> float:
-    """Place of the hand at the begin of a trial, m: the first line begins at 0."""
-    return -speed * (MOMENT + 1.0 / device.control.sample_rate)
-
-
-def _phases(
-    device: Device, begins: Sequence[float], pitch: float, width: float, speed: float
-) -> tuple[float, ...]:
-    """Return one phase for each sequence of samples: distances by which a spot is ahead, m."""
-    step, control = speed / device.control.sample_rate, device.control
-    pixel = min(width, pitch - width) / FINE
-    page = _page(begins, width, -4.0 * pixel, begins[-1] + width + 4.0 * pixel, pixel)
-    row = page.luminance[0]
-    middles = np.asarray(page.origin[0] + pixel * (np.arange(len(row)) + 0.5), np.float64)
-    edges = [
-        *_passes(middles, -row, 0.5 * control.hysteresis - control.threshold),
-        *_passes(middles, row, control.threshold + 0.5 * control.hysteresis),
-    ]
-    met = np.sort(np.mod(np.array(edges) - _begin(device, speed), step))
-    met = met[np.diff(met, prepend=-step) > 1e-9 * step]  # edges that one sample meets together
-    if not met.size:
-        return (0.0,)
-    return tuple(np.mod(0.5 * (met + np.append(met[1:], met[0] + step)), step).tolist())
-
-
-def _passes(x: NDArray[np.float64], y: NDArray[np.float64], level: float) -> NDArray[np.float64]:
-    """Return the places at which a piecewise-linear function rises above a level."""
-    i = np.flatnonzero((y[:-1] <= level) & (y[1:] > level))
-    return x[i] + (level - y[i]) / (y[i + 1] - y[i]) * (x[i + 1] - x[i])
-
-
-def _pass(
-    device: Device,
-    begins: Sequence[float],
-    pitch: float,
-    width: float,
-    speed: float,
-    after: float,
-    criteria: Criteria,
-    ahead: Sequence[float],
-) -> tuple[Columns, list[NDArray[np.float64]]]:
-    """Go evenly over lines that begin at these places (m), once for each phase, and `after` (s).
-
-    Returns:
-        Columns of the lines of shape (phases, lines); the times before each motion, as `evaluated`.
-    """
-    interval = 1.0 / device.control.sample_rate
-    begin, end = _begin(device, speed), begins[-1] + width + speed * after
-    pixel = min(width, pitch - width) / FINE
-    axis, count = device.array.axis, len(ahead)
-    spots = [(s * cos(axis), -s * sin(axis)) for s in ahead]  # s ahead along the hand's way
-    phases = PinArray([(0.0, float(i)) for i in range(count)], spots, axis)
-    page = _page(begins, width, begin - pixel, end + speed * interval + pixel, pixel)
-    lasts = (end - begin) / speed
-    path = HandPath([0.0, lasts], [speed] * 2, [0.0] * 2, (begin, 0.5 * pixel))
-    done = scan(
-        replace(device, array=phases), page, path, start=[steady(device)] * count, threads=1
-    )
-    lines = []
-    for shift in ahead:
-        times = (np.array(begins) - begin - shift) / speed
-        whole = np.ones(len(times), np.uint8)
-        lines.append(PrintedLines(times, times + width / speed, whole))
-    table, dips = evaluated(done, lines, criteria)
-    columns = {name: column for name, column in table.items() if not name.startswith("false_line")}
-    return {name: column.reshape(count, len(begins)) for name, column in columns.items()}, dips
+def _check_status(status: int, pitch: float) -> None:
+    if status != Status.ok:
+        raise SimulationError(f"lines {1e3 * pitch:g} mm apart", Status(status))
 
 
 def _clear(device: Device) -> float:
     """From a line's end until the pull of its magnet has decayed, s."""
     return device.control.latency + 8.0 * device.magnet.fall_constant
-
-
-def steady(device: Device) -> PinState:
-    """Return the state of a pin under a hand in long uniform motion: dragged, and at rest."""
-    finger, along = device.drive.finger, cos(device.array.axis)
-    position = copysign(device.drag(device.array.axis), along)
-    if finger.rigid:
-        return PinState(position=position)
-    plate = device.drive.plate.kinetic * device.load(device.magnet.residual) * abs(along)
-    held = plate if plate <= finger.static_friction else finger.kinetic
-    return PinState(position=position, skin_stretch=copysign(held / finger.stiffness, along))
-
-
-def _page(begins: Sequence[float], width: float, left: float, right: float, pixel: float) -> Scene:
-    """Lines that begin at these places; a border between pixels is as dark as it covers."""
-    first = int(np.floor(left / pixel))
-    borders = pixel * np.arange(first, int(np.ceil(right / pixel)) + 1)
-    covered = sum(np.clip(borders, x, x + width) for x in begins)
-    row = 1.0 - np.clip(np.diff(covered) / pixel, 0.0, 1.0)
-    return Scene(row[np.newaxis], pixel, (first * pixel, 0.0), title="lines")
-
-
-def _back(
-    device: Device, height: NDArray[np.float64], returned: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """The part of its way back to its place of rest that the pin comes after a line."""
-    high = height - device.drag(device.array.axis)
-    part = np.divide(returned, high, out=np.zeros_like(high), where=high > 0.0)
-    return np.nan_to_num(part)
 
 
 def criterion(part: float, direction: float) -> str:

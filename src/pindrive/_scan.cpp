@@ -1,0 +1,139 @@
+// Coils, devices and scans: arrays in and out of include/pindrive/device. No logic lives here.
+#include "_scan.hpp"
+
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "arrays.hpp"
+#include "interrupt.hpp"
+#include "owned_motion.hpp"
+#include "pindrive/device/closest_approach.hpp"
+#include "pindrive/device/coil_course.hpp"
+
+namespace nb = nanobind;
+namespace pd = pindrive;
+namespace device = pindrive::device;
+using nb::literals::operator""_a;
+using namespace pindrive_python;
+
+namespace {
+
+template <class Function>
+auto column_of(const std::vector<device::FluxPiece>& pieces, Function&& f) {
+  return mapped<double>(pieces.size(), [&](std::size_t i) { return f(pieces[i]); });
+}
+
+/// Columns of the pieces of a coil, rows of its pull and its state at the end.
+nb::tuple table_of(const device::CoilCourse& course) {
+  using Piece = device::FluxPiece;
+  const auto column = [&](auto&& f) { return column_of(course.pieces, f); };
+  nb::dict pieces;
+  pieces["begins"] = column([](const Piece& p) { return p.begin; });
+  pieces["starts"] = column([](const Piece& p) { return p.start; });
+  pieces["on"] = mapped<std::uint8_t>(course.pieces.size(),
+                                      [&](std::size_t i) { return course.pieces[i].on; });
+  pieces["levels"] = column([](const Piece& p) { return p.level; });
+  pieces["targets"] = column([](const Piece& p) { return p.target; });
+  pieces["constants"] = column([](const Piece& p) { return p.constant; });
+  pieces["inductances"] = column([](const Piece& p) { return p.inductance; });
+  pieces["warmings"] = column([](const Piece& p) { return p.warming; });
+  pieces["resistances"] = column([](const Piece& p) { return p.resistance; });
+  return nb::make_tuple(pieces, to_array(std::vector<double>(course.times)),
+                        to_array(std::vector<double>(course.pulls)), numbers_of(course.end));
+}
+
+nb::tuple coil_course(const MagnetNumbers& magnet, const CoilNumbers& from,
+                      const Column& switchings, double begin, double end, std::size_t most) {
+  device::CoilCourse course;
+  course.follow(magnet_of(magnet), coil_of(from), switchings.data(), switchings.size(), begin, end,
+                most);
+  return table_of(course);
+}
+
+/// Smallest difference of the positions of each pair of motions, by their indices, and its time.
+nb::tuple closest_approaches(const std::vector<const pd::StoredMotion<double>*>& motions,
+                             const std::vector<std::pair<std::size_t, std::size_t>>& pairs,
+                             double duration) {
+  auto both = interruptible([&](auto go_on) {
+    std::vector<device::BoundedPieces> pieces;
+    for (const auto* const motion : motions)
+      if (go_on(1U << 10)) pieces.emplace_back(motion->view(), duration);
+    std::pair<std::vector<double>, std::vector<double>> found;
+    for (const auto& [behind, ahead] : pairs) {
+      if (!go_on(1U << 12)) break;
+      const device::Approach closest =
+          device::ClosestApproach(pieces.at(behind), pieces.at(ahead), duration).found();
+      found.first.push_back(closest.difference);
+      found.second.push_back(closest.time);
+    }
+    return found;
+  });
+  return nb::make_tuple(to_array(std::move(both.first)), to_array(std::move(both.second)));
+}
+
+}  // namespace
+
+void bind_scan(nb::module_& m) {
+  m.def("coil_course", &coil_course, "magnet"_a, "state"_a, "switchings"_a, "begin"_a, "end"_a,
+        "most"_a,
+        "Pieces of a coil under commands, rows of its pull (times, N), and its state at the end.");
+  m.def("closest_approaches", &closest_approaches, "motions"_a, "pairs"_a, "duration"_a,
+        "Smallest x(behind) - x(ahead) of each pair of motions, m, and its time, s.");
+  nb::class_<OwnedDevice>(m, "Device", "Device whose pins are alike.")
+      .def(nb::init<const DriveNumbers&, double, const MagnetNumbers&, const ControlNumbers&,
+                    double, const Table&>(),
+           "drive"_a, "normal_force"_a, "magnet"_a, "control"_a, "axis"_a, "spots"_a);
+  nb::class_<Scan>(m, "Scan", "Pins under a hand that moves over a page.")
+      .def(nb::init<const OwnedDevice&, RasterNumbers, PathNumbers, const pd::Rows&,
+                    const std::vector<StateNumbers>&>(),
+           "device"_a, "raster"_a, "path"_a, "touch"_a, "states"_a, nb::keep_alive<1, 2>())
+      .def("energise", &Scan::energise, "most_switchings"_a, "most_rows"_a)
+      .def("simulate", &Scan::simulate, "threads"_a, "most_segments"_a, "progress"_a.none())
+      .def("motion", &Scan::motion, "pin"_a, nb::rv_policy::reference_internal)
+      .def(
+          "switchings",
+          [](const Scan& scan, std::size_t pin) {
+            return to_array(std::vector<double>(scan.run(pin).switchings));
+          },
+          "pin"_a)
+      .def(
+          "coil", [](const Scan& scan, std::size_t pin) { return table_of(scan.run(pin).coil); },
+          "pin"_a)
+      .def(
+          "load",
+          [](const Scan& scan, std::size_t pin) {
+            const device::PinRun& run = scan.run(pin);
+            return nb::make_tuple(to_array(std::vector<double>(run.load_times)),
+                                  to_array(std::vector<double>(run.loads)));
+          },
+          "pin"_a)
+      .def(
+          "energised",
+          [](const Scan& scan) {
+            return mapped<double>(scan.size(), [&](std::size_t pin) {
+              double sum = 0;
+              for (const auto& [begin, end] : scan.run(pin).energised(scan.inputs()))
+                sum += end - begin;
+              return sum;
+            });
+          },
+          "Time for which the magnet of each pin is switched on, s.")
+      .def(
+          "control",
+          [](const Scan& scan, std::size_t pin) {
+            const device::PinRun& run = scan.run(pin);
+            return nb::make_tuple(run.commanded, run.decision, run.pending);
+          },
+          "pin"_a, "Whether it was commanded on at first; the last decision; pending switchings.")
+      .def(
+          "end", [](const Scan& scan, std::size_t pin) { return numbers_of(scan.run(pin).ended); },
+          "pin"_a,
+          "State of the pin at the end: time, twice, and its error; x, v, skin force; ...");
+}
