@@ -25,7 +25,7 @@ bool has_number(const char* key) {
   };
   return pd::device::find_input(key) &&
          (in_table("drive.") || in_table("plate.") || in_table("finger.") || in_table("magnet.") ||
-          in_table("control.") || std::strcmp(key, "array.axis") == 0);
+          in_table("control.") || in_table("criteria.") || std::strcmp(key, "array.axis") == 0);
 }
 
 /// Keys of rows, with the names of both columns.
@@ -70,6 +70,23 @@ DeviceParameters parameters_of(const pindrive_device& device, std::vector<std::s
   return found;
 }
 
+/// Reads the criteria of a felt line.
+pindrive_error read(const DeviceParameters& parameters, pd::device::Criteria& criteria) {
+  const std::pair<const char*, double*> numbers[] = {
+      {"criteria.felt", &criteria.felt},
+      {"criteria.direction", &criteria.direction},
+      {"criteria.direction_sure", &criteria.direction_sure},
+      {"criteria.direction_speed", &criteria.direction_speed},
+      {"criteria.false_line", &criteria.false_line}};
+  pindrive_error error = PINDRIVE_OK;
+  for (const auto& [key, number] : numbers) {
+    const pd::device::InputQuantity& input = *pd::device::find_input(key);
+    *number = parameters.of(key, input.absent).value;
+    if (!error) error = check(key, input, *number);
+  }
+  return error;
+}
+
 }  // namespace
 
 pindrive_error pindrive_c::made_of(const pindrive_device& device,
@@ -80,6 +97,7 @@ pindrive_error pindrive_c::made_of(const pindrive_device& device,
   const pindrive_release release;
   std::unique_ptr<const pd::device::Electromagnet> magnet;
   pd::device::Controller controller{};
+  pd::device::Criteria criteria{};
   pindrive_error error = parameters.fill(&drive, &DeviceParameters::Number::value);
   if (!error) error = parameters.check_together();
   if (!error) error = check(drive, release);
@@ -89,16 +107,18 @@ pindrive_error pindrive_c::made_of(const pindrive_device& device,
              "plate.kinetic must be greater than 0 N where a magnet holds by friction, got 0.0 N");
   if (!error) error = parameters.read(magnet);
   if (!error) error = parameters.read(controller);
+  if (!error) error = read(parameters, criteria);
   const double axis = parameters.of("array.axis").value;
   if (!error) error = check("array.axis", *pd::device::find_input("array.axis"), axis);
   if (error) return error;
   const pd::OwnedContact<double> plate(drive.plate, drive.plate),
       finger(drive.finger, drive.finger);
   const double normal_force = parameters.plate_normal_force().value;
-  const auto owned = std::make_shared<OwnedDevice>(OwnedDevice{
-      plate, finger,
-      pd::device::Device{
-          {}, normal_force, *magnet, controller, pd::device::Axis(axis), device.spots}});
+  const auto owned = std::make_shared<OwnedDevice>(
+      OwnedDevice{plate, finger,
+                  pd::device::Device{
+                      {}, normal_force, *magnet, controller, pd::device::Axis(axis), device.spots},
+                  criteria});
   owned->plate.contact.curve = owned->plate.branches.data();
   owned->finger.contact.curve = owned->finger.branches.data();
   owned->device.drive = {drive.mass,           drive.stiffness,       drive.damping,

@@ -421,6 +421,7 @@ PINDRIVE_API void pindrive_device_free(pindrive_device *device);
  *   magnet.   residual, pwm_frequency, pwm_duty, lift, closing_force, deviation
  *   control.  sample_rate, latency, threshold, hysteresis
  *   array.    axis: of the drives on the page, from x towards y, rad
+ *   criteria. felt, direction, direction_sure, direction_speed, false_line: of a felt line
  * What is not given has the value of a device file without the key. */
 PINDRIVE_API pindrive_error pindrive_device_set(pindrive_device *device, const char *key,
                                                 double value);
@@ -514,6 +515,72 @@ PINDRIVE_API pindrive_error pindrive_scan_write(const pindrive_scan *scan, void 
                                                 size_t size);
 PINDRIVE_API pindrive_error pindrive_scan_read(const pindrive_device *device, const void *bytes,
                                                size_t size, pindrive_scan **scan);
+
+/* ---- lines that a finger feels --------------------------------------------------------------- */
+
+/* Outcome of a printed line under a pin. */
+enum {
+  PINDRIVE_SHOWN = 0,
+  PINDRIVE_UNSEEN = 1, /* by the control block */
+  PINDRIVE_MERGED = 2, /* with the line before */
+  PINDRIVE_FAINT = 3   /* below the threshold of the finger */
+};
+
+/* Perceived motion of the skin. */
+enum {
+  PINDRIVE_NO_CUE = 0,
+  PINDRIVE_PULSE = 1,
+  PINDRIVE_DIRECTION = 2,
+  PINDRIVE_SURE_DIRECTION = 3
+};
+
+/* One end of a printed line with its response; NaN where there is none. */
+typedef struct pindrive_line_edge {
+  double time;     /* of passage under the spot, s */
+  double x, y;     /* place of the spot, m */
+  double command;  /* time of the switching of the magnet, s */
+  double response; /* time of the response of the pin, s */
+  double lag;      /* way of the hand from passage to response, m */
+  double skin;     /* motion of the skin, m */
+  int cue;
+} pindrive_line_edge;
+
+typedef struct pindrive_line {
+  size_t pin;
+  int outcome;
+  pindrive_line_edge begin, end;
+  double stroke;    /* displacement of the pin, m */
+  double height;    /* largest deflection, m */
+  double returned;  /* return before the next line or the stop of the hand, m */
+  double release;   /* time of the break-away from the plate, s */
+  double settled;   /* time from which the pin is settled, s; NaN: not settled */
+  double smear;     /* way of the hand from release to settling, m */
+  double overshoot; /* part of the way back */
+  double contrast;
+} pindrive_line;
+
+/* Evaluates the lines under all pins against the page, for the hand as it was given from the begin of a scan that
+ * was not advanced yet: line after line of each pin, and the number of false lines. More than `capacity` lines make
+ * it return PINDRIVE_MORE, with the number of all in `count`. go_on is as for pindrive_scan_advance. */
+PINDRIVE_API pindrive_error pindrive_scan_lines(const pindrive_scan *scan, pindrive_go_on go_on,
+                                                void *context, pindrive_line *lines,
+                                                size_t capacity, size_t *count,
+                                                size_t *false_lines);
+
+typedef struct pindrive_speed_limit {
+  double distinct_from, distinct_to; /* first band of speeds at which both lines are felt, m/s; NaN: none */
+  double settled_to; /* largest speed of the first band in which the pin settles between them, m/s; NaN: none */
+  size_t bands;      /* number of bands of distinct lines */
+} pindrive_speed_limit;
+
+/* Searches for the hand speeds, from slowest to fastest (m/s, 1e-4 to 100), at which two lines of a width, a pitch
+ * apart (m), are distinct for one pin: the pin comes back by at least `part` (1e-6 to 1) of its deflection between
+ * them, and each moves the skin enough for a direction, whatever the phase of the control block's samples. */
+PINDRIVE_API pindrive_error pindrive_device_speed_limit(const pindrive_device *device, double pitch,
+                                                        double width, double part, double slowest,
+                                                        double fastest, pindrive_go_on go_on,
+                                                        void *context,
+                                                        pindrive_speed_limit *limit);
 
 /* ---- many releases --------------------------------------------------------------------------- */
 

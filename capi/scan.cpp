@@ -125,9 +125,7 @@ pindrive_error pindrive_scan_new(const pindrive_device* device, double time, dou
     if (!error) error = check("y", y, std::abs(y) <= 1000, "from -1000 to 1000");
     if (error) return error;
     made->page = std::make_shared<OwnedPage>();
-    device::PinState begin;
-    begin.coil.since = time;
-    begin.coil.pull = made->owned->device.magnet.pull(0);
+    const device::PinState begin = device::at_rest(made->owned->device, time);
     made->stream = std::make_unique<device::DeviceStream>(
         made->owned->device, device::LiveHand::Row{time, {vx, vy}, finger_load},
         device::Place{x, y},

@@ -9,6 +9,7 @@
 #include "owned_motion.hpp"
 #include "pindrive.h"
 #include "pindrive/device/device_stream.hpp"
+#include "pindrive/device/evaluation.hpp"
 #include "pindrive/device/raster.hpp"
 #include "pindrive/device/scan_inputs.hpp"
 
@@ -24,6 +25,7 @@ namespace pindrive_c {
 struct OwnedDevice {
   pindrive::OwnedContact<double> plate, finger;
   pindrive::device::Device device;
+  pindrive::device::Criteria criteria;  ///< of a felt line
 };
 
 /// A page that owns its luminance.

@@ -509,6 +509,43 @@ static pindrive_device *the_device(void) {
   return device;
 }
 
+/* Lines of a page under a hand, and the speed at which two lines merge. */
+static void lines_and_speeds(void) {
+  double paper[400];
+  pindrive_device *device = the_device();
+  pindrive_scan *scan = NULL;
+  pindrive_line lines[8];
+  pindrive_speed_limit limit;
+  size_t count = 0, false_lines = 0;
+  for (int i = 0; i < 400; ++i) paper[i] = (i >= 100 && i < 120) || (i >= 200 && i < 220) ? 0 : 1;
+  expect(pindrive_device_set(device, "criteria.felt", 40e-6) == PINDRIVE_OK, "a criterion");
+  expect(pindrive_scan_new(device, 0, 0, 5e-5, 0.06, 0, 1, &scan) == PINDRIVE_OK, "a scan");
+  expect(pindrive_scan_set_page(scan, paper, 1, 400, 1e-4, 0, 0) == PINDRIVE_OK, "a page");
+  refuses(pindrive_scan_lines(scan, NULL, NULL, lines, 8, &count, &false_lines), PINDRIVE_BAD_VALUE,
+          "two rows of the hand or more");
+  expect(pindrive_scan_move(scan, 0.6, 0.06, 0, 1) == PINDRIVE_OK, "the hand moves");
+  expect(pindrive_scan_lines(scan, NULL, NULL, lines, 1, &count, &false_lines) == PINDRIVE_MORE &&
+             count == 2,
+         "two lines");
+  expect(pindrive_scan_lines(scan, NULL, NULL, lines, 8, &count, &false_lines) == PINDRIVE_OK &&
+             lines[0].outcome == PINDRIVE_SHOWN && lines[1].outcome == PINDRIVE_SHOWN,
+         "that are shown");
+  expect(fabs(lines[0].begin.x - 0.01) < 1e-4 && lines[0].begin.lag > 0, "where they are printed");
+  expect(pindrive_scan_advance(scan, 0.1, NULL, NULL) == PINDRIVE_OK, "advanced");
+  refuses(pindrive_scan_lines(scan, NULL, NULL, lines, 8, &count, &false_lines), PINDRIVE_BAD_VALUE,
+          "not be advanced yet");
+  refuses(pindrive_device_speed_limit(device, 4e-3, 4e-3, 0.5, 0.01, 1, NULL, NULL, &limit),
+          PINDRIVE_BAD_VALUE, "width must be from 1e-07 to below the pitch");
+  refuses(pindrive_device_speed_limit(device, 4e-3, 2e-3, 0.5, 1, 1, NULL, NULL, &limit),
+          PINDRIVE_BAD_VALUE, "fastest must be above the slowest");
+  expect(pindrive_device_speed_limit(device, 4e-3, 2e-3, 0.5, 0.01, 1, NULL, NULL, &limit) ==
+                 PINDRIVE_OK &&
+             limit.bands > 0 && limit.distinct_to > 0.05 && limit.distinct_to < 1,
+         "a speed at which two lines merge");
+  pindrive_scan_free(scan);
+  pindrive_device_free(device);
+}
+
 static void a_device(void) {
   const double black[2] = {0, 0}, gray[1] = {1.5}, x[2] = {0, 5e-3}, y[2] = {0, 0};
   const double times[2] = {0, 0.01}, volts[2] = {5, 2};
@@ -603,6 +640,7 @@ int main(void) {
   at_stops();
   slipping_across();
   a_device();
+  lines_and_speeds();
   pindrive_motion_free(NULL);
   pindrive_drive_free(NULL);
   pindrive_release_free(NULL);

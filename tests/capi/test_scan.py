@@ -17,6 +17,7 @@ from c_interface import QUANTITIES, Event, Interface, doubles
 from pindrive import Contact, Drive, Profile
 from pindrive.device import (
     ControlBlock,
+    Criteria,
     Device,
     Electromagnet,
     HandPath,
@@ -24,6 +25,8 @@ from pindrive.device import (
     Scene,
     scan,
 )
+from pindrive.evaluation.line_crossings import CUES, FATES
+from pindrive.evaluation.resolution import largest_speeds
 
 pytestmark = [
     pytest.mark.timeout(1800),
@@ -222,3 +225,90 @@ def test_where_it_is_cut_does_not_change_a_bit(c_library: Path) -> None:
     for other in ends[1:]:
         assert_array_equal(ends[0], other)
     assert np.ptp(ends[0][0]) > 0.0
+
+
+class LineEdge(ctypes.Structure):
+    """pindrive_line_edge."""
+
+    _fields_ = (
+        *((n, c_double) for n in ("time", "x", "y", "command", "response", "lag", "skin")),
+        ("cue", ctypes.c_int),
+    )
+
+
+class Line(ctypes.Structure):
+    """pindrive_line."""
+
+    _fields_ = (
+        ("pin", c_size_t),
+        ("outcome", ctypes.c_int),
+        ("begin", LineEdge),
+        ("end", LineEdge),
+        *(
+            (n, c_double)
+            for n in (
+                *("stroke", "height", "returned", "release", "settled", "smear"),
+                *("overshoot", "contrast"),
+            )
+        ),
+    )
+
+
+class SpeedLimit(ctypes.Structure):
+    """pindrive_speed_limit."""
+
+    _fields_ = (
+        *((n, c_double) for n in ("distinct_from", "distinct_to", "settled_to")),
+        ("bands", c_size_t),
+    )
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_lines_are_those_of_evaluate(seed: int, c_library: Path) -> None:
+    c, reading = Interface(c_library), Reading(seed)
+    criteria = Criteria(felt=30e-6, direction=60e-6)
+    device, unused = reading.in_c(c)
+    for key, value in (("felt", 30e-6), ("direction", 60e-6)):
+        c("device_set", device, f"criteria.{key}".encode(), c_double(value))
+    p, load, begun = reading.path, reading.loads_of_scan()[0], c_void_p()
+    first = (p.times[0], p.x[0], p.y[0], p.vx[0], p.vy[0], load)
+    c("scan_new", device, *map(c_double, first), byref(begun))
+    reading.set_page(c, begun)
+    for row in reading.rows():
+        c("scan_move", begun, *map(c_double, row))
+    expected = reading.scan().evaluate(criteria)
+    buffer, count, false = (Line * 3)(), c_size_t(), c_size_t()
+    assert c("scan_lines", begun, None, None, buffer, c_size_t(3), byref(count), byref(false)) == 1
+    assert (count.value, false.value) == (len(expected.lines), len(expected.false_lines))
+    buffer = (Line * count.value)()
+    arguments = begun, None, None, buffer, count, byref(count), byref(false)
+    assert c("scan_lines", *arguments) == 0
+    for found, line in zip(buffer, expected.lines, strict=True):
+        assert (found.pin, FATES[found.outcome]) == (line.pin, line.fate)
+        for edge, of in ((found.begin, line.begin), (found.end, line.end)):
+            assert CUES[edge.cue] == of.cue
+            for name in ("time", "x", "y", "command", "response", "lag", "skin"):
+                assert_array_equal(getattr(edge, name), getattr(of, name), name)
+        for name in ("stroke", "height", "returned", "release", "settled", "smear", "overshoot"):
+            assert_array_equal(getattr(found, name), getattr(line, name), name)
+    assert len(expected.shown) > 4
+    c("scan_advance", begun, c_double(p.times[1]), None, None)
+    lines = c.library.pindrive_scan_lines
+    assert lines(begun, None, None, buffer, count, byref(count), byref(false)) > 1
+    assert b"not be advanced yet" in c.library.pindrive_last_error()
+    c.free(scan=begun)
+    c.free(scan=unused, device=device)
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_the_speed_limit_is_that_of_largest_speeds(seed: int, c_library: Path) -> None:
+    c, reading = Interface(c_library), Reading(seed)
+    device, begun = reading.in_c(c)
+    (expected,) = largest_speeds(reading.device, [0.003], slowest=0.02, fastest=0.5)
+    found = SpeedLimit()
+    numbers = map(c_double, (0.003, 0.0015, 0.5, 0.02, 0.5))
+    c("device_speed_limit", device, *numbers, None, None, byref(found))
+    assert found.bands == len(expected.distinct)
+    assert_array_equal(found.distinct_to, expected.speed)
+    assert_array_equal(found.settled_to, expected.settled_speed)
+    c.free(scan=begun, device=device)

@@ -43,6 +43,14 @@ struct PinState {
   std::optional<StepperState<double>> motion;
 };
 
+/// State of a pin with its spring at rest, switched off, at a time, s.
+inline PinState at_rest(const Device& device, double time) {
+  PinState state;
+  state.coil.since = time;
+  state.coil.pull = device.magnet.pull(0);
+  return state;
+}
+
 /// Velocity of the plate under the mouse, over the time since the begin of a path. A component across the
 /// axis that is rounding of the speed is zero.
 struct PlateVelocity {

@@ -37,9 +37,8 @@ inline PinState steady_state(const Device& device) {
   const double along = device.axis.along({1, 0});
   const double plate =
       drive.plate.kinetic * device.load(device.magnet.given().residual) * std::abs(along);
-  PinState state;
+  PinState state = at_rest(device, 0);
   state.position = std::copysign(drag_of_plate(drive, plate, 1), along);
-  state.coil.pull = device.magnet.pull(0);
   if (std::isfinite(drive.finger.stiffness)) {
     const double held = plate <= drive.finger.static_limit ? plate : drive.finger.kinetic;
     state.stretch = std::copysign(held / drive.finger.stiffness, along);

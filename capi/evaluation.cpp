@@ -1,0 +1,126 @@
+// The C interface: lines that a finger feels, and the largest hand speed over two lines.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "interface.hpp"
+#include "pindrive.h"
+#include "pindrive/device/printed_lines.hpp"
+#include "pindrive/device/scan.hpp"
+#include "pindrive/device/scan_evaluation.hpp"
+#include "pindrive/device/speed_limit.hpp"
+#include "scan.hpp"
+#include "stepper.hpp"
+
+using namespace pindrive_c;  // NOLINT(google-build-using-namespace): its own
+
+namespace {
+
+namespace device = pd::device;
+
+pindrive_line_edge edge_of(const device::EvaluatedEdge& edge) {
+  return {edge.time,     edge.spot.x, edge.spot.y, edge.command,
+          edge.response, edge.lag,    edge.skin,   static_cast<int>(edge.cue)};
+}
+pindrive_line line_of(const device::EvaluatedLine& line) {
+  return {static_cast<std::size_t>(line.pin),
+          static_cast<int>(line.outcome),
+          edge_of(line.begin),
+          edge_of(line.end),
+          line.stroke,
+          line.height,
+          line.returned,
+          line.release,
+          line.settled,
+          line.smear,
+          line.overshoot,
+          line.contrast};
+}
+
+}  // namespace
+
+extern "C" {
+
+pindrive_error pindrive_scan_lines(const pindrive_scan* scan, pindrive_go_on go_on, void* context,
+                                   pindrive_line* lines, size_t capacity, size_t* count,
+                                   size_t* false_lines) {
+  if (!scan) return null_pointer("scan");
+  if (!count) return null_pointer("count");
+  if (!false_lines) return null_pointer("false_lines");
+  if (capacity > 0 && !lines) return null_pointer("lines");
+  const device::LiveHand& hand = scan->stream->hand();
+  if (scan->stream->now() != hand.begin() || hand.size() < 2)
+    return fail(PINDRIVE_BAD_VALUE,
+                "the scan must have two rows of the hand or more, and not be advanced yet");
+  return guarded([&]() -> pindrive_error {
+    const device::Device& reader = scan->owned->device;
+    const device::ScanInputs inputs{reader,       scan->page->raster(), hand.path(),
+                                    hand.plate(), hand.finger_load(),   hand.begin()};
+    const device::PageAlongPath page(inputs.raster, inputs.path, reader.axis,
+                                     reader.controller.threshold);
+    const device::ScanEvaluation evaluation(inputs, scan->owned->criteria);
+    const device::PinState begin = device::at_rest(reader, hand.begin());
+    constexpr std::size_t unlimited = std::numeric_limits<std::size_t>::max();
+    Attended attended(go_on, context);
+    device::Evaluation found;
+    device::PinRun run;
+    std::size_t edges = 0;
+    for (std::size_t pin = 0; pin < reader.spots.size(); ++pin) {
+      run.energise(inputs, pin, begin, unlimited);
+      run.simulate(inputs, begin, [&] { return attended.go_on(); });
+      if (attended.stopped()) return stopped();
+      if (run.outcome.status != pd::Status::ok) return given_up(run.outcome.status);
+      evaluation.add(pin, run, run.motion(inputs, begin),
+                     page.lines(reader.spots[pin], unlimited, edges), found);
+    }
+    *count = found.lines.size();
+    *false_lines = found.false_lines.size();
+    const std::size_t fitting = std::min(capacity, found.lines.size());
+    std::transform(found.lines.begin(), found.lines.begin() + static_cast<std::ptrdiff_t>(fitting),
+                   lines, line_of);
+    return fitting < found.lines.size() ? PINDRIVE_MORE : PINDRIVE_OK;
+  });
+}
+
+pindrive_error pindrive_device_speed_limit(const pindrive_device* device, double pitch,
+                                           double width, double part, double slowest,
+                                           double fastest, pindrive_go_on go_on, void* context,
+                                           pindrive_speed_limit* limit) {
+  if (!device) return null_pointer("device");
+  if (!limit) return null_pointer("limit");
+  const auto within = [](double value, double least, double most) {
+    return value >= least && value <= most;
+  };
+  pindrive_error error = check("pitch", pitch, within(pitch, 1e-6, 10), "from 1e-06 to 10");
+  if (!error)
+    error = check("width", width, width >= 1e-7 && width < pitch, "from 1e-07 to below the pitch");
+  if (!error) error = check("part", part, within(part, 1e-6, 1), "from 1e-06 to 1");
+  if (!error) error = check("slowest", slowest, within(slowest, 1e-4, 100), "from 0.0001 to 100");
+  if (!error)
+    error =
+        check("fastest", fastest, fastest > slowest && fastest <= 100, "above the slowest, to 100");
+  if (error) return error;
+  return guarded([&]() -> pindrive_error {
+    std::shared_ptr<const OwnedDevice> owned;
+    if (const pindrive_error refused = made_of(*device, owned)) return refused;
+    Attended attended(go_on, context);
+    const device::TwoLines lines(owned->device, pitch, width, owned->criteria);
+    device::SpeedLimitSearch search(lines, owned->criteria.direction, {part, {slowest, fastest}});
+    const device::SpeedLimit found = search.found([&] { return attended.go_on(); }, [](int) {});
+    if (attended.stopped()) return stopped();
+    if (found.status != pd::Status::ok) return given_up(found.status);
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    *limit = {nan, nan, nan, found.distinct.size()};
+    if (!found.distinct.empty()) {
+      limit->distinct_from = found.distinct[0].slowest;
+      limit->distinct_to = found.distinct[0].fastest;
+    }
+    if (!found.settled.empty()) limit->settled_to = found.settled[0].fastest;
+    return PINDRIVE_OK;
+  });
+}
+
+}  // extern "C"
