@@ -24,6 +24,8 @@ ROOT = STUDIO.parent
 BUILD = STUDIO / "build"
 PAGE = ROOT / "src" / "pindrive" / "studio.html"
 BIOME = "node_modules/@biomejs/biome/bin/biome"
+WRAPPERS = ("core.ts", "read/scan.ts")
+"""The files that call the core."""
 BESIDE = ("malloc", "free")
 """What the page calls of the core beside pindrive.h."""
 
@@ -64,7 +66,7 @@ def packages() -> None:
 
 def core() -> Path:
     """The core as WebAssembly: the functions of pindrive.h that the page calls."""
-    wrapper = (STUDIO / "src" / "core.ts").read_text("utf-8")
+    wrapper = "".join((STUDIO / "src" / name).read_text("utf-8") for name in WRAPPERS)
     header = (ROOT / "capi" / "pindrive.h").read_text("utf-8")
     names = set(re.findall(r"pindrive_(\w+)\(", header))
     called = {name for name in names if re.search(rf'(?:"|wasm\.pindrive_){name}\b', wrapper)}

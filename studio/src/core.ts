@@ -101,7 +101,7 @@ export class Core {
   readonly energyNames: readonly string[];
   readonly certificateNames: readonly string[];
 
-  private constructor(private readonly wasm: Exports) {
+  private constructor(readonly wasm: Exports) {
     wasm._initialize?.();
     const found = wasm.pindrive_interface!();
     if (found !== INTERFACE) throw new CoreError(`the core has interface ${found}, not ${INTERFACE}`);
@@ -293,11 +293,11 @@ export class Core {
     }
   }
 
-  private setNumber(setter: string, target: number, name: string, value: number): void {
+  setNumber(setter: string, target: number, name: string, value: number): void {
     this.named([name], ([address]) => this.call(setter, target, address!, value));
   }
 
-  private setRows(setter: string, target: number, name: string, rows: Rows): void {
+  setRows(setter: string, target: number, name: string, rows: Rows): void {
     this.borrowed(16 * rows.length, (at) =>
       this.named([name], ([address]) => {
         const columns = new Float64Array(this.buffer, at, 2 * rows.length);

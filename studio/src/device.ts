@@ -249,6 +249,17 @@ class Reader {
   }
 }
 
+/** The values in the tables about the drive, SI, of a device that was read. */
+export function settingsOf(around: Device["around"]): Values {
+  const found: Record<string, Value> = {};
+  for (const [key, quantity] of INPUTS) {
+    const [table, name] = split(key);
+    const value = around[table]?.[name];
+    if (value !== undefined) found[key] = readValue(value, quantity);
+  }
+  return found;
+}
+
 function split(key: string): [string, string] {
   const dot = key.indexOf(".");
   return dot < 0 ? [key, ""] : [key.slice(0, dot), key.slice(dot + 1)];

@@ -8,12 +8,36 @@ import { DeviceError, decodeText, readDevice } from "./device";
 import type { Values } from "./friction";
 import { axesOf, gridValues, mapTask } from "./map";
 import { expanded, SIZE } from "./mapgrid";
+import { deviceInput } from "./read/device";
+import { type Answer, Engine, SAMPLED, type Samples, type Verdict } from "./read/engine";
+import { Hand, type HandRows, type Place, type Slowness, TIMES } from "./read/hand";
 import { RecordingError, readRecording } from "./recording";
 import { type Curves, simulateAll } from "./sample";
 import { toSi } from "./units";
 import { deviceFile, eventsCsv, samplesCsv } from "./write";
 
+/** A reading, with the times of its pictures, s: its last sample, and its lines. */
+interface Read {
+  readonly read: {
+    readonly device: string;
+    readonly page: { readonly grey: string; readonly rows: number; readonly columns: number };
+    readonly pixel: number;
+    readonly hand: HandRows;
+    readonly pictures: readonly number[];
+  };
+}
+/** A hand that follows aims, m, one each tick. */
+interface Follow {
+  readonly follow: {
+    readonly slowness: Slowness;
+    readonly straight: boolean;
+    readonly aims: readonly Place[];
+  };
+}
+
 type Question =
+  | Read
+  | Follow
   | { readonly simulate: Input; readonly duration: number | null }
   | Device
   | { readonly recording: string; readonly file: string }
@@ -60,7 +84,39 @@ function corners(values: Values, x: string, y: string): unknown {
   }));
 }
 
+function ofReading(core: Core, { device, page, pixel, hand: saved, pictures }: Read["read"]): unknown {
+  const design = readDevice(device, "the device");
+  const input = deviceInput(design);
+  const grey = Uint8Array.from(Buffer.from(page.grey, "base64"));
+  const hand = Hand.of(saved);
+  const open = { device: input, page: { ...page, grey, pixel }, start: hand.start };
+  const engine = new Engine(core);
+  const problem = engine.answer({ open });
+  if (problem) return problem;
+  let known = 0;
+  let last: Answer = null;
+  for (const until of pictures) {
+    let count = known;
+    while (count < hand.count && (count === 0 || saved.rows[count - 1]![0] / TIMES < until)) ++count;
+    const rows = hand.rowsFrom(known).subarray(0, 3 * (count - known));
+    last = engine.answer({ rows, until });
+    known = count;
+  }
+  const { values, times } = last as Samples;
+  const end = values.subarray((times.length - 1) * SAMPLED.length * input.spots.length);
+  const verdict = engine.answer({ judge: { ...open, rows: hand.rowsFrom(0) } }) as Verdict;
+  const { x, y } = hand.at(hand.end);
+  return { end: bits(end), place: bits([x, y]), ...verdict };
+}
+
 function answer(core: Core, asked: Question): unknown {
+  if ("read" in asked) return ofReading(core, asked.read);
+  if ("follow" in asked) {
+    const hand = new Hand(asked.follow.aims[0]!);
+    hand.slowness = asked.follow.slowness;
+    for (const aim of asked.follow.aims) hand.follow(aim, asked.follow.straight);
+    return hand.saved;
+  }
   if ("simulate" in asked) return answerOf(core, asked.simulate, asked.duration);
   try {
     if ("device" in asked) return ofDevice(core, asked);

@@ -87,7 +87,13 @@ def scan(
     from pindrive.files.device import load_device
 
     with refusing():
-        device_file = load_device(file, overrides or (), whole=True)
+        saved = None
+        if file.suffix.lower() == ".json":
+            from pindrive.files.reading import load_reading
+
+            saved = load_reading(file)
+            _check_alone(overrides, text, image, grating, font, path, smooth)
+        device_file = saved.device if saved else load_device(file, overrides or (), whole=True)
         device, reading = device_file.device, device_file.reading
         wanted = output or []
         frequency = csv_rate(rate, wanted) or 1000.0
@@ -100,25 +106,32 @@ def scan(
         from pindrive.evaluation.perception import Evaluation, evaluate
         from pindrive.files.output import LINES_CSV, SCAN_EVENTS_CSV
 
-        page = Page(
-            text=None if text is None else text.replace("\\n", "\n"),
-            image=image,
-            grating=None
-            if grating is None
-            else tuple(measures(grating, "pitch", "4 mm", "--grating")),
-            font=font,
-            path=None if path == STROKES else Path(path),
-            smooth=smooth,
-        )
-        page.check("--{}")
+        page = None
+        if saved is None:
+            page = Page(
+                text=None if text is None else text.replace("\\n", "\n"),
+                image=image,
+                grating=None
+                if grating is None
+                else tuple(measures(grating, "pitch", "4 mm", "--grating")),
+                font=font,
+                path=None if path == STROKES else Path(path),
+                smooth=smooth,
+            )
+            page.check("--{}")
         targets = pictures(plot, partial(Evaluation.plot, pin=pin))
         targets += _films(film, slow) + by_suffix(wanted, _writers(frequency))
         targets = with_events(targets, SCAN_EVENTS_CSV, _write_events)
         line_writers = {".csv": (LINES_CSV, _write_lines)}
         targets += by_suffix([lines] if lines else [], line_writers, "--lines")
-        with results(targets, [file, *page.files.values()], force=force) as write:
-            scene = page.scene(reading, device.array)
-            hand = page.hand(reading, scene, device.array)
+        sources = [] if page is None else page.files.values()
+        with results(targets, [file, *sources], force=force) as write:
+            if saved:
+                scene, hand = saved.page, saved.hand
+            else:
+                assert page
+                scene = page.scene(reading, device.array)
+                hand = page.hand(reading, scene, device.array)
             suffixes = {path.suffix.lower() for path in wanted}
             _check_sizes(hand, len(device.array), suffixes, frequency)
             if film:
@@ -144,6 +157,15 @@ def scan(
     show(scan_report(done))
     show(evaluation_report(evaluation))
     say_written(targets)
+
+
+def _check_alone(overrides: list[str] | None, *page: object) -> None:
+    """Reject a page, a hand or values beside a saved reading, which has them."""
+    if overrides or any(part not in (None, STROKES) for part in page):
+        raise ValueError(
+            "a saved reading has its device, page and hand; leave out --set, --text, --image, "
+            "--grating, --font, --path and --smooth"
+        )
 
 
 def _writers(frequency: float) -> dict[str, Writer[Evaluation]]:

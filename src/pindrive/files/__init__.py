@@ -3,7 +3,9 @@
 - `ConfigError`: a device file that cannot be used
 - `DeviceFile`: what a device file says
 - `load_device`: the device that a file describes
+- `load_reading`: a device, a page and a hand that were saved in the browser
 - `OutputError`: a file that cannot be written
+- `SavedReading`: a device, a page and the hand that read it
 """
 
 import lazy_loader

@@ -1,0 +1,128 @@
+// The device of a page, simulated live: what a worker does with the hand, and what it answers.
+import type { Core } from "../core";
+import { Device, type DeviceInput, type Line, type Raster, Scan, type SpeedLimit, type Start } from "./scan";
+
+/** Quantities of a sample, each of all pins, in this order. */
+export const SAMPLED = ["position", "stretch", "pull", "command", "luminance"] as const;
+/** Time between two samples, s of the device. */
+const SAMPLING = 1e-3;
+const LIMIT_PART = 0.5; // return of the pin between two lines, over its displacement
+const HANDS = [0.005, 1] as const; // m/s
+
+export interface Opened {
+  readonly open: { readonly device: DeviceInput; readonly page: Raster; readonly start: Start };
+}
+export interface Turned {
+  readonly page: Raster;
+}
+/** Rows of time, vx and vy that follow the rows before, and the time to advance to. */
+export interface Moved {
+  readonly rows: Float64Array;
+  readonly until: number;
+}
+/** A whole hand whose lines are to be evaluated. */
+export interface Judged {
+  readonly judge: Opened["open"] & { readonly rows: Float64Array };
+}
+export interface Limited {
+  readonly limits: { readonly device: DeviceInput; readonly pitches: readonly number[] };
+}
+export type Task = Opened | Turned | Moved | Judged | Limited;
+
+/** Samples until a time: `values` holds, for each time, the sampled quantities of all pins. */
+export interface Samples {
+  readonly until: number;
+  readonly times: Float64Array;
+  readonly values: Float64Array;
+  /** Time that it took, ms. */
+  readonly took: number;
+}
+export interface Verdict {
+  readonly lines: readonly Line[];
+  readonly falseLines: number;
+}
+export interface Limits {
+  /** Largest speeds by pitch, in the order of the task. */
+  readonly limits: readonly SpeedLimit[];
+}
+export interface Failure {
+  readonly failed: string;
+}
+export type Answer = Samples | Verdict | Limits | Failure | null;
+
+export class Engine {
+  private device: Device | null = null;
+  private scan: Scan | null = null;
+  private pins = 0;
+  private now = 0;
+
+  constructor(private readonly core: Core) {}
+
+  /** The answer to a task; a device that cannot be is a failure in words. */
+  answer(task: Task): Answer {
+    try {
+      if ("open" in task) this.open(task.open);
+      else if ("page" in task) this.scan?.setPage(task.page);
+      else if ("until" in task) return this.advance(task);
+      else if ("judge" in task) return this.judge(task.judge);
+      else return this.limits(task.limits);
+      return null;
+    } catch (error) {
+      return { failed: error instanceof Error ? error.message : String(error) };
+    }
+  }
+
+  private open({ device, page, start }: Opened["open"]): void {
+    this.scan?.free();
+    this.device?.free();
+    [this.scan, this.device, this.now] = [null, null, 0];
+    this.device = new Device(this.core, device);
+    this.pins = device.spots.length;
+    this.scan = new Scan(this.core, this.device, this.pins, start);
+    this.scan.setPage(page);
+  }
+
+  private advance({ rows, until }: Moved): Samples {
+    const began = performance.now();
+    const { scan, pins } = this;
+    if (!scan) throw new Error("no device is open");
+    for (let i = 0; i < rows.length; i += 3) scan.move(rows[i]!, rows[i + 1]!, rows[i + 2]!);
+    const times: number[] = [];
+    for (let k = Math.floor(this.now / SAMPLING) + 1; k * SAMPLING < until; ++k) times.push(k * SAMPLING);
+    if (until > this.now) times.push(until);
+    const values = new Float64Array(times.length * SAMPLED.length * pins);
+    times.forEach((time, i) => {
+      scan.advance(time);
+      SAMPLED.forEach((name, q) => {
+        scan.read(name, values, (i * SAMPLED.length + q) * pins);
+      });
+    });
+    this.now = until;
+    return { until, times: Float64Array.from(times), values, took: performance.now() - began };
+  }
+
+  private judge({ device: input, page, start, rows }: Judged["judge"]): Verdict {
+    const device = new Device(this.core, input);
+    try {
+      const scan = new Scan(this.core, device, input.spots.length, start);
+      try {
+        scan.setPage(page);
+        for (let i = 0; i < rows.length; i += 3) scan.move(rows[i]!, rows[i + 1]!, rows[i + 2]!);
+        return scan.lines();
+      } finally {
+        scan.free();
+      }
+    } finally {
+      device.free();
+    }
+  }
+
+  private limits({ device: input, pitches }: Limited["limits"]): Limits {
+    const device = new Device(this.core, input);
+    try {
+      return { limits: pitches.map((pitch) => device.speedLimit(pitch, LIMIT_PART, ...HANDS)) };
+    } finally {
+      device.free();
+    }
+  }
+}

@@ -1,0 +1,180 @@
+"""The view "Read": a hand in the page has the bits of `scan`, at any rate of pictures."""
+
+from __future__ import annotations
+
+import base64
+import json
+import zlib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_array_equal
+from typer.testing import CliRunner
+
+import pindrive as pd
+from pindrive.cli.app import app
+from pindrive.files.reading import PLACES, load_reading
+from studio_cases import Ask, doubles
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+READER = (EXAMPLES / "tactile-reader.toml").read_text("utf-8")
+RIGID = READER.replace('stiffness = "300 N/m"\n', "")
+TURNED = READER.replace("spot_scale = 0.5\n", 'spot_scale = 0.5\naxis = "20 deg"\n')
+PIXEL = 1e-3 / 22
+
+
+def page_of_lines() -> np.ndarray[Any, np.dtype[np.uint8]]:
+    grey = np.full((275, 968), 255, np.uint8)
+    for left in range(200, 700, 90):
+        grey[30:240, left : left + 40] = 0
+    grey[100:130, 500:900] = 60
+    return grey
+
+
+def followed(node: Ask, slowness: int, straight: bool, seed: int) -> dict[str, Any]:
+    """A hand that follows a shaky pointer across the page."""
+    random = np.random.default_rng(seed)
+    count = {40: 2400, 10: 900, 1: 90}[slowness]
+    x = np.linspace(0.004, 0.040, count) + random.normal(0.0, 2e-5, count)
+    y = 0.00625 + 1e-4 * np.sin(np.arange(count) / 40) + random.normal(0.0, 2e-5, count)
+    aims = [{"x": a, "y": b} for a, b in zip(x.tolist(), y.tolist(), strict=True)]
+    (hand,) = node([{"follow": {"slowness": slowness, "straight": straight, "aims": aims}}])
+    return dict(hand)
+
+
+def saved(hand: dict[str, Any], device: str, path: Path) -> Path:
+    """The reading as the page saves it."""
+    grey = page_of_lines()
+    deflate = zlib.compressobj(wbits=-zlib.MAX_WBITS)
+    packed = deflate.compress(grey.tobytes()) + deflate.flush()
+    page = {
+        "title": "lines",
+        "rows": grey.shape[0],
+        "columns": grey.shape[1],
+        "pixel": PIXEL,
+        "luminance": base64.b64encode(packed).decode(),
+    }
+    reading = {"format": "pindrive reading 1", "device": device, "page": page, "hand": hand}
+    path.write_text(json.dumps(reading), "utf-8")
+    return path
+
+
+def asked(hand: dict[str, Any], device: str, pictures: list[float]) -> dict[str, Any]:
+    grey = page_of_lines()
+    page = {
+        "grey": base64.b64encode(grey.tobytes()).decode(),
+        "rows": grey.shape[0],
+        "columns": grey.shape[1],
+    }
+    return {
+        "read": {
+            "device": device,
+            "page": page,
+            "pixel": PIXEL,
+            "hand": hand,
+            "pictures": pictures,
+        }
+    }
+
+
+def pictures(end: float, rate: float, seed: int) -> list[float]:
+    """Times of pictures at a rate that varies, up to the end."""
+    random = np.random.default_rng(seed)
+    times = np.cumsum(random.uniform(0.2, 1.8, int(2 * end * rate) + 4) / rate)
+    return [*times[times < end].tolist(), end]
+
+
+@pytest.mark.parametrize(
+    ("slowness", "straight", "device"),
+    [
+        (10, True, READER),
+        (10, False, READER),
+        (1, True, READER),
+        (40, False, RIGID),
+        (10, True, TURNED),
+    ],
+    ids=["along a ruler", "free", "real time", "rigid, slow", "turned"],
+)
+def test_a_hand_has_the_bits_of_a_scan_at_any_rate_of_pictures(
+    node: Ask, tmp_path: Path, slowness: int, straight: bool, device: str
+) -> None:
+    hand = followed(node, slowness, straight, 7)
+    end = hand["rows"][-1][0] / 5000
+    rates = [300.0, 17.0, 1e4]
+    requested = [asked(hand, device, pictures(end, rate, i)) for i, rate in enumerate(rates)]
+    found = node(requested)
+    for other in found[1:]:
+        assert other == found[0]
+    reading = load_reading(saved(hand, device, tmp_path / "reading.json"))
+    done = pd.scan(reading.device, reading.page, reading.hand)
+    pins = len(done.pins)
+    position, stretch, _, command, luminance = np.reshape(doubles(found[0]["end"]), (5, pins))
+    assert_array_equal(position, [pin.state.position for pin in done.pins])
+    last = [pin.motion.stretch(end) for pin in done.pins]
+    assert_array_equal(stretch if np.isfinite(stretch).all() else np.zeros(pins), last)
+    assert_array_equal(luminance, [pin_luminance(done, pin, end) for pin in range(pins)])
+    assert np.ptp(luminance) > 0.5 and np.ptp(command) == 1.0
+    evaluation = done.evaluate()
+    assert len(found[0]["lines"]) == len(evaluation.lines) > 20
+    for line, expected in zip(found[0]["lines"], evaluation.lines, strict=True):
+        assert (line["pin"], line["outcome"]) == (expected.pin, expected.fate)
+        assert line["time"] == expected.begin.time
+        lag = None if np.isnan(expected.begin.lag) else expected.begin.lag
+        assert line["lag"] == lag
+    assert found[0]["falseLines"] == len(evaluation.false_lines)
+
+
+def pin_luminance(done: pd.Scan, pin: int, t: float) -> float:
+    return float(done.scene.at(*done.spot(pin, [t]).T)[0])
+
+
+def test_a_hand_follows_its_pointer_without_a_swing(node: Ask) -> None:
+    for slowness in (40, 10, 1):
+        aims = [{"x": 0.004, "y": 0.006}] + [{"x": 0.014, "y": 0.006}] * 120
+        (hand,) = node([{"follow": {"slowness": slowness, "straight": False, "aims": aims}}])
+        times, vx, vy = np.array([[0, 0, 0], *hand["rows"]]).T
+        places = np.cumsum(0.5 * (vx[1:] + vx[:-1]) * np.diff(times)) / 5000 / PLACES
+        assert (vx >= 0).all() and not vy.any()
+        assert places[-1] == pytest.approx(0.010, abs=5e-6)
+        assert places.max() < 0.010 + 5e-6
+
+
+def test_bad_readings_are_refused(tmp_path: Path) -> None:
+    hand = {"start": [4000, 6000], "rows": [[40, 1000, 0], [80, 2000, 0]]}
+    good = json.loads(saved(hand, READER, tmp_path / "good.json").read_text("utf-8"))
+    for change, message in (
+        ({"format": "pindrive reading 9"}, "format must be 'pindrive reading 1', got"),
+        ({"device": "mass = "}, "is no whole reading"),
+        ({"hand": {"start": [0, 0]}}, "'rows' is missing"),
+        ({"hand": {"start": [0, 0], "rows": [[40, 1, 0], [40, 1, 0]]}}, "must be greater than"),
+        ({"page": good["page"] | {"rows": 3}}, "is no whole reading"),
+        ({"page": good["page"] | {"luminance": "AAAA"}}, "is no whole reading"),
+    ):
+        path = tmp_path / "bad.json"
+        path.write_text(json.dumps(good | change), "utf-8")
+        with pytest.raises(ValueError, match=r"bad\.json") as refused:
+            load_reading(path)
+        assert message in str(refused.value), str(refused.value)
+    (tmp_path / "text.json").write_text("no", "utf-8")
+    with pytest.raises(ValueError, match="is no reading, which is JSON"):
+        load_reading(tmp_path / "text.json")
+    with pytest.raises(ValueError, match="cannot be read"):
+        load_reading(tmp_path / "none.json")
+    with pytest.raises(ValueError, match="holds no reading"):
+        load_reading("https://example.org/studio.html#read=AAAA")
+
+
+def test_the_command_scans_a_saved_reading(tmp_path: Path) -> None:
+    rows = [[40 * k, 60_000 if 0 < k < 60 else 0, 0] for k in range(1, 62)]
+    path = saved({"start": [4000, 6000], "rows": rows}, READER, tmp_path / "reading.json")
+    target = tmp_path / "lines.csv"
+    done = CliRunner().invoke(app, ["scan", str(path), "--lines", str(target)])
+    assert done.exit_code == 0, done.output
+    reading = load_reading(path)
+    shown = pd.scan(reading.device, reading.page, reading.hand).evaluate()
+    assert len(target.read_text("utf-8").splitlines()) == 1 + len(shown.lines) > 10
+    refused = CliRunner().invoke(app, ["scan", str(path), "--text", "a"])
+    assert refused.exit_code == 2
+    assert "a saved reading has its device, page and hand" in refused.output
