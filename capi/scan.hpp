@@ -25,7 +25,7 @@ namespace pindrive_c {
 struct OwnedDevice {
   pindrive::OwnedContact<double> plate, finger;
   pindrive::device::Device device;
-  pindrive::device::Criteria criteria;  ///< of a felt line
+  pindrive::device::Criteria criteria;  ///< criteria of a felt line
 };
 
 /// A page that owns its luminance.

@@ -169,7 +169,7 @@ std::tuple<Bands, Bands, std::optional<TrialNumbers>, int> speed_limit(
     const device::TwoLines lines(device.view(), pitch, width, limits);
     device::SpeedLimitSearch search(lines, limits.direction, {part, {tried.first, tried.second}});
     return search.found(go_on, [&](int trials) {
-      if (progress.is_none()) return;
+      if (progress.is_none() || !go_on(0)) return;  // an error that is pending allows no call
       const nb::gil_scoped_acquire locked;
       progress(trials);
     });

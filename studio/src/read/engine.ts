@@ -2,7 +2,7 @@
 import type { Core } from "../core";
 import { Device, type DeviceInput, type Line, type Raster, Scan, type SpeedLimit, type Start } from "./scan";
 
-/** Quantities of a sample, each of all pins, in this order. */
+/** Quantities of each sample, in their order. */
 export const SAMPLED = ["position", "stretch", "pull", "command", "luminance"] as const;
 /** Time between two samples, s of the device. */
 const SAMPLING = 1e-3;
