@@ -41,6 +41,7 @@ from pindrive.quantities.results import CHANNELS, MOTION, OUTPUTS
 from pindrive.quantities.table import QUANTITIES
 from pindrive.quantities.units import DEFINITIONS
 
+READER = Path(__file__).resolve().parents[1] / "examples" / "tactile-reader.toml"
 PARTS = (
     *SLOPES.values(),
     "profile.rate",
@@ -188,7 +189,14 @@ def tables() -> dict[str, Any]:
             for kind in EVENT_SHAPE
         },
         "template": template(),
+        "reader": without_remarks(READER.read_text("utf-8")),
     }
+
+
+def without_remarks(text: str) -> str:
+    """A device file without its comments."""
+    kept = [line for line in text.splitlines() if not line.startswith("#")]
+    return "\n".join(kept).strip() + "\n"
 
 
 if __name__ == "__main__":

@@ -6,12 +6,13 @@ export class Canvas {
   width = 0;
   height = 0;
 
-  /** `ratio`: height over width; `redraw` is called when the size has changed. */
+  /** `ratio`: height over width; `high`: or the height itself; `redraw` is called when the size has changed. */
   constructor(
     className: string,
     label: string,
     private readonly ratio: number,
     private readonly redraw: () => void,
+    private readonly high: number | null = null,
   ) {
     this.element = h("canvas", { class: className, role: "img", "aria-label": label });
     new ResizeObserver(() => this.resize()).observe(this.element);
@@ -29,7 +30,7 @@ export class Canvas {
 
   private resize(): void {
     const width = this.element.clientWidth;
-    const height = Math.round(width * this.ratio);
+    const height = this.high ?? Math.round(width * this.ratio);
     if (!width || (width === this.width && height === this.height)) return;
     [this.width, this.height] = [width, height];
     this.element.style.height = `${height}px`;

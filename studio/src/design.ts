@@ -1,7 +1,8 @@
 // A design: the values that a device file gives, what follows from them, and what the core is given.
 import { dampingOf, MOUSE, RELEASED, STOPS } from "./checks";
 import type { Input, Rows } from "./core";
-import type { Device } from "./device";
+import { type Device, readDevice } from "./device";
+import type { Given } from "./files";
 import {
   byCoefficient,
   CONTACTS,
@@ -18,6 +19,11 @@ import { DRIVE, TABLES } from "./table";
 export interface Design extends Device {
   /** True if its curves are drawn beside the curves of the current design. */
   readonly shown: boolean;
+}
+
+/** A device file as a design. Throws DeviceError. */
+export function designOf({ text, file, rows }: Given): Design {
+  return { ...readDevice(text, file, rows), shown: true };
 }
 
 export function isRows(value: Value | null | undefined): value is Rows {

@@ -8,12 +8,13 @@ import { Designs } from "./designs";
 import { DeviceError, decodeText, readDevice } from "./device";
 import { button, card, download, fileName, h, option } from "./dom";
 import { figureSvg, pngOf } from "./figure";
-import { acceptDrops, choose, type Given } from "./files";
+import { choose, type Given } from "./files";
 import { fit, fitOffset } from "./fit";
 import { FitPanel } from "./fitpanel";
 import type { Values } from "./friction";
 import { MapControls, mapKeys } from "./mapcontrols";
 import { MapRunner } from "./maprunner";
+import { navigation } from "./navigation";
 import { Panel } from "./panel";
 import { PhasePlane } from "./phaseplane";
 import { Player } from "./player";
@@ -84,7 +85,6 @@ export class Page {
         }),
       fit: (keys, freeOffset) => this.fit(keys, freeOffset),
     });
-    acceptDrops((file) => void this.takeFile(file));
     document.addEventListener("keydown", (event) => this.key(event));
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.setLook());
   }
@@ -330,6 +330,7 @@ export class Page {
   }
 
   async link(): Promise<string> {
+    if (document.getElementById("page")!.hidden) return location.href;
     const hash = await toHash(this.state);
     history.replaceState(null, "", `#${hash}`);
     return location.href;
@@ -380,6 +381,7 @@ export class Page {
         "To the curves",
       ),
       h("h1", {}, "pindrive studio"),
+      navigation("release"),
       h(
         "div",
         { class: "buttons" },

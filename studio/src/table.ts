@@ -89,6 +89,8 @@ interface Tables {
   readonly curves: readonly { readonly color: string; readonly dash: readonly number[] }[];
   readonly events: Readonly<Record<string, Readonly<Record<string, string>>>>;
   readonly template: string;
+  /** Device file with which a page is read first. */
+  readonly reader: string;
 }
 
 export const TABLES = generated as unknown as Tables;

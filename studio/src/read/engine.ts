@@ -1,4 +1,4 @@
-// The device of a page, simulated live: what a worker does with the hand, and what it answers.
+// The device of a page, simulated live: tasks of a worker, and its answers.
 import type { Core } from "../core";
 import { Device, type DeviceInput, type Line, type Raster, Scan, type SpeedLimit, type Start } from "./scan";
 

@@ -8,7 +8,7 @@ const LETTERS = 13; // mm, largest size of the font
 const PEN = 1.2; // mm
 export const HEIGHT = 12.5; // mm
 
-/** Where something is on the page, mm. */
+/** Place on the page, mm. */
 export interface Spot {
   readonly x: number;
   readonly y: number;

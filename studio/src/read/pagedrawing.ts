@@ -1,0 +1,76 @@
+// The page with the device on it, at the scale of the page: a clamped pin stays on the print.
+import type { Felt } from "./felt";
+import type { Paper } from "./paper";
+import { disc, magnetRing, offsetOf, type Pen, type Picture, pullOf, ring } from "./picture";
+
+const PIN = 0.46e-3; // m, radius of a pin
+const ROOM = 1.6e-3; // m of the housing around the spots
+const SHEET = "#fffdf8";
+
+export function drawPage(pen: Pen, width: number, paper: Paper, picture: Picture | null): void {
+  const scale = width / (paper.width * 1e-3);
+  const height = (width * paper.canvas.height) / paper.canvas.width;
+  pen.drawImage(paper.canvas, 0, 0, width, height);
+  pen.globalCompositeOperation = "multiply";
+  pen.fillStyle = SHEET;
+  pen.fillRect(0, 0, width, height);
+  pen.globalCompositeOperation = "source-over";
+  if (picture) drawDevice(pen, scale, picture);
+}
+
+function drawDevice(pen: Pen, scale: number, picture: Picture): void {
+  const { hand, spots } = picture;
+  const [xs, ys] = [spots.map(([x]) => x), spots.map(([, y]) => y)];
+  const [left, top] = [Math.min(...xs) - ROOM, Math.min(...ys) - ROOM];
+  const [wide, high] = [Math.max(...xs) + ROOM - left, Math.max(...ys) + ROOM - top];
+  pen.beginPath();
+  pen.roundRect((hand.x + left) * scale, (hand.y + top) * scale, wide * scale, high * scale, 1.3e-3 * scale);
+  pen.fillStyle = "rgb(0 114 178 / 0.07)";
+  pen.fill();
+  [pen.strokeStyle, pen.lineWidth] = ["rgb(0 114 178 / 0.65)", 1.5];
+  pen.stroke();
+  spots.forEach(([dx, dy], pin) => {
+    drawPin(pen, (hand.x + dx) * scale, (hand.y + dy) * scale, scale, picture, pin);
+  });
+}
+
+function drawPin(pen: Pen, x: number, y: number, scale: number, picture: Picture, pin: number): void {
+  const [ox, oy] = offsetOf(picture, pin).map((part) => part * scale) as [number, number];
+  const dragged = Math.hypot(ox, oy) > 1;
+  for (const [color, wide] of [
+    ["rgb(255 255 255 / 0.8)", 5],
+    [dragged ? "#0072b2" : "rgb(90 97 106 / 0.7)", 3],
+  ] as const) {
+    [pen.strokeStyle, pen.lineWidth, pen.lineCap] = [color, wide, "round"];
+    pen.beginPath();
+    pen.moveTo(x, y);
+    pen.lineTo(x + ox, y + oy);
+    pen.stroke();
+  }
+  disc(pen, x, y, Math.max(1.6, 1e-4 * scale), "#fff");
+  ring(pen, x, y, Math.max(1.6, 1e-4 * scale), "#5a616a", 1);
+  const radius = PIN * scale;
+  const light = { ...picture, colors: { ...picture.colors, magnet: "#d55e00" } }; // on white paper
+  magnetRing(pen, light, pin, x + ox, y + oy, radius + 3.5);
+  disc(pen, x + ox, y + oy, radius, pullOf(picture, pin) > 0.5 ? "#ffd9bf" : "#fff");
+  ring(pen, x + ox, y + oy, radius, "#2b3036", 1.5);
+  if (pin === picture.chosen) disc(pen, x + ox, y + oy, 0.42 * radius, "#2b3036");
+}
+
+/** The tactile image in the place and at the scale of the page, with the print in outline. */
+export function drawFelt(pen: Pen, width: number, paper: Paper, felt: Felt, picture: Picture | null): void {
+  const height = (width * paper.canvas.height) / paper.canvas.width;
+  pen.fillStyle = "#fff";
+  pen.fillRect(0, 0, width, height);
+  pen.drawImage(felt.canvas, 0, 0, width, height);
+  pen.drawImage(paper.outline, 0, 0, width, height);
+  if (!picture) return;
+  const x = (picture.hand.x / (paper.width * 1e-3)) * width;
+  pen.setLineDash([4, 4]);
+  [pen.strokeStyle, pen.lineWidth] = ["rgb(0 114 178 / 0.5)", 1];
+  pen.beginPath();
+  pen.moveTo(x, 0);
+  pen.lineTo(x, height);
+  pen.stroke();
+  pen.setLineDash([]);
+}

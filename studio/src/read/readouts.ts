@@ -1,0 +1,86 @@
+// Readouts in words and numbers: the present event, the speed of the hand, and the lines so far.
+import { card, h } from "../dom";
+import { type Limit, mergingPitch } from "./dial";
+import type { Slowness } from "./hand";
+import type { Picture } from "./picture";
+import type { Line } from "./scan";
+import { happening } from "./sentence";
+
+const SPOKEN = 3000; // ms between two sentences for screen readers
+const STANDS = 8; // mm/s below which a hand stands
+const COUNTS = ["crossed", "felt", "merged", "missed", "false", "lag"] as const;
+type Count = (typeof COUNTS)[number];
+
+export class Readouts {
+  readonly now = h("p", { class: "now" });
+  readonly spoken = h("p", { class: "visually-hidden", role: "status" });
+  readonly problem = h("p", { class: "problem", role: "alert", hidden: true });
+  private readonly speed = h("output", { class: "speed" }, "0");
+  private readonly yours = h("span", { class: "note" });
+  private readonly merging = h("p", { class: "note merging" });
+  private readonly counts: Readonly<Record<Count, HTMLElement>>;
+  private spokenAt = 0;
+
+  constructor() {
+    const cells = COUNTS.map((name) => [name, h("b", {}, "0")]);
+    this.counts = Object.fromEntries(cells) as Record<Count, HTMLElement>;
+  }
+
+  /** The card of the hand's speed and the counts. */
+  card(dial: HTMLElement): HTMLElement {
+    const cells = COUNTS.map((name) =>
+      h("div", {}, h("dt", {}, name === "lag" ? "lag, mm" : name), h("dd", {}, this.counts[name])),
+    );
+    const speed = h("p", {}, this.speed, " mm/s ", this.yours);
+    return card(
+      "speed-card",
+      "Speed of the hand",
+      h("div", { class: "speeds" }, speed, dial),
+      this.merging,
+      h("dl", { class: "counts" }, ...cells),
+    );
+  }
+
+  say(problem: string): void {
+    this.problem.textContent = problem;
+    this.problem.hidden = problem === "";
+  }
+
+  /** Describes the present event; `waiting` stands in while there is none. */
+  tell(picture: Picture | null, waiting: string): void {
+    const words = happening(picture, waiting);
+    const plain = words.map((part) => (typeof part === "string" ? part : part[1])).join("");
+    if (plain === this.now.textContent) return;
+    this.now.replaceChildren(
+      ...words.map((part) => (typeof part === "string" ? part : h("span", { class: part[0] }, part[1]))),
+    );
+    const time = performance.now();
+    if (time - this.spokenAt > SPOKEN) [this.spokenAt, this.spoken.textContent] = [time, plain];
+  }
+
+  /** Speed of the hand, mm/s, and the pitch of lines that merge at it. */
+  showSpeed(speed: number, slowness: Slowness, limits: readonly Limit[]): void {
+    this.speed.textContent = String(Math.round(speed));
+    this.yours.textContent =
+      slowness === 1 ? "in real time" : `your ${Math.round(speed / slowness)} mm/s × ${slowness}`;
+    const pitch = mergingPitch(limits, speed);
+    const widest = limits[limits.length - 1];
+    const merged =
+      pitch !== null
+        ? `closer than ${pitch.toFixed(1)} mm`
+        : widest && `closer than ${widest.pitch} mm, and some wider ones,`;
+    this.merging.textContent = speed < STANDS || !merged ? "" : `now lines ${merged} become one`;
+  }
+
+  showLines(lines: readonly Line[], falseLines: number): void {
+    const of = (outcome: string): number => lines.filter((line) => line.outcome === outcome).length;
+    const lags = lines.map(({ lag }) => 1e3 * lag).filter((lag) => !Number.isNaN(lag));
+    lags.sort((a, b) => a - b);
+    const lag = lags.length ? lags[lags.length >> 1]!.toFixed(1) : "–";
+    const missed = of("unseen") + of("faint");
+    const numbers = [lines.length, of("shown"), of("merged"), missed, falseLines, lag];
+    COUNTS.forEach((name, i) => {
+      this.counts[name].textContent = String(numbers[i]);
+    });
+  }
+}

@@ -1,0 +1,242 @@
+"""The view "Read" in headless Chromium: a hand, its pins, and the readings that Python repeats."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import pindrive as pd
+from command import EXAMPLES
+from pindrive.files.reading import load_reading
+from studio_page import settled
+
+AXE = Path(__file__).parents[2] / "studio" / "node_modules" / "axe-core" / "axe.min.js"
+READER = EXAMPLES / "tactile-reader.toml"
+HAND = "pindrive.read.session.hand"
+
+
+def until(page: Any, expression: str, timeout: int = 10_000) -> None:
+    """Waits until an expression is true: the page allows no script of its watchers."""
+    for _ in range(timeout // 50):
+        if page.evaluate(f"Boolean({expression})"):
+            return
+        page.wait_for_timeout(50)
+    pytest.fail(f"not true in {timeout} ms: {expression}")
+
+
+@pytest.fixture
+def read(page: Any) -> Any:
+    """The view, with its demonstration."""
+    page.get_by_role("link", name="Read").click()
+    until(page, "pindrive.read && pindrive.read.session.took.length > 5")
+    return page
+
+
+def stroke(page: Any, seconds: float = 1.5, height: float = 0.5, slope: float = 0.0) -> None:
+    """Moves the pointer over the page from left to right."""
+    box = page.locator("canvas.sheet").bounding_box()
+    steps = int(60 * seconds)
+    for i in range(steps + 1):
+        part = i / steps
+        x = box["x"] + box["width"] * (0.03 + 0.94 * part)
+        page.mouse.move(x, box["y"] + box["height"] * (height + slope * (part - 0.5)))
+        page.wait_for_timeout(1000 * seconds / steps)
+
+
+def counts(page: Any) -> list[str]:
+    page.wait_for_timeout(900)  # evaluated and shown
+    cells = page.locator(".counts dd")
+    return [cells.nth(i).inner_text() for i in range(cells.count())]
+
+
+def saved(page: Any, kind: str, folder: Path) -> Path:
+    with page.expect_download() as download:
+        page.get_by_label("save as").last.select_option(kind)
+    path = folder / str(download.value.suggested_filename)
+    download.value.save_as(path)
+    return path
+
+
+def test_a_demonstration_runs_until_someone_takes_the_hand(read: Any) -> None:
+    until(read, "pindrive.read.evaluated.length > 20", timeout=20_000)
+    first = read.evaluate(f"{HAND}.count")
+    read.wait_for_timeout(300)
+    assert read.evaluate(f"{HAND}.count") > first
+    stroke(read, 0.3)
+    assert read.evaluate(f"{HAND}.start.x") == pytest.approx(0.03 * 0.044, abs=2e-4)
+    assert "Demonstration" not in read.locator("main.reading").inner_text()
+
+
+def test_a_saved_reading_is_repeated_by_python(read: Any, tmp_path: Path) -> None:
+    stroke(read)
+    read.mouse.move(5, 5)
+    read.wait_for_timeout(600)
+    shown = counts(read)
+    path = saved(read, "file", tmp_path)
+    assert path.name == "the-text-hello.json"
+    reading = load_reading(path)
+    assert reading.page.title == "the text “Hello”"
+    evaluation = pd.scan(reading.device, reading.page, reading.hand).evaluate()
+    found = evaluation.counts
+    missed = found["lines.unseen"] + found["lines.faint"]
+    expected = [found["lines.crossed"], found["lines.shown"], found["lines.merged"], missed]
+    assert int(shown[0]) <= expected[0]
+    assert expected[0] > 40 and expected[1] > 30
+    if int(shown[0]) == expected[0]:  # the hand has come to rest since
+        assert [int(cell) for cell in shown[:5]] == [*expected, found["lines.false"]]
+    written = saved(read, "device", tmp_path)
+    assert pd.load_device(written, whole=True).values() == reading.device.values()
+
+
+def test_a_link_holds_a_reading_and_repeats_it(read: Any, page_file: Path, tmp_path: Path) -> None:
+    stroke(read, 0.8)
+    read.get_by_label("save as").last.select_option("link")
+    until(read, "location.hash.startsWith('#read=')")
+    link = read.evaluate("location.href")
+    kept = load_reading(link)
+    assert len(kept.hand.times) > 50
+    other = read.context.new_page()
+    other.goto(link)
+    until(other, "window.pindrive?.read?.session.repeating && pindrive.read.session.time > 0")
+    rows = other.evaluate(f"{HAND}.saved.rows")
+    times, vx, _ = np.array([[0, 0, 0], *rows]).T
+    np.testing.assert_array_equal(times / 5000, kept.hand.times)
+    np.testing.assert_array_equal(vx / 1e6, kept.hand.vx)
+    before = other.evaluate("pindrive.read.session.time")
+    until(other, f"pindrive.read.session.time > {before}")
+    scrub = other.get_by_label("time of the reading")
+    scrub.focus()
+    scrub.evaluate("e => { e.value = 300; e.dispatchEvent(new Event('input')) }")
+    end = other.evaluate(f"{HAND}.end")
+    until(other, f"Math.abs(pindrive.read.session.time - 0.3 * {end}) < 1e-9")
+    other.close()
+
+
+def test_arrow_keys_move_the_hand_at_a_set_speed(read: Any) -> None:
+    sheet = read.locator("canvas.sheet")
+    sheet.focus()
+    read.keyboard.down("ArrowRight")
+    read.wait_for_timeout(1500)
+    speed = read.evaluate(f"{HAND}.at({HAND}.end).vx")
+    height = read.evaluate(f"{HAND}.at({HAND}.end).vy")
+    read.keyboard.up("ArrowRight")
+    assert (speed, height) == (pytest.approx(0.060, rel=1e-2), 0.0)
+    read.wait_for_timeout(700)
+    assert read.evaluate(f"Math.abs({HAND}.at({HAND}.end).vx)") < 2e-4
+
+
+def test_two_lines_merge_under_a_fast_hand(read: Any) -> None:
+    task = read.get_by_role("button", name="How fast is too fast?")
+    task.click()
+    stroke(read, 4.0)
+    read.wait_for_timeout(900)
+    assert "Still two at" in task.inner_text()
+    read.mouse.move(5, 5)
+    for _ in range(3):
+        stroke(read, 0.35)
+        read.mouse.move(5, 5)
+        read.wait_for_timeout(900)
+        if "became one" in task.inner_text():
+            break
+    assert "became one. The device's own limit: 200 mm/s" in task.inner_text()
+
+
+def test_sliders_change_the_device_and_its_limits(read: Any, tmp_path: Path) -> None:
+    until(read, "pindrive.read.limits.length === 4")
+    before = read.evaluate("pindrive.read.limits[1].speed")
+    slider = read.get_by_label("Magnet lets go in")
+    slider.evaluate("e => { e.value = 0.8; e.dispatchEvent(new Event('input')) }")
+    until(read, f"pindrive.read.limits[1].speed < 0.8 * {before}")
+    path = saved(read, "device", tmp_path)
+    fall = pd.load_device(path, whole=True).values()["magnet.fall_time"]
+    assert fall == pytest.approx(5e-3 * 8**0.8, rel=1e-2)
+
+
+def test_devices_pictures_and_readings_are_opened(read: Any, tmp_path: Path) -> None:
+    device = tmp_path / "two.toml"
+    text = READER.read_text("utf-8").replace("columns = 4", "columns = 2")
+    device.write_text(text.replace("rows = 4", "rows = 1"), "utf-8")
+    picture = tmp_path / "picture.png"
+    Image.new("L", (88, 25), 0).save(picture)
+    bad = tmp_path / "bad.json"
+    bad.write_text("{}", "utf-8")
+
+    def opened(file: Path) -> None:
+        with read.expect_file_chooser() as chooser:
+            read.get_by_role("button", name="Open …").last.click()
+        chooser.value.set_files(file)
+        read.wait_for_timeout(400)
+
+    opened(device)
+    assert read.evaluate("pindrive.read.session.pins") == 2
+    opened(picture)
+    grey = read.evaluate("Array.from(pindrive.read.reading.page.grey.subarray(100_000, 100_010))")
+    assert grey == [0] * 10
+    opened(bad)
+    assert "bad.json: is no reading" in read.locator(".read .problem").inner_text()
+    device.write_text(text.replace('hold_force = "1 N"', 'hold_force = "-1 N"'), "utf-8")
+    opened(device)
+    assert "magnet.hold_force" in read.locator(".read .problem").inner_text()
+
+
+def test_a_whole_device_of_the_other_view_is_read_with(page: Any, tmp_path: Path) -> None:
+    device = tmp_path / "three.toml"
+    device.write_text(READER.read_text("utf-8").replace("columns = 4", "columns = 3"), "utf-8")
+    with page.expect_file_chooser() as chooser:
+        page.get_by_role("button", name="Open …", exact=True).click()
+    chooser.value.set_files(device)
+    page.wait_for_timeout(300)
+    page.get_by_role("link", name="Read").click()
+    until(page, "pindrive.read && pindrive.read.session.pins === 12")
+    page.get_by_role("link", name="One release").click()
+    settled(page)
+    assert page.locator(".read").is_hidden() and page.locator("#summary").is_visible()
+
+
+def test_drawing_makes_a_page(read: Any) -> None:
+    read.get_by_role("button", name="Draw").click()
+    box = read.locator("canvas.sheet").bounding_box()
+    x, y = box["x"] + 0.5 * box["width"], box["y"] + 0.2 * box["height"]
+    read.mouse.move(x, y)
+    read.mouse.down()
+    read.mouse.move(x, y + 0.6 * box["height"], steps=8)
+    read.mouse.up()
+    read.wait_for_timeout(200)
+    dark = read.evaluate("pindrive.read.reading.page.grey.filter(g => g < 128).length")
+    assert 0.5 < dark / (1.2 * 22 * 0.6 * 12.5 * 22) < 2.0
+    read.get_by_role("button", name="Draw").click()
+    stroke(read, 1.5)
+    assert int(counts(read)[0]) >= 4
+
+
+def test_reduced_motion_has_no_demonstration(page: Any) -> None:
+    page.emulate_media(reduced_motion="reduce")
+    page.get_by_role("link", name="Read").click()
+    until(page, "pindrive.read && pindrive.read.session.took.length > 5")
+    assert page.evaluate(f"{HAND}.at({HAND}.end).vx") == 0
+    assert "nothing moves until the hand does" in page.locator(".read .now").inner_text()
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_axe_finds_no_violation_and_nothing_is_cut_off(read: Any, scheme: str) -> None:
+    read.emulate_media(color_scheme=scheme)
+    read.evaluate(AXE.read_text("utf-8"))
+    for width, height in ((320, 640), (390, 844), (1440, 900), (2560, 1440)):
+        read.set_viewport_size({"width": width, "height": height})
+        read.wait_for_timeout(300)
+        assert read.evaluate("document.documentElement.scrollWidth") <= width, width
+        found = read.evaluate("axe.run({resultTypes: ['violations']})")
+        assert [
+            (v["id"], [n["html"][:120] for n in v["nodes"]][:3]) for v in found["violations"]
+        ] == []
+        if width < 600:
+            small = read.evaluate(
+                "[...document.querySelectorAll('.read button, .read select, .read nav a')]"
+                ".filter(e => e.offsetParent && e.getBoundingClientRect().height < 43.5)"
+                ".map(e => e.outerHTML.slice(0, 80))"
+            )
+            assert small == []
