@@ -7,8 +7,9 @@ import type { Thread } from "./thread";
 
 const MM = 1e-3;
 const KEPT = 0.3; // s of the device for which samples are kept
-const HIDDEN = 250; // ms after which the page was hidden, and its time stood still
-const JUDGED = 300; // ms between two evaluations of the lines
+const LATE = 25; // ms of the wall clock between two pictures beyond which time stands still
+const JUDGED = 300; // ms between two evaluations of the lines at least
+const REST = 3; // times that the evaluation rests as long as it took, for the thread of the pins
 
 /** Quantities of all pins at a time, s of the device. */
 export interface Sample {
@@ -38,7 +39,8 @@ export class Session {
   /** Time that a repeated reading is to show. */
   private wanted = 0;
   private judgedRows = 0;
-  private judgedAt = 0;
+  /** Time from which the lines may be evaluated again, ms. */
+  private judgeFrom = 0;
 
   constructor(
     private readonly live: Thread,
@@ -98,7 +100,9 @@ export class Session {
 
   /** The hand follows an aim, m, until now (ms), and the pins follow the hand. */
   follow(now: number, aim: (wall: number) => { x: number; y: number }, straight: () => boolean): void {
-    if (!this.wall || now - this.wall > HIDDEN) this.wall = now - TICK;
+    if (this.pending) return; // time waits for a thread that is late
+    if (!this.wall) this.wall = now - TICK;
+    this.wall = Math.max(this.wall, now - LATE);
     while (this.wall < now) {
       this.hand.follow(aim(this.wall), straight());
       this.wall += TICK;
@@ -155,11 +159,13 @@ export class Session {
   /** Has the lines evaluated now and then, in the other thread. */
   private evaluate(now: number): void {
     const { hand, epoch } = this;
-    if (!this.judge.idle || now - this.judgedAt < JUDGED || hand.count === this.judgedRows) return;
+    if (!this.judge.idle || now < this.judgeFrom || hand.count === this.judgedRows) return;
     if (hand.count < 2) return;
-    [this.judgedAt, this.judgedRows] = [now, hand.count];
+    this.judgedRows = hand.count;
     const task = { judge: { ...this.opening, rows: hand.rowsFrom(0) } };
     void this.judge.ask(task).then((answer) => {
+      const took = performance.now() - now;
+      this.judgeFrom = now + took + Math.max(JUDGED, REST * took);
       if (epoch !== this.epoch || !answer || !("lines" in answer)) return;
       const { lines, falseLines } = answer as Verdict;
       this.listener.judged(lines, falseLines);
