@@ -77,7 +77,8 @@ pindrive_error read(const DeviceParameters& parameters, pd::device::Criteria& cr
       {"criteria.direction", &criteria.direction},
       {"criteria.direction_sure", &criteria.direction_sure},
       {"criteria.direction_speed", &criteria.direction_speed},
-      {"criteria.false_line", &criteria.false_line}};
+      {"criteria.false_line", &criteria.false_line},
+      {"criteria.distinct", &criteria.distinct}};
   pindrive_error error = PINDRIVE_OK;
   for (const auto& [key, number] : numbers) {
     const pd::device::InputQuantity& input = *pd::device::find_input(key);

@@ -86,8 +86,8 @@ pindrive_error pindrive_scan_lines(const pindrive_scan* scan, pindrive_go_on go_
 }
 
 pindrive_error pindrive_device_speed_limit(const pindrive_device* device, double pitch,
-                                           double width, double part, double slowest,
-                                           double fastest, pindrive_go_on go_on, void* context,
+                                           double width, double slowest, double fastest,
+                                           pindrive_go_on go_on, void* context,
                                            pindrive_speed_limit* limit) {
   if (!device) return null_pointer("device");
   if (!limit) return null_pointer("limit");
@@ -97,7 +97,6 @@ pindrive_error pindrive_device_speed_limit(const pindrive_device* device, double
   pindrive_error error = check("pitch", pitch, within(pitch, 1e-6, 10), "from 1e-06 to 10");
   if (!error)
     error = check("width", width, width >= 1e-7 && width < pitch, "from 1e-07 to below the pitch");
-  if (!error) error = check("part", part, within(part, 1e-6, 1), "from 1e-06 to 1");
   if (!error) error = check("slowest", slowest, within(slowest, 1e-4, 100), "from 0.0001 to 100");
   if (!error)
     error =
@@ -108,7 +107,7 @@ pindrive_error pindrive_device_speed_limit(const pindrive_device* device, double
     if (const pindrive_error refused = made_of(*device, owned)) return refused;
     Attended attended(go_on, context);
     const device::TwoLines lines(owned->device, pitch, width, owned->criteria);
-    device::SpeedLimitSearch search(lines, owned->criteria.direction, {part, {slowest, fastest}});
+    device::SpeedLimitSearch search(lines, owned->criteria.direction, {{slowest, fastest}});
     const device::SpeedLimit found = search.found([&] { return attended.go_on(); }, [](int) {});
     if (attended.stopped()) return stopped();
     if (found.status != pd::Status::ok) return given_up(found.status);

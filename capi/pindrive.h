@@ -421,7 +421,7 @@ PINDRIVE_API void pindrive_device_free(pindrive_device *device);
  *   magnet.   residual, pwm_frequency, pwm_duty, lift, closing_force, deviation
  *   control.  sample_rate, latency, threshold, hysteresis
  *   array.    axis: of the drives on the page, from x towards y, rad
- *   criteria. felt, direction, direction_sure, direction_speed, false_line: of a felt line
+ *   criteria. felt, direction, direction_sure, direction_speed, false_line, distinct: of a felt line
  * What is not given has the value of a device file without the key. */
 PINDRIVE_API pindrive_error pindrive_device_set(pindrive_device *device, const char *key,
                                                 double value);
@@ -574,10 +574,10 @@ typedef struct pindrive_speed_limit {
 } pindrive_speed_limit;
 
 /* Searches for the hand speeds, from slowest to fastest (m/s, 1e-4 to 100), at which two lines of a width, a pitch
- * apart (m), are distinct for one pin: the pin comes back by at least `part` (1e-6 to 1) of its deflection between
- * them, and each moves the skin enough for a direction, whatever the phase of the control block's samples. */
+ * apart (m), are distinct for one pin: both are shown, as pindrive_scan_lines() evaluates them, and each moves
+ * the skin enough for a direction, whatever the phase of the control block's samples. */
 PINDRIVE_API pindrive_error pindrive_device_speed_limit(const pindrive_device *device, double pitch,
-                                                        double width, double part, double slowest,
+                                                        double width, double slowest,
                                                         double fastest, pindrive_go_on go_on,
                                                         void *context,
                                                         pindrive_speed_limit *limit);

@@ -311,7 +311,7 @@ def options(command: str, scans: bool, rng: np.random.Generator) -> list[str]:
             ("--width", LENGTHS),
             ("--slowest", SPEEDS),
             ("--fastest", SPEEDS),
-            ("--part", ("0.5", "1", "1e-9", "0", "nan")),
+            ("--set", ("criteria.distinct=0.5", "criteria.distinct=0", "criteria.distinct=nan")),
         ):
             if rng.random() < 0.12:
                 given += [option, str(rng.choice(among))]

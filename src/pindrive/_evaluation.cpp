@@ -32,11 +32,11 @@ using pindrive_python::Scan;
 namespace {
 
 /// Criteria of a felt line, in the order of `device::Criteria`.
-using CriteriaNumbers = std::tuple<double, double, double, double, double>;
+using CriteriaNumbers = std::tuple<double, double, double, double, double, double>;
 
 device::Criteria criteria_of(const CriteriaNumbers& given) {
-  const auto [felt, direction, sure, speed, false_line] = given;
-  return {felt, direction, sure, speed, false_line};
+  const auto [felt, direction, sure, speed, false_line, distinct] = given;
+  return {felt, direction, sure, speed, false_line, distinct};
 }
 
 // ---- evaluation ----------------------------------------------------------------------------------
@@ -139,12 +139,12 @@ nb::dict spreads(const device::Evaluation& evaluation) {
 
 // ---- largest hand speed --------------------------------------------------------------------------
 
-/// Speed, return and motion of the skin; code of its status.
-using TrialNumbers = std::tuple<double, double, double, int>;
+/// Speed, return, motion of the skin, and true for two lines shown; code of its status.
+using TrialNumbers = std::tuple<double, double, double, bool, int>;
 using Bands = std::vector<std::pair<double, double>>;
 
 TrialNumbers numbers_of(const device::LineTrial& trial) {
-  return {trial.speed, trial.back, trial.skin, static_cast<int>(trial.status)};
+  return {trial.speed, trial.back, trial.skin, trial.shown, static_cast<int>(trial.status)};
 }
 
 TrialNumbers two_lines(const OwnedDevice& device, double pitch, double width,
@@ -163,11 +163,11 @@ Bands bands_of(const std::vector<device::SpeedBand>& found) {
 /// Bands of distinct and of settled lines, the trial beyond the first, and the code of the status.
 std::tuple<Bands, Bands, std::optional<TrialNumbers>, int> speed_limit(
     const OwnedDevice& device, double pitch, double width, const CriteriaNumbers& criteria,
-    double part, std::pair<double, double> tried, const nb::object& progress) {
+    std::pair<double, double> tried, const nb::object& progress) {
   const device::Criteria limits = criteria_of(criteria);
   const device::SpeedLimit found = interruptible([&](auto go_on) {
     const device::TwoLines lines(device.view(), pitch, width, limits);
-    device::SpeedLimitSearch search(lines, limits.direction, {part, {tried.first, tried.second}});
+    device::SpeedLimitSearch search(lines, limits.direction, {{tried.first, tried.second}});
     return search.found(go_on, [&](int trials) {
       if (progress.is_none() || !go_on(0)) return;  // an error that is pending allows no call
       const nb::gil_scoped_acquire locked;
@@ -191,6 +191,6 @@ void bind_evaluation(nb::module_& m) {
   m.attr("tried_speeds") = device::SpeedSearch{}.count;
   m.attr("speed_precision") = device::SpeedSearch{}.precision;
   m.def("two_lines", &two_lines, "device"_a, "pitch"_a, "width"_a, "criteria"_a, "speed"_a);
-  m.def("speed_limit", &speed_limit, "device"_a, "pitch"_a, "width"_a, "criteria"_a, "part"_a,
-        "tried"_a, "progress"_a.none());
+  m.def("speed_limit", &speed_limit, "device"_a, "pitch"_a, "width"_a, "criteria"_a, "tried"_a,
+        "progress"_a.none());
 }

@@ -534,11 +534,11 @@ static void lines_and_speeds(void) {
   expect(pindrive_scan_advance(scan, 0.1, NULL, NULL) == PINDRIVE_OK, "advanced");
   refuses(pindrive_scan_lines(scan, NULL, NULL, lines, 8, &count, &false_lines), PINDRIVE_BAD_VALUE,
           "not be advanced yet");
-  refuses(pindrive_device_speed_limit(device, 4e-3, 4e-3, 0.5, 0.01, 1, NULL, NULL, &limit),
+  refuses(pindrive_device_speed_limit(device, 4e-3, 4e-3, 0.01, 1, NULL, NULL, &limit),
           PINDRIVE_BAD_VALUE, "width must be from 1e-07 to below the pitch");
-  refuses(pindrive_device_speed_limit(device, 4e-3, 2e-3, 0.5, 1, 1, NULL, NULL, &limit),
+  refuses(pindrive_device_speed_limit(device, 4e-3, 2e-3, 1, 1, NULL, NULL, &limit),
           PINDRIVE_BAD_VALUE, "fastest must be above the slowest");
-  expect(pindrive_device_speed_limit(device, 4e-3, 2e-3, 0.5, 0.01, 1, NULL, NULL, &limit) ==
+  expect(pindrive_device_speed_limit(device, 4e-3, 2e-3, 0.01, 1, NULL, NULL, &limit) ==
                  PINDRIVE_OK &&
              limit.bands > 0 && limit.distinct_to > 0.05 && limit.distinct_to < 1,
          "a speed at which two lines merge");

@@ -203,7 +203,7 @@ def test_speeds() -> None:
             tried=(0.005, 1.0),
             distinct=((0.005, 0.2), (0.3, 0.4)),
             settled=((0.005, 0.1),),
-            beyond=Trial(0.21, 0.25, 1e-4),
+            beyond=Trial(0.21, 0.25, 1e-4, shown=False),
         ),
         SpeedLimit(
             pitch=0.004,
@@ -214,13 +214,13 @@ def test_speeds() -> None:
             beyond=None,
         ),
     ]
-    heads, units, one, other = table(speed_report(limits, 0.5, Criteria()), "Largest hand speed")
+    heads, units, one, other = table(speed_report(limits, Criteria()), "Largest hand speed")
     assert heads == ["pitch", "width", "distinct up to", "settled up to", "a faster hand"]
     assert units[:4] == ["mm", "mm", "mm/s", "mm/s"]
     assert one[:4] == ["2.000", "1.000", "200.0", "100.0"]
     assert one[4] == "lets the pin return by 25%, is distinct again at 300.0-400.0 mm/s"
     assert other[:4] == ["4.000", "1.500", "10.00 to > 1000", "-"]
-    assert "Tried: 5.000 mm/s to 1000 mm/s" in printed(speed_report(limits, 0.5, Criteria()))
+    assert "Tried: 5.000 mm/s to 1000 mm/s" in printed(speed_report(limits, Criteria()))
 
 
 def test_a_hand_exactly_along_the_axis_is_named() -> None:

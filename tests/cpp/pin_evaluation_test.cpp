@@ -32,7 +32,13 @@ struct Scan {
       : pin(skin, std::move(touch_times), std::move(touches)),
         motion(pin.motion()),
         way(path()),
-        setting{path(), device::Axis(0), &way, &turnings, 0.004, 1, {45e-6, 5e-5, 2e-4, 2e-3, 0.5}},
+        setting{path(),
+                device::Axis(0),
+                &way,
+                &turnings,
+                0.004,
+                1,
+                {45e-6, 5e-5, 2e-4, 2e-3, 0.5, 0.25}},
         scanned{3,
                 {0.001, 0},
                 &motion,
@@ -93,6 +99,10 @@ void outcomes() {
   const auto lines = unseen.lines();
   expect(lines[1].outcome == device::LineOutcome::unseen && std::isnan(lines[1].stroke),
          "a line without a command is unseen");
+  Scan strict;
+  strict.setting.criteria.distinct = 1.5;
+  expect(strict.lines()[1].outcome == device::LineOutcome::merged,
+         "a pin that must come back further than it went merges the lines");
   Scan merged;
   merged.scanned.lines.push_back({0.1055, 0.1058, true});
   expect(merged.lines()[2].outcome == device::LineOutcome::merged,

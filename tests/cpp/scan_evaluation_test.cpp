@@ -14,7 +14,7 @@ using check::expect;
 
 namespace {
 
-constexpr device::Criteria criteria{45e-6, 5e-5, 2e-4, 2e-3, 0.5};
+constexpr device::Criteria criteria{45e-6, 5e-5, 2e-4, 2e-3, 0.5, 0.25};
 
 void lines_of_two_pins() {
   const scanned::Page page;

@@ -354,14 +354,20 @@ MUTANTS = (
     Mutant(
         "the last phase for the worst",
         "device/two_lines.hpp",
-        "trial.back = std::min(trial.back, merged ? 0 : part_back(first));",
-        "trial.back = merged ? 0 : part_back(first);",
+        "trial.back = std::min(trial.back, part_back(first));",
+        "trial.back = part_back(first);",
     ),
     Mutant(
         "lines that merge count as apart",
         "device/two_lines.hpp",
-        "merged ? 0 : part_back(first)",
-        "merged ? 1 : part_back(first)",
+        "second.outcome == LineOutcome::shown",
+        "second.pin >= 0",
+    ),
+    Mutant(
+        "a line is distinct as soon as its return is felt",
+        "device/pin_evaluation.hpp",
+        "std::max(setting_.criteria.felt, setting_.criteria.distinct * way)",
+        "std::max(setting_.criteria.felt, 0 * way)",
     ),
     Mutant(
         "a border of a speed is found to a tenth",

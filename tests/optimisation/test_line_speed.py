@@ -73,7 +73,7 @@ def test_a_search_takes_a_twentieth_of_the_trials_of_a_grid(
 
     def trial(device: pd.Device, pitch: float, width: float, speed: float, _: object) -> Trial:
         assert (pitch, width) == (3e-3, 1.5e-3)
-        return Trial(speed, 1.0 if speed <= stiffer_is_faster(device) else 0.0, inf)
+        return Trial(speed, 1.0, inf, speed <= stiffer_is_faster(device))
 
     monkeypatch.setattr(line_speed, "two_lines", trial)
     problem = read_problem(PROBLEM)
@@ -100,7 +100,7 @@ def test_a_gap_below_a_speed_ends_the_interval(
 
     def trial(device: pd.Device, pitch: float, width: float, speed: float, _: object) -> Trial:
         ok = 0.01 < speed <= 0.2 or 0.3 < speed < 0.5
-        return Trial(speed, 1.0 if ok else 0.0, inf)
+        return Trial(speed, 1.0, inf, ok)
 
     monkeypatch.setattr(line_speed, "two_lines", trial)
     ((whole, _), (taken, _), (slower, _)) = speeds(
@@ -119,7 +119,7 @@ def test_a_design_whose_speed_is_not_confirmed_counts_by_its_first_interval(
     def trial(device: pd.Device, pitch: float, width: float, speed: float, _: object) -> Trial:
         k = device.drive.stiffness
         ok = speed <= 4e-4 * k and (k < 600.0 or not 0.05 < speed < 0.2)
-        return Trial(speed, 1.0 if ok else 0.0, inf)
+        return Trial(speed, 1.0, inf, ok)
 
     monkeypatch.setattr(line_speed, "two_lines", trial)
     problem = {

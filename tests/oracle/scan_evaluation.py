@@ -331,8 +331,10 @@ class EvaluatedPin:
         if k == 0 or before.sign != pull.sign or before.begin != before.begin:
             return False  # nothing before it, or nothing that had moved the pin
         until = pull.begin if pull.begin == pull.begin else self._until(k)
-        back = -Signal(self.pin.motion.position, pull.sign)
-        return not self.trajectory.climbs(back, self.criteria.felt, before.off, until)
+        x = Signal(self.pin.motion.position, pull.sign)
+        way = self.trajectory.highest(x, before.on, until)[1] - self._drag(until)
+        least = max(self.criteria.felt, self.criteria.distinct * way)
+        return not self.trajectory.climbs(-x, least, before.off, until)
 
     # ---- numbers -----------------------------------------------------------------------------
 
@@ -371,11 +373,15 @@ class EvaluatedPin:
         band = settling_band * abs(float(x(release)) - end)
         since = self.trajectory.last_beyond(x, end, band, release, limit)
         settles = limit - since >= self._patience or self.trajectory.rests(limit)
-        load = self.pin.finger_load
-        pressed = load(limit) if isinstance(load, Profile) else load
-        place = end if settles else self.scan.device.drag(finger_load=pressed)
+        place = end if settles else self._drag(limit)
         over = max(0.0, (place - low) / (peak - place)) if peak > place else nan
         return since if settles else nan, over
+
+    def _drag(self, t: float) -> float:
+        """Return the deflection at which spring and dragging plate balance, m."""
+        load = self.pin.finger_load
+        pressed = load(t) if isinstance(load, Profile) else load
+        return self.scan.device.drag(finger_load=pressed)
 
     @property
     def _patience(self) -> float:

@@ -73,6 +73,7 @@ NO_RESULTS = {
         "Recording",
         "HandPath",
     ),  # they are given to what computes
+    "SavedReading",  # device, page and hand that are given to scan
     *("xr.Dataset", "Array", "NDArray[np.bool_]", "tuple[Array, Array]", "float"),
 }
 

@@ -37,7 +37,7 @@ LIMITS = [  # not in order
 
 @pytest.fixture(scope="module")
 def figure() -> Figure:
-    return plot_speeds(LIMITS, 0.4, Criteria(), "a $ mouse of 5 $")
+    return plot_speeds(LIMITS, Criteria(distinct=0.4), "a $ mouse of 5 $")
 
 
 def area(axes: Axes, gid: str) -> Array:
@@ -94,7 +94,7 @@ def test_title_names_study_and_method(figure: Figure) -> None:
 
 
 def test_pitch_without_distinct_lines_has_no_curve() -> None:
-    figure = plot_speeds([limit(0.001, [], [])], 0.5, Criteria())
+    figure = plot_speeds([limit(0.001, [], [])], Criteria())
     (axes,) = figure.axes
     assert {line.get_gid() for line in axes.lines} == set()
     assert [text.get_text() for text in axes.texts] == ["at no speed distinct"]

@@ -142,7 +142,7 @@ def test_two_lines_merge_under_a_fast_hand(read: Any) -> None:
         read.wait_for_timeout(900)
         if "became one" in task.inner_text():
             break
-    assert "became one. The device's own limit: 200 mm/s" in task.inner_text()
+    assert "became one. The device's own limit: 250 mm/s" in task.inner_text()
 
 
 def test_sliders_change_the_device_and_its_limits(read: Any, tmp_path: Path) -> None:

@@ -21,6 +21,7 @@ struct Criteria {
   double direction_sure;   ///< smallest skin motion whose direction is recognised, m
   double direction_speed;  ///< least mean speed of that motion, m/s
   double false_line;       ///< least height of a false line over that of the line before
+  double distinct;         ///< least return between two lines, over the way back to the rest
 };
 
 /// Outcome of a printed line.

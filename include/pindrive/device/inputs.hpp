@@ -152,6 +152,7 @@ inline constexpr InputQuantity input_quantities[] = {
     {"criteria.direction_sure", "m", between(1e-9, 1), any, 0.0002},
     {"criteria.direction_speed", "m/s", between(1e-9, 1000), any, 0.002},
     {"criteria.false_line", "1", between(1e-6, 1), any, 0.5},
+    {"criteria.distinct", "1", between(1e-6, 1), any, 0.25},
 };
 
 }  // namespace ranges

@@ -190,8 +190,10 @@ class PinEvaluation {
     const Pull& before = (&pull)[-1];
     if (before.sign != pull.sign || !before.moved()) return false;
     const double until = pull.moved() ? pull.begin : end_of(pull);
-    return !pieces_.climb(deflection(-pull.sign), setting_.criteria.felt, before.off, until)
-                .found();
+    const Signal x = deflection(pull.sign);
+    const double way = pieces_.highest(x, before.on, until).value - drag(until);
+    const double least = std::max(setting_.criteria.felt, setting_.criteria.distinct * way);
+    return !pieces_.climb(-x, least, before.off, until).found();
   }
 
   EvaluatedEdge edge_at(double t) const {

@@ -19,7 +19,6 @@ struct SpeedBand {
 
 /// Search for the speeds at which two lines are distinct.
 struct SpeedSearch {
-  double part{0.5};           ///< return of the pin between two lines, as a part of its deflection
   SpeedBand tried{0.005, 1};  ///< slowest and fastest hand
   int count{32};              ///< speeds in the geometric grid
   double precision{1e-3};     ///< relative precision of a border
@@ -50,9 +49,7 @@ class SpeedLimitSearch {
       report(++done_);
       return *records_.insert(at, std::move(record));
     };
-    const auto distinct = [&](double speed) {
-      return trial(speed).trial.distinct(search_.part, direction_);
-    };
+    const auto distinct = [&](double speed) { return trial(speed).trial.distinct(direction_); };
     const auto settled = [&](double speed) {
       if (!distinct(speed)) return false;
       Record& record = trial(speed);

@@ -22,13 +22,15 @@ namespace pindrive::device {
 /// Two lines at one speed: the worst of all phases of the control block's samples.
 struct LineTrial {
   double speed;               ///< m/s
-  double back;                ///< part of its way that the pin comes back; 0 where the lines merge
+  double back;                ///< part of its way that the pin comes back between the lines
   double skin;                ///< motion of the skin by the fainter line, m
+  bool shown;                 ///< both lines are felt, and do not merge
   std::vector<double> until;  ///< of each phase, the time at which the second line moves the pin, s
   std::vector<double> ahead;  ///< phases: distances by which a spot is ahead, m
   Status status{Status::ok};  ///< reason for an incomplete trial
 
-  bool distinct(double part, double direction) const { return back >= part && skin >= direction; }
+  /// True if both lines are felt, each with a motion of the skin, m.
+  bool distinct(double direction) const { return shown && skin >= direction; }
 };
 
 /// State of a pin under a hand in long uniform motion: dragged, and at rest.
@@ -62,16 +64,16 @@ class TwoLines {
   /// Trial at a speed, m/s; go_on() is called after each event and row.
   template <class GoOn>
   LineTrial at(double speed, GoOn&& go_on) {
-    LineTrial trial{speed, infinity, infinity, {}, phases(speed)};
+    LineTrial trial{speed, infinity, infinity, true, {}, phases(speed)};
     const Found found = pass(2, speed, clear() + 4 * pi / frequency_, trial.ahead, go_on);
     trial.status = found.status;
     if (trial.status != Status::ok) return trial;
     const std::vector<EvaluatedLine>& lines = found.evaluation.lines;
     for (std::size_t i = 0; i < trial.ahead.size(); ++i) {
       const EvaluatedLine &first = lines[2 * i], &second = lines[2 * i + 1];
-      const bool merged =
-          first.outcome == LineOutcome::merged || second.outcome == LineOutcome::merged;
-      trial.back = std::min(trial.back, merged ? 0 : part_back(first));
+      trial.back = std::min(trial.back, part_back(first));
+      trial.shown = trial.shown && first.outcome == LineOutcome::shown &&
+                    second.outcome == LineOutcome::shown;
       for (const EvaluatedLine* const line : {&first, &second})
         trial.skin =
             std::min(trial.skin, zero_for_nan(std::fmax(line->begin.skin, line->end.skin)));

@@ -159,7 +159,8 @@ def verdict_words(evaluation: Evaluation) -> list[str]:
         f"Motion of the skin is felt from {limits.felt * _MM:g} mm on, its direction from "
         f"{limits.direction * _MM:g} mm, and right in 95 % of cases from "
         f"{limits.direction_sure * _MM:g} mm at {limits.direction_speed * _MM:g} mm/s; a false "
-        f"line reaches at least {limits.false_line:.0%} of the height of the line before.",
+        f"line reaches at least {limits.false_line:.0%} of the height of the line before. Lines "
+        f"merge where the pin comes back by less than {limits.distinct:.0%} of its way.",
     ]
     if evaluation.scan.device.drive.finger.rigid:
         words.append(
@@ -182,7 +183,7 @@ def _number(count: int, noun: str) -> str:
 # ---- speed ---------------------------------------------------------------------------------------
 
 
-def speed_report(limits: Sequence[SpeedLimit], part: float, criteria: Criteria) -> RenderableType:
+def speed_report(limits: Sequence[SpeedLimit], criteria: Criteria) -> RenderableType:
     """The largest hand speed for each pitch, and by which criterion."""
     length, speed = QUANTITIES["speed.pitch"], QUANTITIES["hand_speed"]
     table = new_table(
@@ -206,11 +207,11 @@ def speed_report(limits: Sequence[SpeedLimit], part: float, criteria: Criteria) 
             length.digits(limit.width),
             _band(limit.distinct, limit),
             _band(limit.settled, limit),
-            beyond(limit, part, criteria.direction),
+            beyond(limit, criteria),
         )
     tried = limits[0].tried
     words = [
-        criterion(part, criteria.direction),
+        criterion(criteria),
         "Settled: the vibration after the first line also ends before the second line.",
         hands_words([limit.speed for limit in limits]),
         f"Tried: {speed.text(tried[0])} to {speed.text(tried[1])}, each speed an exact simulation.",
@@ -274,7 +275,7 @@ def _band(bands: tuple[Band, ...], limit: SpeedLimit) -> str:
     return most if low <= limit.tried[0] else f"{digits(low)} to {most}"
 
 
-def beyond(limit: SpeedLimit, part: float, direction: float) -> str:
+def beyond(limit: SpeedLimit, criteria: Criteria) -> str:
     """Return the failure of a hand that is faster than the limit, in words."""
     if not limit.distinct:
         return "the lines are distinct at no speed tried"
@@ -283,9 +284,9 @@ def beyond(limit: SpeedLimit, part: float, direction: float) -> str:
     if trial is not None:
         if trial.back == 0.0:
             words.append("merges the lines")
-        elif trial.back < part:
+        elif not trial.shown:
             words.append(f"lets the pin return by {trial.back:.0%}")
-        if trial.skin < direction:
+        if trial.skin < criteria.direction:
             words.append(f"moves the skin by {QUANTITIES['direction'].text(trial.skin)}")
     speed = QUANTITIES["hand_speed"]
     words += [

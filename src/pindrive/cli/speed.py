@@ -50,10 +50,6 @@ def speed(
     text: Annotated[
         str | None, option(PAGE, r"Text instead of two lines; \n begins a line.", metavar="TEXT")
     ] = None,
-    part: Annotated[
-        float,
-        option(ASKED, "Fraction of its stroke by which the pin must return between two lines."),
-    ] = 0.5,
     slowest: Annotated[
         str, option(ASKED, "Lowest hand speed of the search.", metavar="SPEED")
     ] = "5 mm/s",
@@ -90,7 +86,7 @@ def speed(
                 for step in measures(lengths, "speed.pitch", "2 mm", "--pitch")
             ]
             line = None if width is None else measure(width, "speed.width", "1 mm", "--width")
-            report, targets = _over_lines(device, pitches, line, part, tried, files, force)
+            report, targets = _over_lines(device, pitches, line, tried, files, force)
     show(report)
     say_written(targets)
 
@@ -115,7 +111,6 @@ def _over_lines(
     device: DeviceFile,
     pitches: list[float],
     width: float | None,
-    part: float,
     tried: tuple[float, float],
     files: Callable[[str], list[Target[_Speeds]]],
     force: bool,
@@ -130,14 +125,13 @@ def _over_lines(
                 device.device,
                 pitches,
                 width=width,
-                part=part,
                 slowest=tried[0],
                 fastest=tried[1],
                 criteria=device.criteria,
                 progress=progress,
             )
         write(found)
-    return speed_report(found, part, device.criteria), targets
+    return speed_report(found, device.criteria), targets
 
 
 def _over_text(

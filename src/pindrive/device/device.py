@@ -123,6 +123,8 @@ class Criteria:
         direction_sure: Skin motion whose direction is recognised in more than 95 % of cases, m.
         direction_speed: Least mean speed of the skin over `direction_sure`, m/s.
         false_line: Least height of a false line over that of the line before, in (0, 1].
+        distinct: Least return of the pin between two distinct lines, over its way back to the rest,
+            in (0, 1]; and at least `felt`.
 
     Raises:
         ValueError: A value is not a number or out of its range.
@@ -133,9 +135,10 @@ class Criteria:
     direction_sure: Number = default("direction_sure")
     direction_speed: Number = default("direction_speed")
     false_line: Number = default("false_line")
+    distinct: Number = default("distinct")
 
     @property
-    def numbers(self) -> tuple[float, float, float, float, float]:
+    def numbers(self) -> tuple[float, float, float, float, float, float]:
         """Values in the order of the core, SI."""
         return (
             self.felt,
@@ -143,4 +146,5 @@ class Criteria:
             self.direction_sure,
             self.direction_speed,
             self.false_line,
+            self.distinct,
         )

@@ -4,8 +4,8 @@ Two lines, black, stand `pitch` apart; an even hand goes straight over them, at 
 drive axis (`array.axis`) to the drive. Two lines are **distinct** at a speed if, whatever the phase
 of the control block's samples,
 
-- between them the pin comes back at least `part` of its way from its highest place to where spring
-  and dragging plate balance, before the second line takes it along, and
+- both are shown, by the rules of the evaluation of scans: between them the pin comes back by
+  `Criteria.distinct` of its way to where spring and dragging plate balance, and
 - each of them moves the skin, forward or back, enough for its direction to be perceived (of a rigid
   finger: the pin).
 
@@ -74,13 +74,15 @@ class Trial:
     speed: float
     """m/s"""
     back: float
-    """Part of its way that the pin comes back between the lines; 0 where they merge."""
+    """Part of its way that the pin comes back between the lines."""
     skin: float
     """Displacement of the skin by the fainter line, m."""
+    shown: bool
+    """True if both lines are felt and do not merge."""
 
-    def distinct(self, part: float, direction: float) -> bool:
-        """Return True if two lines are felt; direction is in m."""
-        return self.back >= part and self.skin >= direction
+    def distinct(self, direction: float) -> bool:
+        """Return True if both lines are felt and each moves the skin by `direction` (m)."""
+        return self.shown and self.skin >= direction
 
 
 @equal_by_value
@@ -123,12 +125,10 @@ class SpeedLimits(lazy.NotebookHtml, Sequence[SpeedLimit]):
 
     Attributes:
         limits: Limit of each pitch, in the given order.
-        part: Required return of the pin between two lines, as a part of its deflection.
         criteria: Criteria of a felt line.
     """
 
     limits: tuple[SpeedLimit, ...]
-    part: float
     criteria: Criteria
 
     @overload
@@ -158,7 +158,7 @@ class SpeedLimits(lazy.NotebookHtml, Sequence[SpeedLimit]):
         """The speeds over the pitch; `device` is a name for the title."""
         from pindrive.plot.resolution import plot_speeds
 
-        return plot_speeds(self.limits, self.part, self.criteria, device)
+        return plot_speeds(self.limits, self.criteria, device)
 
     def to_dataset(self) -> xr.Dataset:
         """The speeds and the width of the lines over `speed_pitch`, with units."""
@@ -172,7 +172,7 @@ class SpeedLimits(lazy.NotebookHtml, Sequence[SpeedLimit]):
             name.replace(".", "_"): ("speed_pitch", values, QUANTITIES[name].attributes)
             for name, values in columns.items()
         }
-        status = {"status": self.status.name, "speed_part": self.part}
+        status = {"status": self.status.name, "criteria_distinct": self.criteria.distinct}
         return xr.Dataset(data, attrs=status).set_coords("speed_pitch")
 
 
@@ -181,7 +181,6 @@ def largest_speeds(
     pitches: Sequence[float],
     *,
     width: float | None = None,
-    part: float = default("speed.part"),
     slowest: float = default("speed.slowest"),
     fastest: float = default("speed.fastest"),
     criteria: Criteria | None = None,
@@ -193,7 +192,6 @@ def largest_speeds(
         device: Device with drive, magnet and control block; one pin is evaluated.
         pitches: Distances between lines, m, greater than 0.
         width: Width of the lines, m, less than each pitch; None: half of the pitch.
-        part: Required return of the pin between two lines, as a part of its deflection, in (0, 1].
         slowest: Hand tried, m/s, greater than 0.
         fastest: Hand tried, m/s, greater than `slowest`.
         criteria: Criteria of a felt line; None: those of the literature.
@@ -208,7 +206,6 @@ def largest_speeds(
     if not steps:
         raise ValueError(refusal("pitches", "at least one", "none"))
     tried = check_tried(slowest, fastest)
-    needed = check("speed.part", part, label="part")
     limits = criteria or Criteria()
     lines = [
         check("speed.width", 0.5 * pitch if width is None else width, label="width")
@@ -226,9 +223,9 @@ def largest_speeds(
             if progress:
                 progress(done * _TRIALS + min(trials, _TRIALS), len(steps) * _TRIALS)
 
-        found.append(_limit(device, pitch, line, needed, tried, limits, report))
+        found.append(_limit(device, pitch, line, tried, limits, report))
         report(_TRIALS)
-    return SpeedLimits(tuple(found), needed, limits)
+    return SpeedLimits(tuple(found), limits)
 
 
 def check_tried(slowest: float, fastest: float) -> Band:
@@ -296,14 +293,13 @@ def _limit(
     device: Device,
     pitch: float,
     width: float,
-    part: float,
     tried: Band,
     criteria: Criteria,
     progress: Callable[[int], None],
 ) -> SpeedLimit:
     """Return the limit for one pitch; report the number of trials after each."""
     distinct, settled, beyond, status = _core.speed_limit(
-        device.core, pitch, width, criteria.numbers, part, tried, progress
+        device.core, pitch, width, criteria.numbers, tried, progress
     )
     _check_status(status, pitch)
     return SpeedLimit(
@@ -312,7 +308,7 @@ def _limit(
         tried=tried,
         distinct=tuple(distinct),
         settled=tuple(settled),
-        beyond=None if beyond is None else Trial(*beyond[:3]),
+        beyond=None if beyond is None else Trial(*beyond[:4]),
     )
 
 
@@ -331,9 +327,9 @@ def two_lines(
     Raises:
         SimulationError: The simulation had to be given up.
     """
-    *numbers, status = _core.two_lines(device.core, pitch, width, criteria.numbers, speed)
-    _check_status(status, pitch)
-    return Trial(*numbers)
+    found = _core.two_lines(device.core, pitch, width, criteria.numbers, speed)
+    _check_status(found[-1], pitch)
+    return Trial(*found[:4])
 
 
 def _check_status(status: int, pitch: float) -> None:
@@ -346,9 +342,9 @@ def _clear(device: Device) -> float:
     return device.control.latency + 8.0 * device.magnet.fall_constant
 
 
-def criterion(part: float, direction: float) -> str:
+def criterion(criteria: Criteria) -> str:
     """Criterion of distinct lines, in a sentence."""
     return (
-        f"Two lines are distinct where the pin comes back at least {part:.0%} of its way between "
-        f"them, and each moves the skin {1e3 * direction:g} mm or more."
+        f"Two lines are distinct where the pin comes back at least {criteria.distinct:.0%} of its "
+        f"way between them, and each moves the skin {1e3 * criteria.direction:g} mm or more."
     )

@@ -75,7 +75,7 @@ class Climb:
         """Return True if the lines are distinct, by a new trial or an earlier one."""
         if speed not in self.trials:
             trial = two_lines(self.device, self.pitch, 0.5 * self.pitch, speed, self.criteria)
-            distinct = trial.distinct(default("speed.part"), self.criteria.direction)
+            distinct = trial.distinct(self.criteria.direction)
             self.trials[speed] = distinct
         return self.trials[speed]
 

@@ -27,14 +27,11 @@ CURVE: Final[dict[str, Any]] = {"color": PALETTE["curve"], "mfc": "white", "mew"
 _STUDIED: Final = tuple(speed * MM for speed in STUDIED)
 
 
-def plot_speeds(
-    limits: Sequence[SpeedLimit], part: float, criteria: Criteria, device: str = ""
-) -> Figure:
+def plot_speeds(limits: Sequence[SpeedLimit], criteria: Criteria, device: str = "") -> Figure:
     """Draw the largest hand speeds over the pitch, for a page 120 mm wide.
 
     Args:
         limits: Result of `largest_speeds`.
-        part: Required return of the pin between two lines, as a part of its deflection.
         criteria: Criteria of a felt line.
         device: Name of the device, for the title.
     """
@@ -53,7 +50,7 @@ def plot_speeds(
         axes.fill_between(pitch, slowest, settled, alpha=0.22, color=blue, lw=0.0, gid="settled")
         handles: list[Artist] = []
         if not np.isnan(apart).all():
-            said = f"distinct: back by {part:.0%} in between"
+            said = f"distinct: back by {criteria.distinct:.0%} in between"
             handles += axes.plot(pitch, apart, marker="o", **CURVE, label=said, gid="distinct")
             _name(axes, "they run into one", (0.02, 0.98))
         else:
@@ -73,7 +70,7 @@ def plot_speeds(
         axes.set_xlabel("pitch of the lines (mm)")
         axes.set_ylabel("hand speed (mm/s)")
         title = f"Largest hand speed{f': {device}' if device else ''}"
-        words = fill(criterion(part, criteria.direction), 78)
+        words = fill(criterion(criteria), 78)
         figure.head(f"{plain(title, 66)}\n{words}")
     return figure
 

@@ -268,6 +268,15 @@ CRITERIA: Final = inputs(
         0.5,
         "assumed",
     ),
+    Quantity(
+        "distinct",
+        "r",
+        "1",
+        "least return of the pin between two distinct lines, over its way back to the rest",
+        0.25,
+        "amplitudes of motion at the fingertip are told apart from 2.2-2.5 dB on, which is 22-25 % "
+        "(2-200 Hz; Israr & Tan 2006, 10.1109/HAPTIC.2006.1627110)",
+    ),
 )
 """Criteria of the evaluation of a scan: a table of a device file."""
 
@@ -331,15 +340,6 @@ LINE_COUNTS: Final[tuple[Quantity, ...]] = tuple(
 SPEED: Final[tuple[Quantity, ...]] = (
     Quantity("speed.pitch", "p", "m", "distance between two lines", bounds=between(1e-6, 10.0)),
     Quantity("speed.width", "w", "m", "width of the lines", bounds=between(1e-7, 10.0)),
-    Quantity(
-        "speed.part",
-        "r",
-        "1",
-        "required return of the pin between two lines, over its displacement",
-        source="assumed",
-        absent=0.5,
-        bounds=between(1e-6, 1.0),
-    ),
     Quantity(
         "speed.slowest",
         "v_min",

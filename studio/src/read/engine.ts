@@ -6,7 +6,6 @@ import { Device, type DeviceInput, type Line, type Raster, Scan, type SpeedLimit
 export const SAMPLED = ["position", "stretch", "pull", "command", "luminance"] as const;
 /** Time between two samples, s of the device. */
 const SAMPLING = 1e-3;
-const LIMIT_PART = 0.5; // return of the pin between two lines, over its displacement
 const HANDS = [0.005, 1] as const; // m/s
 
 export interface Opened {
@@ -120,7 +119,7 @@ export class Engine {
   private limits({ device: input, pitches }: Limited["limits"]): Limits {
     const device = new Device(this.core, input);
     try {
-      return { limits: pitches.map((pitch) => device.speedLimit(pitch, LIMIT_PART, ...HANDS)) };
+      return { limits: pitches.map((pitch) => device.speedLimit(pitch, ...HANDS)) };
     } finally {
       device.free();
     }

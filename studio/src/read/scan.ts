@@ -87,10 +87,10 @@ export class Device {
   }
 
   /** Largest hand speeds over two lines, half as wide as their pitch, m. Throws CoreError. */
-  speedLimit(pitch: number, part: number, slowest: number, fastest: number): SpeedLimit {
+  speedLimit(pitch: number, slowest: number, fastest: number): SpeedLimit {
     return this.core.borrowed(LIMIT_BYTES, (at) => {
       const { core, handle } = this;
-      core.call("device_speed_limit", handle, pitch, 0.5 * pitch, part, slowest, fastest, 0, 0, at);
+      core.call("device_speed_limit", handle, pitch, 0.5 * pitch, slowest, fastest, 0, 0, at);
       const [from, to, settled] = [0, 8, 16].map((offset) => core.view().getFloat64(at + offset, true));
       return { from: from!, to: to!, settled: settled! };
     });
