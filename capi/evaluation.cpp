@@ -1,8 +1,10 @@
 // The C interface: lines that a finger feels, and the largest hand speed over two lines.
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -40,6 +42,19 @@ pindrive_line line_of(const device::EvaluatedLine& line) {
           line.contrast};
 }
 
+/// Inputs of a scan that was not advanced yet, with the hand as it was given; refused without one.
+pindrive_error inputs_of(const pindrive_scan& scan, std::optional<device::ScanInputs>& inputs) {
+  const device::LiveHand& hand = scan.stream->hand();
+  if (scan.stream->now() != hand.begin() || hand.size() < 2)
+    return fail(PINDRIVE_BAD_VALUE,
+                "the scan must have two rows of the hand or more, and not be advanced yet");
+  inputs.emplace(device::ScanInputs{scan.owned->device, scan.page->raster(), hand.path(),
+                                    hand.plate(), hand.finger_load(), hand.begin()});
+  return PINDRIVE_OK;
+}
+
+constexpr std::size_t unlimited = std::numeric_limits<std::size_t>::max();
+
 }  // namespace
 
 extern "C" {
@@ -51,19 +66,15 @@ pindrive_error pindrive_scan_lines(const pindrive_scan* scan, pindrive_go_on go_
   if (!count) return null_pointer("count");
   if (!false_lines) return null_pointer("false_lines");
   if (capacity > 0 && !lines) return null_pointer("lines");
-  const device::LiveHand& hand = scan->stream->hand();
-  if (scan->stream->now() != hand.begin() || hand.size() < 2)
-    return fail(PINDRIVE_BAD_VALUE,
-                "the scan must have two rows of the hand or more, and not be advanced yet");
+  std::optional<device::ScanInputs> given;
+  if (const pindrive_error error = inputs_of(*scan, given)) return error;
   return guarded([&]() -> pindrive_error {
-    const device::Device& reader = scan->owned->device;
-    const device::ScanInputs inputs{reader,       scan->page->raster(), hand.path(),
-                                    hand.plate(), hand.finger_load(),   hand.begin()};
+    const device::ScanInputs& inputs = *given;
+    const device::Device& reader = inputs.device;
     const device::PageAlongPath page(inputs.raster, inputs.path, reader.axis,
                                      reader.controller.threshold);
     const device::ScanEvaluation evaluation(inputs, scan->owned->criteria);
-    const device::PinState begin = device::at_rest(reader, hand.begin());
-    constexpr std::size_t unlimited = std::numeric_limits<std::size_t>::max();
+    const device::PinState begin = device::at_rest(reader, inputs.begin);
     Attended attended(go_on, context);
     device::Evaluation found;
     device::PinRun run;
@@ -82,6 +93,27 @@ pindrive_error pindrive_scan_lines(const pindrive_scan* scan, pindrive_go_on go_
     std::transform(found.lines.begin(), found.lines.begin() + static_cast<std::ptrdiff_t>(fitting),
                    lines, line_of);
     return fitting < found.lines.size() ? PINDRIVE_MORE : PINDRIVE_OK;
+  });
+}
+
+pindrive_error pindrive_scan_load(const pindrive_scan* scan, size_t pin, double* times,
+                                  double* factors, size_t capacity, size_t* count) {
+  if (!scan) return null_pointer("scan");
+  if (!count) return null_pointer("count");
+  if (capacity > 0 && (!times || !factors)) return null_pointer("times and factors");
+  std::optional<device::ScanInputs> inputs;
+  if (const pindrive_error error = inputs_of(*scan, inputs)) return error;
+  const std::size_t pins = inputs->device.spots.size();
+  if (pin >= pins)
+    return fail(PINDRIVE_BAD_VALUE, "a pin must be from 0 to %zu, not %zu", pins - 1, pin);
+  return guarded([&]() -> pindrive_error {
+    device::PinRun run;
+    run.energise(*inputs, pin, device::at_rest(inputs->device, inputs->begin), unlimited);
+    *count = run.loads.size();
+    const auto fitting = static_cast<std::ptrdiff_t>(std::min(capacity, *count));
+    std::copy_n(run.load_times.begin(), fitting, times);
+    std::copy_n(run.loads.begin(), fitting, factors);
+    return capacity < *count ? PINDRIVE_MORE : PINDRIVE_OK;
   });
 }
 

@@ -567,6 +567,13 @@ PINDRIVE_API pindrive_error pindrive_scan_lines(const pindrive_scan *scan, pindr
                                                 size_t capacity, size_t *count,
                                                 size_t *false_lines);
 
+/* Rows of the factor of the plate friction of one pin, for the hand as pindrive_scan_lines() takes it: times since the
+ * begin of the scan, s, and factors, linear in between; one row for a constant. With the velocity of the hand
+ * they are the inputs of a release with the motion of the pin. More than `capacity` rows make it return
+ * PINDRIVE_MORE, with the number of all in `count`. */
+PINDRIVE_API pindrive_error pindrive_scan_load(const pindrive_scan *scan, size_t pin, double *times,
+                                               double *factors, size_t capacity, size_t *count);
+
 typedef struct pindrive_speed_limit {
   double distinct_from, distinct_to; /* first band of speeds at which both lines are felt, m/s; NaN: none */
   double settled_to; /* largest speed of the first band in which the pin settles between them, m/s; NaN: none */

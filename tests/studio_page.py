@@ -35,7 +35,8 @@ def opened(page: Any, *files: Path) -> None:
 def saved(page: Any, kind: str, folder: Path) -> Path:
     """Saves by the menu; the file."""
     with page.expect_download() as download:
-        page.select_option("#save", kind)
+        page.locator("header .menu summary").first.click()
+        page.locator(f"header .menu [data-name={kind}]").first.click()
     path = folder / str(download.value.suggested_filename)
     download.value.save_as(path)
     return path

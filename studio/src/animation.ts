@@ -9,9 +9,37 @@ import { currentCurves, type View } from "./view";
 export class Animation {
   private readonly canvas: Canvas;
   private view: View | null = null;
+  /** Pixels for a metre of the pin's deflection, and its rest, in the last drawing. */
+  private drawn = { scale: 1, middle: 0 };
+  /** Scale while the pin is dragged: it stays as it was when the pin was taken. */
+  private held: { readonly scale: number; readonly middle: number } | null = null;
 
-  constructor(private look: Look) {
-    this.canvas = new Canvas("animation", "The device at the time of the cursor", 0.5, () => this.draw());
+  /** `pull` is called with the deflection to which the pin is dragged, m. */
+  constructor(
+    private look: Look,
+    private readonly pull: (position: number) => void,
+  ) {
+    const label = "The device at the time of the cursor; the pin can be dragged";
+    this.canvas = new Canvas("animation", label, 0.5, () => this.draw());
+    const { element } = this.canvas;
+    element.addEventListener("pointerdown", (event) => {
+      element.setPointerCapture(event.pointerId);
+      this.held = this.drawn;
+      this.drag(event);
+    });
+    element.addEventListener("pointermove", (event) => this.drag(event));
+    for (const kind of ["pointerup", "pointercancel"] as const) {
+      element.addEventListener(kind, () => {
+        this.held = null;
+      });
+    }
+  }
+
+  private drag(event: PointerEvent): void {
+    if (!this.held) return;
+    const across = event.clientX - this.canvas.element.getBoundingClientRect().left;
+    const position = (across - this.held.middle) / this.held.scale;
+    this.pull(Number(position.toPrecision(3)));
   }
 
   get element(): HTMLElement {
@@ -43,6 +71,7 @@ export class Animation {
     const x = columnAt(curves, "position", time);
     const sliding = columnAt(curves, "velocity", time);
     const middle = 0.54 * w;
+    this.drawn = { scale, middle };
     const pin = middle + scale * x;
     const plateTop = 0.84 * height;
     const [top, bottom] = [0.3 * height, 0.78 * height];

@@ -84,6 +84,16 @@ export interface Segment {
   readonly stopEvent: StopTransition;
 }
 
+/** Change of contacts, with the state right after. */
+export interface Event {
+  readonly time: number;
+  readonly position: number;
+  readonly velocity: number;
+  readonly plate: Transition;
+  readonly finger: Transition;
+  readonly stop: StopTransition;
+}
+
 /** Error of the core, in its words. */
 export class CoreError extends Error {}
 
@@ -95,6 +105,9 @@ const MORE = 1; // PINDRIVE_MORE: there was more than fitted
 const INTERFACE = 2; // PINDRIVE_INTERFACE that this file is written for
 const OUTCOME_BYTES = 56;
 const SEGMENT_BYTES = 80;
+const EVENT_BYTES = 40;
+/** Largest number of events, and of extrema, of one motion. */
+const MOST = 1 << 16;
 
 export class Core {
   readonly numberNames: readonly string[];
@@ -377,6 +390,40 @@ export class Motion {
         });
       }
       return found;
+    });
+  }
+
+  /** Events in [0, until], cycles expanded; `whole` is false if there are more than the largest number. */
+  events(until: number): { readonly events: readonly Event[]; readonly whole: boolean } {
+    return this.core.borrowed(8 + MOST * EVENT_BYTES, (at) => {
+      const more = this.core.call("events", this.handle, 0, until, at + 8, MOST, at);
+      const view = this.core.view();
+      const events = Array.from({ length: view.getUint32(at, true) }, (_, i): Event => {
+        const from = at + 8 + i * EVENT_BYTES;
+        return {
+          time: view.getFloat64(from, true),
+          position: view.getFloat64(from + 8, true),
+          velocity: view.getFloat64(from + 16, true),
+          plate: TRANSITIONS[view.getInt32(from + 24, true)]!,
+          finger: TRANSITIONS[view.getInt32(from + 28, true)]!,
+          stop: AT_STOP[view.getInt32(from + 32, true)]!,
+        };
+      });
+      return { events, whole: !more };
+    });
+  }
+
+  /** Times and values between which a quantity goes one way, in [0, until]. */
+  extrema(
+    quantity: QuantityName,
+    until: number,
+  ): { readonly times: Float64Array; readonly values: Float64Array } {
+    return this.core.borrowed(8 + 16 * MOST, (at) => {
+      const [times, values] = [at + 8, at + 8 + 8 * MOST];
+      this.core.call("extrema", this.handle, QUANTITIES.indexOf(quantity), until, times, values, MOST, at);
+      const count = this.core.view().getUint32(at, true);
+      const column = (from: number): Float64Array => new Float64Array(this.core.buffer, from, count).slice();
+      return { times: column(times), values: column(values) };
     });
   }
 

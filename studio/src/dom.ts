@@ -30,6 +30,32 @@ export function option(value: string, text: string, selected = false): HTMLOptio
   return h("option", { value, selected }, text);
 }
 
+/** A button that opens a menu; `action` is called with the name of the chosen entry. */
+export function menu(
+  text: string,
+  entries: readonly (readonly [string, string])[],
+  action: (name: string) => void,
+): HTMLElement {
+  const made = h("details", { class: "menu" }, h("summary", {}, text));
+  const items = entries.map(([name, words]) => {
+    const choose = (): void => {
+      made.open = false;
+      action(name);
+    };
+    return h("li", {}, h("button", { type: "button", "data-name": name, onclick: choose }, words));
+  });
+  made.append(h("ul", {}, ...items));
+  made.addEventListener("keydown", (event) => {
+    if (event.key !== "Escape" || !made.open) return;
+    made.open = false;
+    made.querySelector("summary")!.focus();
+  });
+  made.addEventListener("focusout", ({ relatedTarget }) => {
+    if (relatedTarget instanceof Node && !made.contains(relatedTarget)) made.open = false;
+  });
+  return made;
+}
+
 const typed = new WeakSet<HTMLInputElement>();
 
 /** A field for a text. What is typed there stays until it is given: see `show`. */

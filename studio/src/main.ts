@@ -52,16 +52,20 @@ class Studio {
     const current = this.page && currentDesign(this.page.state);
     const whole = current && Object.keys(current.around).length ? current : this.givenWhole();
     if (!this.read) {
-      this.read = new ReadView(
-        this.wasm,
-        whole ?? designOf({ text: TABLES.reader, file: "the reader", rows: {} }),
-      );
+      const design = whole ?? designOf({ text: TABLES.reader, file: "the reader", rows: {} });
+      this.read = new ReadView(this.wasm, design, (release) => this.showDesign(release));
       this.places.read.append(this.read.element);
     } else if (whole && whole !== this.opened) this.read.open(whole);
     this.opened = whole;
     this.read.start();
     if (!saved) return;
     await this.read.takeLink(saved);
+  }
+
+  /** Shows a design in "One release", beside those that are there. */
+  private showDesign(design: Design): void {
+    history.pushState(null, "", "#");
+    void this.showRelease("").then(() => this.page!.add(design));
   }
 
   /** The whole device that the command put into this copy of the page. */

@@ -67,6 +67,7 @@ export class MapRunner {
       at: [values[x] as number, values[y] as number],
     });
     this.next = () => mapTask(values, x, y, axes, state.number, limits);
+    this.view.element.dataset.stale = "";
     setTimeout(() => this.send()); // after what is seen at once
   }
 
@@ -97,6 +98,7 @@ export class MapRunner {
     this.last = result;
     this.view.setResult(result);
     this.view.element.dataset.took = result.took.toFixed(3);
+    if (!this.next) delete this.view.element.dataset.stale;
     this.send();
   }
 }

@@ -3,10 +3,10 @@ import { Animation } from "./animation";
 import { Charts } from "./charts";
 import { problemOf } from "./checks";
 import { type Core, CoreError } from "./core";
-import { withValue } from "./design";
+import { type Design, withValue } from "./design";
 import { Designs } from "./designs";
 import { DeviceError, decodeText, readDevice } from "./device";
-import { button, card, download, fileName, h, option } from "./dom";
+import { button, card, download, fileName, h, menu, option } from "./dom";
 import { figureSvg, pngOf } from "./figure";
 import { choose, type Given } from "./files";
 import { fit, fitOffset } from "./fit";
@@ -18,6 +18,7 @@ import { navigation } from "./navigation";
 import { Panel } from "./panel";
 import { PhasePlane } from "./phaseplane";
 import { Player } from "./player";
+import { givenOf, PRESETS } from "./presets";
 import { RecordingError, readRecording } from "./recording";
 import { Bars, EventsTable, effects, NumbersTable, sentence } from "./results";
 import { simulateAll } from "./sample";
@@ -63,7 +64,9 @@ export class Page {
     this.history = new History(state);
     this.charts = new Charts(this.look, { cursor: (time) => this.setCursor(time, true) });
     this.phase = new PhasePlane(this.look);
-    this.animation = new Animation(this.look);
+    this.animation = new Animation(this.look, (position) =>
+      this.setValues(withValue(this.values, "motion.displacement", position), "pin"),
+    );
     this.player = new Player(
       (time) => this.setCursor(time),
       () => ({ curves: currentCurves(this.view), end: this.view.end }),
@@ -102,6 +105,7 @@ export class Page {
       "main",
       { id: "main" },
       this.problem,
+      this.introduction(),
       h(
         "div",
         { class: "column" },
@@ -138,6 +142,28 @@ export class Page {
     this.render();
   }
 
+  /** One sentence for the page, and one for each preset. */
+  private introduction(): HTMLElement {
+    const shows = h("p", { class: "note", role: "status" });
+    const buttons = PRESETS.map((preset) =>
+      button(preset.name, preset.shows, () => {
+        if (this.load(givenOf(preset), true)) shows.textContent = preset.shows;
+      }),
+    );
+    return card(
+      "introduction",
+      "One release",
+      h(
+        "p",
+        {},
+        "A pin on a spring is let go on a moving plate, under a fingertip, with dry friction at both. Its motion is computed ",
+        "exactly at each change: move a slider, or drag the pin in the drawing of the device.",
+      ),
+      h("div", { class: "presets" }, ...buttons),
+      shows,
+    );
+  }
+
   // ---- changes -----------------------------------------------------------------------------------
 
   change(next: State, kind: string): void {
@@ -164,16 +190,19 @@ export class Page {
     this.ask();
   }
 
+  /** Adds a design, or puts it in place of all others, and shows it. */
+  add(design: Design, replace = false): void {
+    const next = replace ? [design] : [...this.state.designs, design];
+    this.change({ ...this.state, designs: next, current: next.length - 1 }, "");
+  }
+
   /** Loads the text of a device file as a new design; what is wrong is said at the top. */
   load(given: Given, replace: boolean): boolean {
     try {
       const device = readDevice(given.text, given.file, given.rows);
       const problem = problemOf(device.values);
       if (problem) throw new DeviceError([problem]);
-      const design = { ...device, name: device.name || given.file.replace(/\.toml$/i, ""), shown: true };
-      const { designs } = this.state;
-      const next = replace ? [design] : [...designs, design];
-      this.change({ ...this.state, designs: next, current: next.length - 1 }, "");
+      this.add({ ...device, name: device.name || given.file.replace(/\.toml$/i, ""), shown: true }, replace);
       this.say("");
       return true;
     } catch (error) {
@@ -350,21 +379,17 @@ export class Page {
       setScheme(scheme.value as Scheme);
       this.setLook();
     });
-    const save = h(
-      "select",
-      { id: "save", "aria-label": "save as" },
-      option("", "Save as …"),
-      option("toml", "Device file (TOML)"),
-      option("csv", "Samples (CSV)"),
-      option("events", "Events (CSV)"),
-      option("svg", "Curves (SVG)"),
-      option("png", "Curves (PNG)"),
-      option("link", "Link to this state"),
+    const save = menu(
+      "Save as",
+      [
+        ["toml", "Device file (TOML)"],
+        ["csv", "Samples (CSV)"],
+        ["events", "Events (CSV)"],
+        ["svg", "Curves (SVG)"],
+        ["png", "Curves (PNG)"],
+      ],
+      (kind) => void this.save(kind),
     );
-    save.addEventListener("change", () => {
-      void this.save(save.value);
-      save.value = "";
-    });
     return h(
       "header",
       {},
@@ -380,7 +405,7 @@ export class Page {
         },
         "To the curves",
       ),
-      h("h1", {}, "pindrive studio"),
+      h("h1", { title: `pindrive ${TABLES.version}` }, "pindrive studio"),
       navigation("release"),
       h(
         "div",
@@ -389,6 +414,7 @@ export class Page {
           choose(".toml,.csv,.txt", (file) => void this.takeFile(file)),
         ),
         save,
+        button("Share", "A link to this state, in the clipboard", () => void this.save("link")),
         this.undo,
         this.redo,
         scheme,

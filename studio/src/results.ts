@@ -4,7 +4,7 @@ import { type Core, CoreError } from "./core";
 import { coreInput, direction, settlingBand, variedKeys } from "./design";
 import { h, refill } from "./dom";
 import type { Values } from "./friction";
-import { DRIVE, digits, label, NUMBERS, type Quantity, TABLES, text, unitOf } from "./table";
+import { DRIVE, digits, label, NUMBERS, type Quantity, shownNumber, TABLES, text, unitOf } from "./table";
 import { currentCurves, curvesOf, type View } from "./view";
 
 const ENDINGS: Readonly<Record<string, string>> = {
@@ -91,7 +91,7 @@ export class NumbersTable {
           h("th", { scope: "row" }, name),
           h("td", { class: "unit" }, unitOf(quantity)),
           ...values.map((value) =>
-            h("td", { class: "figure" }, value === undefined ? "" : digits(value * quantity.displayScale)),
+            h("td", { class: "figure" }, value === undefined ? "" : shownNumber(quantity, value)),
           ),
         ),
       );
@@ -108,6 +108,8 @@ function valueIn(curves: NonNullable<ReturnType<typeof curvesOf>>, quantity: Qua
   return curves.numbers[quantity.name];
 }
 
+const LISTED = 100; // events in the table
+
 /** Sequence of the events; a click moves the cursor to the event. */
 export class EventsTable {
   readonly element = h("div", {
@@ -121,7 +123,8 @@ export class EventsTable {
 
   update(view: View): void {
     const curves = currentCurves(view);
-    const events = curves?.events.slice(0, 100) ?? [];
+    const all = curves?.events ?? [];
+    const events = all.slice(0, LISTED);
     let before = 0;
     // A velocity that is 0 but for the rounding of the core's sums is shown as 0.
     const velocities = curves?.columns.velocity ?? new Float64Array();
@@ -153,7 +156,10 @@ export class EventsTable {
       );
     });
     const head = ["t, ms", "since, ms", "what happens", "x, mm", "x′, mm/s"];
+    const count = all.length.toLocaleString("en").replaceAll(",", " ");
+    const more = `The first ${LISTED} of ${count} events; "Save as" writes all of them.`;
     refill(this.element, [
+      ...(all.length > LISTED ? [h("p", { class: "note" }, more)] : []),
       events.length
         ? h(
             "table",

@@ -49,7 +49,9 @@ export interface Curves {
 export type Simulated = { readonly curves: Curves } | { readonly problem: string };
 
 export const SAMPLES = 801;
-const EVENTS = 400; // markers that a plot can show
+const ROUNDS = 2000; // of a cycle whose phases are drawn
+const BINS = 1500; // parts of the window in which the curves keep their extremes
+const JUMPS = 1500; // events whose both sides are drawn
 
 interface Made {
   readonly motion: Motion;
@@ -97,25 +99,14 @@ function begin(core: Core, values: Values): Made {
   return { motion, values, duration, events: eventsOf(motion, duration) };
 }
 
-/**
- * Changes at the ends of modes, with the state right after, in Python's order; cycles are expanded.
- */
+/** Events up to a time in Python's order. */
 function eventsOf(motion: Motion, until: number): ContactEvent[] {
-  const found: ContactEvent[] = [];
-  for (const { segment, next, shift } of expanded(motion, motion.segments(until), until)) {
-    const time = segment.end + shift;
-    if (time > until || found.length >= EVENTS) break;
-    const { plateEvent: plate, fingerEvent: finger, stopEvent: stop } = segment;
+  return motion.events(until).events.flatMap(({ time, position, velocity, plate, finger, stop }) => {
     const friction = plate === finger ? { both: plate } : { plate, finger };
-    const [position, velocity] = next
-      ? [next.position, next.velocity]
-      : (["position", "velocity"] as const).map((name) => motion.evaluate(name, Float64Array.of(time))[0]!);
-    for (const [contact, kind] of Object.entries({ ...friction, stop })) {
-      if (kind === "none") continue;
-      found.push({ time, contact: contact as ContactName, kind, position: position!, velocity: velocity! });
-    }
-  }
-  return found;
+    return Object.entries({ ...friction, stop }).flatMap(([contact, kind]) =>
+      kind === "none" ? [] : [{ time, contact: contact as ContactName, kind, position, velocity }],
+    );
+  });
 }
 
 /** Modes in order with their successors; modes of a cycle repeat, later by `shift`. */
@@ -127,7 +118,7 @@ function* expanded<T extends Segment>(
   const { cycleBegin, simulated } = motion.outcome;
   const round = simulated - cycleBegin;
   const first = round > 0 ? segments.find(({ begin }) => begin >= cycleBegin) : undefined;
-  for (let shift = 0, rounds = 0; rounds < 200; ++rounds, shift += round) {
+  for (let shift = 0, rounds = 0; rounds < ROUNDS; ++rounds, shift += round) {
     for (const [i, segment] of segments.entries()) {
       if (rounds > 0 && segment.begin < cycleBegin) continue;
       yield { segment, next: segments[i + 1] ?? first, shift };
@@ -142,22 +133,47 @@ interface Grid {
   readonly left: readonly number[];
 }
 
+/** Even times, both sides of the events, and the turns of position and velocity: curves follow the motion. */
 function commonTimes(made: readonly Made[], end: number, samples: number): Grid {
   const events = made.flatMap(({ events }) => events.map(({ time }) => time));
-  const jumps = [...new Set(events.filter((time) => time > 0 && time < end))].sort((a, b) => a - b);
-  const times = new Float64Array(samples + 2 * jumps.length);
+  const jumps = sortedOf(events.filter((time) => time > 0 && time < end)).slice(0, JUMPS);
+  const even = Array.from({ length: samples }, (_, i) => (end * i) / (samples - 1));
+  even[samples - 1] = end;
+  const turns = made.flatMap(({ motion }) =>
+    (["position", "velocity"] as const).flatMap((quantity) => extremesOf(motion, quantity, end)),
+  );
+  const sides = new Set(jumps);
+  const times: number[] = [];
   const left: number[] = [];
-  let [at, next] = [0, 0];
-  for (let i = 0; i < samples; ++i) {
-    const time = i === samples - 1 ? end : (end * i) / (samples - 1);
-    for (; next < jumps.length && jumps[next]! <= time; ++next) {
-      left.push(at);
-      times[at++] = jumps[next]!;
-      times[at++] = jumps[next]!;
+  for (const time of sortedOf([...even, ...jumps, ...turns])) {
+    if (sides.has(time)) {
+      left.push(times.length);
+      times.push(time);
     }
-    times[at++] = time;
+    times.push(time);
   }
-  return { times, left };
+  return { times: Float64Array.from(times), left };
+}
+
+function sortedOf(times: readonly number[]): number[] {
+  return [...new Set(times)].sort((a, b) => a - b);
+}
+
+/** Times of the least and the largest value in each part of the window. */
+function extremesOf(motion: Motion, quantity: QuantityName, end: number): number[] {
+  const until = Math.min(end, motion.outcome.knownUntil);
+  const { times, values } = motion.extrema(quantity, until);
+  const found: number[] = [];
+  for (let i = 0; i < times.length; ) {
+    const bin = Math.floor((times[i]! / end) * BINS);
+    let [least, most] = [i, i];
+    for (; i < times.length && Math.floor((times[i]! / end) * BINS) === bin; ++i) {
+      if (values[i]! < values[least]!) least = i;
+      if (values[i]! > values[most]!) most = i;
+    }
+    found.push(times[least]!, times[most]!);
+  }
+  return found.filter((time) => time < end);
 }
 
 function sampled({ motion, values, duration, events }: Made, grid: Grid, end: number): Curves {

@@ -152,9 +152,15 @@ export function digits(value: number, count = 4): string {
   return text.replace("-", "−");
 }
 
+/** A value (SI) in the unit of its quantity: "1.500"; a count has no decimals. */
+export function shownNumber(quantity: Quantity, value: number): string {
+  const isCount = !quantity.unit && Number.isFinite(value);
+  return isCount ? String(Math.round(value)) : digits(value * quantity.displayScale);
+}
+
 /** A value (SI) for a person to read: "1.500 mm". */
 export function text(quantity: Quantity, value: number): string {
-  return `${digits(value * quantity.displayScale)} ${unitOf(quantity)}`.trim();
+  return `${shownNumber(quantity, value)} ${unitOf(quantity)}`.trim();
 }
 
 /** The unit in which a person reads it, with its signs. */

@@ -511,7 +511,7 @@ static pindrive_device *the_device(void) {
 
 /* Lines of a page under a hand, and the speed at which two lines merge. */
 static void lines_and_speeds(void) {
-  double paper[400];
+  double paper[400], rows[4];
   pindrive_device *device = the_device();
   pindrive_scan *scan = NULL;
   pindrive_line lines[8];
@@ -530,6 +530,11 @@ static void lines_and_speeds(void) {
   expect(pindrive_scan_lines(scan, NULL, NULL, lines, 8, &count, &false_lines) == PINDRIVE_OK &&
              lines[0].outcome == PINDRIVE_SHOWN && lines[1].outcome == PINDRIVE_SHOWN,
          "that are shown");
+  expect(pindrive_scan_load(scan, 0, rows, rows + 2, 2, &count) == PINDRIVE_MORE && count > 4,
+         "rows of the load");
+  expect(rows[0] == 0 && rows[2] == 1, "that begin with the magnet off");
+  refuses(pindrive_scan_load(scan, 1, rows, rows + 2, 2, &count), PINDRIVE_BAD_VALUE,
+          "a pin must be from 0 to 0, not 1");
   expect(fabs(lines[0].begin.x - 0.01) < 1e-4 && lines[0].begin.lag > 0, "where they are printed");
   expect(pindrive_scan_advance(scan, 0.1, NULL, NULL) == PINDRIVE_OK, "advanced");
   refuses(pindrive_scan_lines(scan, NULL, NULL, lines, 8, &count, &false_lines), PINDRIVE_BAD_VALUE,

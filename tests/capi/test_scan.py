@@ -292,6 +292,12 @@ def test_lines_are_those_of_evaluate(seed: int, c_library: Path) -> None:
         for name in ("stroke", "height", "returned", "release", "settled", "smear", "overshoot"):
             assert_array_equal(getattr(found, name), getattr(line, name), name)
     assert len(expected.shown) > 4
+    for pin in reading.scan().pins:
+        assert c("scan_load", begun, c_size_t(pin.number), None, None, c_size_t(0), byref(count))
+        times, factors = np.empty(count.value), np.empty(count.value)
+        columns = doubles(times), doubles(factors)
+        assert not c("scan_load", begun, c_size_t(pin.number), *columns, count, byref(count))
+        assert_array_equal([times, factors], pin.core.load(pin.number))
     c("scan_advance", begun, c_double(p.times[1]), None, None)
     lines = c.library.pindrive_scan_lines
     assert lines(begun, None, None, buffer, count, byref(count), byref(false)) > 1

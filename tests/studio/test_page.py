@@ -458,7 +458,7 @@ def test_the_network_is_refused_by_the_page_itself(browser: Any, page_file: Path
     refused = opened.evaluate("fetch('https://example.org').then(() => '', error => String(error))")
     assert refused
     assert "default-src 'none'" in page_file.read_text("utf-8")
-    assert page_file.stat().st_size <= 500_000
+    assert page_file.stat().st_size <= 520_000
     opened.context.close()
 
 
@@ -474,3 +474,90 @@ def test_the_command_opens_a_device(browser: Any, page_file: Path) -> None:
         json.loads(opened.evaluate("document.getElementById('device').textContent"))["rows"] == {}
     )
     opened.context.close()
+
+
+def test_presets_show_what_they_say(page: Any) -> None:
+    buttons = page.locator(".presets button")
+    assert buttons.count() == 5
+    summaries = []
+    for i in range(buttons.count()):
+        buttons.nth(i).click()
+        settled(page)
+        assert page.locator("#problem").is_hidden()
+        assert len(page.locator(".introduction [role=status]").inner_text()) > 60
+        summaries.append(page.locator("#summary").inner_text())
+    assert len(set(summaries)) == 5
+    assert "stick-slip" in summaries[4]
+    period = numbers_shown(page)["ending.period"]
+    assert period == pytest.approx(0.671239, rel=1e-5)
+
+
+def test_the_pin_is_dragged_in_the_drawing(page: Any) -> None:
+    box = page.locator("canvas.animation").bounding_box()
+    y = box["y"] + 0.6 * box["height"]
+    before = value(page, "motion.displacement")
+    page.mouse.move(box["x"] + 0.6 * box["width"], y)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.64 * box["width"], y, steps=4)
+    settled(page)
+    first = value(page, "motion.displacement")
+    page.mouse.move(box["x"] + 0.44 * box["width"], y, steps=4)
+    page.mouse.up()
+    settled(page)
+    assert first > 0 > value(page, "motion.displacement")
+    page.keyboard.press("Control+z")
+    settled(page)
+    assert value(page, "motion.displacement") == before
+
+
+LONG = """
+[drive]
+mass = "10 g"
+stiffness = "100 N/m"
+damping_ratio = 2e-4
+
+[plate]
+kinetic = "0 N"
+
+[finger]
+kinetic = "0 N"
+
+[motion]
+mouse_velocity = "0 mm/s"
+displacement = "1 mm"
+duration = "100 s"
+"""
+
+
+def test_curves_follow_a_decay_of_1600_turns(page: Any, tmp_path: Path) -> None:
+    path = tmp_path / "long.toml"
+    path.write_text(LONG, "utf-8")
+    opened(page, path)
+    times, position = page.evaluate(
+        "(({times, columns}) => [Array.from(times), Array.from(columns.position)])"
+        "(pindrive.page.view.lines[0].result.curves)"
+    )
+    x, t = np.asarray(position), np.asarray(times)
+    for begin in np.arange(0.0, 99.0, 0.5):
+        part = x[(t >= begin) & (t < begin + 0.5)]
+        envelope = 1e-3 * np.exp(-0.02 * begin)
+        assert part.max() > 0.98 * envelope and part.min() < -0.98 * envelope
+    assert len(x) < 8000
+
+
+def test_all_events_are_counted_and_written(page: Any, tmp_path: Path) -> None:
+    path = tmp_path / "belt.toml"
+    path.write_text(
+        LONG.replace('kinetic = "0 N"', 'kinetic = "0.1 N"\nstatic = "0.2 N"', 1)
+        .replace('"0 mm/s"', '"100 mm/s"')
+        .replace("damping_ratio = 2e-4", "damping_ratio = 0.0"),
+        "utf-8",
+    )
+    opened(page, path)
+    expected = len(motion_of(pd.load_device(path)).core.events(0.0, 100.0, 100_000)[0])
+    events = page.evaluate("pindrive.page.view.lines[0].result.curves.events.length")
+    assert events == expected > 2000
+    count = f"{expected:,}".replace(",", " ")
+    assert f"of {count} events" in page.locator("section.events").inner_text()
+    written = CsvTable.read(saved(page, "events", tmp_path), "events", "")
+    assert len(written.column("time", SERIES["time"])) == expected

@@ -55,7 +55,8 @@ def counts(page: Any) -> list[str]:
 
 def saved(page: Any, kind: str, folder: Path) -> Path:
     with page.expect_download() as download:
-        page.get_by_label("save as").last.select_option(kind)
+        page.locator(".read .menu summary").click()
+        page.locator(f".read .menu [data-name={kind}]").click()
     path = folder / str(download.value.suggested_filename)
     download.value.save_as(path)
     return path
@@ -94,7 +95,7 @@ def test_a_saved_reading_is_repeated_by_python(read: Any, tmp_path: Path) -> Non
 
 def test_a_link_holds_a_reading_and_repeats_it(read: Any, page_file: Path, tmp_path: Path) -> None:
     stroke(read, 0.8)
-    read.get_by_label("save as").last.select_option("link")
+    read.locator(".read").get_by_role("button", name="Share").click()
     until(read, "location.hash.startsWith('#read=')")
     link = read.evaluate("location.href")
     kept = load_reading(link)
@@ -240,3 +241,27 @@ def test_axe_finds_no_violation_and_nothing_is_cut_off(read: Any, scheme: str) -
                 ".map(e => e.outerHTML.slice(0, 80))"
             )
             assert small == []
+
+
+def test_a_pin_opens_its_motion_in_the_other_view(read: Any, tmp_path: Path) -> None:
+    read.get_by_role("button", name="Along a ruler").click()
+    stroke(read, 2.0)
+    read.mouse.move(5, 5)
+    read.wait_for_timeout(700)
+    reading = load_reading(saved(read, "file", tmp_path))
+    read.get_by_label("pin from the side", exact=True).select_option("6")
+    read.get_by_role("button", name="Open its motion").click()
+    until(read, "window.pindrive.page?.state.designs.length === 2")
+    settled(read)
+    times, shown = read.evaluate(
+        "(({times, columns}) => [Array.from(times), Array.from(columns.position)])"
+        "(pindrive.page.view.lines.find(line => line.kind === 'current').result.curves)"
+    )
+    pin = pd.scan(reading.device, reading.page, reading.hand).pins[6]
+    t = np.asarray(times)
+    within = t <= pin.end - pin.begin
+    np.testing.assert_allclose(
+        np.asarray(shown)[within], pin.motion.position(t[within]), rtol=0.0, atol=1e-12
+    )
+    assert np.ptp(np.asarray(shown)[within]) > 2e-4
+    assert read.evaluate("pindrive.page.state.designs[1].name") == "pin 7 of a reading"

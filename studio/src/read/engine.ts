@@ -1,5 +1,5 @@
 // The device of a page, simulated live: tasks of a worker, and its answers.
-import type { Core } from "../core";
+import type { Core, Row } from "../core";
 import { Device, type DeviceInput, type Line, type Raster, Scan, type SpeedLimit, type Start } from "./scan";
 
 /** Quantities of each sample, in their order. */
@@ -26,7 +26,11 @@ export interface Judged {
 export interface Limited {
   readonly limits: { readonly device: DeviceInput; readonly pitches: readonly number[] };
 }
-export type Task = Opened | Turned | Moved | Judged | Limited;
+/** A pin whose load is requested, under a whole hand. */
+export interface Loaded {
+  readonly load: Judged["judge"] & { readonly pin: number };
+}
+export type Task = Opened | Turned | Moved | Judged | Limited | Loaded;
 
 /** Samples until a time: `values` holds, for each time, the sampled quantities of all pins. */
 export interface Samples {
@@ -44,10 +48,14 @@ export interface Limits {
   /** Largest speeds by pitch, in the order of the task. */
   readonly limits: readonly SpeedLimit[];
 }
+/** Rows of the factor of the plate friction of a pin: time, s, and factor. */
+export interface Load {
+  readonly load: readonly Row[];
+}
 export interface Failure {
   readonly failed: string;
 }
-export type Answer = Samples | Verdict | Limits | Failure | null;
+export type Answer = Samples | Verdict | Limits | Load | Failure | null;
 
 export class Engine {
   private device: Device | null = null;
@@ -63,7 +71,9 @@ export class Engine {
       if ("open" in task) this.open(task.open);
       else if ("page" in task) this.scan?.setPage(task.page);
       else if ("until" in task) return this.advance(task);
-      else if ("judge" in task) return this.judge(task.judge);
+      else if ("judge" in task) return this.withHand(task.judge, (scan) => scan.lines());
+      else if ("load" in task)
+        return this.withHand(task.load, (scan) => ({ load: scan.load(task.load.pin) }));
       else return this.limits(task.limits);
       return null;
     } catch (error) {
@@ -100,14 +110,15 @@ export class Engine {
     return { until, times: Float64Array.from(times), values, took: performance.now() - began };
   }
 
-  private judge({ device: input, page, start, rows }: Judged["judge"]): Verdict {
+  /** Uses a scan of a whole hand, before its first advance. */
+  private withHand<T>({ device: input, page, start, rows }: Judged["judge"], use: (scan: Scan) => T): T {
     const device = new Device(this.core, input);
     try {
       const scan = new Scan(this.core, device, input.spots.length, start);
       try {
         scan.setPage(page);
         for (let i = 0; i < rows.length; i += 3) scan.move(rows[i]!, rows[i + 1]!, rows[i + 2]!);
-        return scan.lines();
+        return use(scan);
       } finally {
         scan.free();
       }

@@ -145,6 +145,22 @@ export class Scan {
     });
   }
 
+  /** Rows of the factor of the plate friction of one pin, before the first advance: time, s, and factor. */
+  load(pin: number): Row[] {
+    const { core, handle } = this;
+    const ask = (times: number, factors: number, capacity: number): number =>
+      core.borrowed(4, (at) => {
+        core.call("scan_load", handle, pin, times, factors, capacity, at);
+        return core.view().getUint32(at, true);
+      });
+    const count = ask(0, 0, 0);
+    return core.borrowed(16 * count, (at) => {
+      ask(at, at + 8 * count, count);
+      const columns = new Float64Array(core.buffer, at, 2 * count);
+      return Array.from({ length: count }, (_, i): Row => [columns[i]!, columns[count + i]!]);
+    });
+  }
+
   /** Lines under the hand as given so far, before the first advance; and the number of false lines. */
   lines(): { lines: Line[]; falseLines: number } {
     const { core, handle } = this;

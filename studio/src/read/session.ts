@@ -1,6 +1,6 @@
 // One reading: a hand over a page, advanced with the pictures, and repeated at any speed.
 
-import { type Answer, SAMPLED, type Samples, type Verdict } from "./engine";
+import { type Answer, type Load, SAMPLED, type Samples, type Verdict } from "./engine";
 import { Hand, type HandRows, type Motion, TICK } from "./hand";
 import { type DeviceInput, type Line, type Raster, SHOWN, type Shown } from "./scan";
 import type { Thread } from "./thread";
@@ -154,6 +154,13 @@ export class Session {
     this.samples = [...this.samples, ...found].filter(({ time }) => time > until - KEPT);
     this.took.push(took);
     this.listener.sampled(found, this.hand);
+  }
+
+  /** Rows of the factor of the plate friction of a pin under the hand so far; null if there are none. */
+  async load(pin: number): Promise<Load["load"] | null> {
+    const task = { load: { ...this.opening, rows: this.hand.rowsFrom(0), pin } };
+    const answer = this.hand.count < 2 ? null : await this.judge.ask(task);
+    return answer && "load" in answer ? answer.load : null;
   }
 
   /** Has the lines evaluated now and then, in the other thread. */

@@ -2,9 +2,10 @@
 import type { Row } from "../core";
 import { type Design, designOf } from "../design";
 import { DeviceError } from "../device";
-import { button, card, download, fileName, h, option } from "../dom";
+import { button, card, download, fileName, h, menu, option } from "../dom";
 import { choose } from "../files";
 import { navigation } from "../navigation";
+import { TABLES } from "../table";
 import { currentLook } from "../theme";
 import { deviceFile } from "../write";
 import { Controls } from "./controls";
@@ -12,6 +13,7 @@ import { deviceInput, spotsOf, valuesOf } from "./device";
 import type { Limit } from "./dial";
 import { Drawings } from "./drawings";
 import type { Limits } from "./engine";
+import { Feedback, VIBRATES } from "./feedback";
 import { Felt } from "./felt";
 import { type Hand, SLOWNESS, type Slowness } from "./hand";
 import { HandControl } from "./handcontrol";
@@ -19,6 +21,7 @@ import { Paper } from "./paper";
 import { colorsOf, type Picture } from "./picture";
 import { Demonstration } from "./pointer";
 import { Readouts } from "./readouts";
+import { pinDesign } from "./release";
 import { readingHash, readingOf, readingOfHash, readingText, type SavedReading } from "./saved";
 import type { DeviceInput, Line } from "./scan";
 import { speedOf } from "./sentence";
@@ -42,6 +45,7 @@ export class ReadView {
   private readonly judge: Thread;
   private readonly drawings: Drawings;
   private readonly readouts = new Readouts();
+  private readonly feedback = new Feedback();
   private readonly controls: Controls;
   private readonly hand: HandControl;
   private input: DeviceInput;
@@ -77,6 +81,7 @@ export class ReadView {
   constructor(
     wasm: ArrayBuffer,
     private design: Design,
+    private readonly showRelease: (design: Design) => void,
   ) {
     this.paper.text("Hello");
     this.input = deviceInput(design);
@@ -172,7 +177,10 @@ export class ReadView {
   private sampled(samples: readonly Sample[], hand: Hand): void {
     const last = samples[samples.length - 1];
     if (!last) return;
-    for (const sample of samples) this.skin.follow(sample);
+    for (const sample of samples) {
+      this.skin.follow(sample);
+      this.feedback.announce(this.skin.felt, this.input.spots);
+    }
     this.felt.paint(samples, hand);
     const motion = hand.at(last.time);
     const values = valuesOf(this.design);
@@ -312,6 +320,15 @@ export class ReadView {
     this.setPage();
   }
 
+  /** Shows the motion of the chosen pin in the other view. */
+  private async openPin(): Promise<void> {
+    const { hand } = this.session;
+    const load = await this.session.load(this.chosen);
+    if (load && this.picture) {
+      this.showRelease(pinDesign(this.design, hand, this.picture.axis, load, this.chosen));
+    }
+  }
+
   private choosePin(pin: number): void {
     this.chosen = pin;
     this.pins.value = String(pin);
@@ -441,25 +458,28 @@ export class ReadView {
   }
 
   private header(): HTMLElement {
-    const save = h(
-      "select",
-      { "aria-label": "save as" },
-      option("", "Save as …"),
-      option("file", "Reading (JSON)"),
-      option("link", "Link to this reading"),
-      option("device", "Device file (TOML)"),
+    const save = menu(
+      "Save as",
+      [
+        ["file", "Reading (JSON)"],
+        ["device", "Device file (TOML)"],
+      ],
+      (kind) => void this.save(kind),
     );
-    save.addEventListener("change", () => {
-      void this.save(save.value);
-      save.value = "";
-    });
+    const share = button("Share", "A link to this reading, in the clipboard", () => void this.save("link"));
     const open = button(
       "Open …",
       "A picture of a page, a saved reading (JSON), or a device file (TOML)",
       () => choose("image/*,.json,.toml", (file) => void this.takeFile(file)),
     );
-    const buttons = h("div", { class: "buttons" }, open, save);
-    return h("header", {}, h("h1", {}, "pindrive studio"), navigation("read"), buttons);
+    const buttons = h("div", { class: "buttons" }, open, save, share);
+    return h(
+      "header",
+      {},
+      h("h1", { title: `pindrive ${TABLES.version}` }, "pindrive studio"),
+      navigation("read"),
+      buttons,
+    );
   }
 
   private toolbar(): HTMLElement {
@@ -474,8 +494,15 @@ export class ReadView {
     const ruler = toggle("Along a ruler", "The hand keeps its height", (on) => {
       this.hand.ruler = on;
     });
+    const sound = toggle("Sound", "A short tone, on its side, for each pin that moves the skin", (on) => {
+      this.feedback.sound = on;
+    });
+    const vibration = toggle("Vibration", "A short vibration of this device when skin is moved", (on) => {
+      this.feedback.vibration = on;
+    });
+    vibration.hidden = !VIBRATES;
     const text = h("label", {}, "Text ", this.text);
-    return h("div", { class: "toolbar" }, text, pen, ruler, this.again, times);
+    return h("div", { class: "toolbar" }, text, pen, ruler, this.again, sound, vibration, times);
   }
 
   private layout(): HTMLElement {
@@ -509,6 +536,11 @@ export class ReadView {
         ", where its sensor was; the print in outline.",
       ),
     );
+    const openPin = button(
+      "Open its motion",
+      "The whole motion of this pin, in One release",
+      () => void this.openPin(),
+    );
     const tasks = card("tasks-card", "Tasks", h("div", { class: "choices" }, ...this.tasks));
     return h(
       "main",
@@ -517,7 +549,7 @@ export class ReadView {
       h(
         "div",
         { class: "column" },
-        ...drawings.cards(this.pins),
+        ...drawings.cards(h("div", { class: "toolbar" }, this.pins, openPin)),
         readouts.card(drawings.dial.element),
         card("device-card", "Change the device under your hand", this.controls.element),
       ),
