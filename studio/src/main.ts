@@ -62,7 +62,7 @@ class Studio {
     await this.read.takeLink(saved);
   }
 
-  /** Shows a design in "One release", beside those that are there. */
+  /** Adds a design to "One release" and shows that view. */
   private showDesign(design: Design): void {
     history.pushState(null, "", "#");
     void this.showRelease("").then(() => this.page!.add(design));

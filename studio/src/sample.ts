@@ -49,7 +49,7 @@ export interface Curves {
 export type Simulated = { readonly curves: Curves } | { readonly problem: string };
 
 export const SAMPLES = 801;
-const ROUNDS = 2000; // of a cycle whose phases are drawn
+const ROUNDS = 2000; // rounds of a cycle with drawn phases
 const BINS = 1500; // parts of the window in which the curves keep their extremes
 const JUMPS = 1500; // events whose both sides are drawn
 

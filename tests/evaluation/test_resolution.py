@@ -163,10 +163,12 @@ def test_wider_pitches_weaker_demands_and_faster_magnets_allow_more(
 ) -> None:
     wide, narrow = limits
     assert narrow.speed < wide.speed
-    half = {"criteria": Criteria(distinct=0.5), "slowest": 0.03, "fastest": 0.2}
-    (strict,) = largest_speeds(DEVICE, [0.004], **half)
     slow = replace(DEVICE, magnet=Electromagnet.from_times(fall_time=0.03))
-    (slower,) = largest_speeds(slow, [0.004], **half)
+    half = Criteria(distinct=0.5)
+    strict, slower = (
+        largest_speeds(device, [0.004], criteria=half, slowest=0.03, fastest=0.2)[0]
+        for device in (DEVICE, slow)
+    )
     assert strict.speed < wide.speed
     assert slower.speed < 0.8 * strict.speed
 

@@ -4,7 +4,7 @@ import type { Design } from "../design";
 import type { Values } from "../friction";
 import type { Hand } from "./hand";
 
-/** The motion of a pin as a design of the other view: the same drive, its inputs from the hand and the magnet. */
+/** Returns the design of a release with the motion of a pin: its drive, and inputs from hand and magnet. */
 export function pinDesign(design: Design, hand: Hand, axis: Row, load: Rows, pin: number): Design {
   const rows = hand.rowsFrom(0);
   const times = [0, ...Array.from({ length: hand.count }, (_, i) => rows[3 * i]!)];

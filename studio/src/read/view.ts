@@ -320,7 +320,7 @@ export class ReadView {
     this.setPage();
   }
 
-  /** Shows the motion of the chosen pin in the other view. */
+  /** Opens "One release" with the motion of the chosen pin. */
   private async openPin(): Promise<void> {
     const { hand } = this.session;
     const load = await this.session.load(this.chosen);
