@@ -265,3 +265,16 @@ def test_a_pin_opens_its_motion_in_the_other_view(read: Any, tmp_path: Path) -> 
     )
     assert np.ptp(np.asarray(shown)[within]) > 2e-4
     assert read.evaluate("pindrive.page.state.designs[1].name") == "pin 7 of a reading"
+
+
+def test_a_hand_at_rest_needs_no_rows(read: Any) -> None:
+    stroke(read, 0.3)
+    read.wait_for_timeout(4500)
+    rests = read.evaluate(f"{HAND}.count")
+    read.wait_for_timeout(500)
+    assert read.evaluate(f"{HAND}.count") == rests
+    assert read.evaluate(f"{HAND}.end - pindrive.read.session.time") < 1e-3
+    box = read.locator("canvas.sheet").bounding_box()
+    read.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
+    read.wait_for_timeout(300)
+    assert read.evaluate(f"{HAND}.count") > rests

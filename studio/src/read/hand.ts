@@ -18,6 +18,8 @@ export const TICK = 8;
 const FOLLOWS: Readonly<Record<Slowness, number>> = { 40: 60, 10: 30, 1: 14 };
 /** Distance, m, and motion in a tick, m, below which the hand stops at its aim. */
 const ARRIVED = 2e-6;
+/** Time, s of the device, after which a hand at rest needs no more rows: the pins have settled. */
+const RESTS = 0.25;
 
 /** A hand from a begin at rest: rows of time, vx and vy in whole units. */
 export interface HandRows {
@@ -39,6 +41,8 @@ export interface Motion extends Place {
 export class Hand {
   slowness: Slowness = 10;
   private ticks = 0;
+  /** Time of the last row with a velocity, in units. */
+  private moved = 0;
   private startUnits: [number, number];
   private units: [number, number, number][] = [];
   /** Place at each row, m; the first is the start. */
@@ -81,6 +85,13 @@ export class Hand {
     );
   }
 
+  /** True if the hand has rested at an aim for long enough that nothing changes any more. */
+  rests(aim: Place, straight: boolean): boolean {
+    const { x, y } = this.last;
+    const arrived = Math.abs(aim.x - x) < ARRIVED && (straight || Math.abs(aim.y - y) < ARRIVED);
+    return arrived && this.ticks - this.moved > RESTS * TIMES;
+  }
+
   /** A tick towards an aim; `straight`: along a ruler, at an even height. */
   follow(aim: Place, straight: boolean): void {
     const lasts = (TICK * 1e-3) / this.slowness;
@@ -114,6 +125,7 @@ export class Hand {
     });
     this.units.push([time, vx, vy]);
     this.ticks = time;
+    if (vx || vy) this.moved = time;
   }
 
   /** Place and velocity at a time, s of the device, until the end. */

@@ -49,14 +49,24 @@ export class Demonstration {
     private readonly slowness: number,
   ) {}
 
+  /** True after a stroke to and fro. */
+  ended(wall: number): boolean {
+    return this.strokes(wall) >= 2;
+  }
+
   static readonly start: Spot = { x: 4, y: HEIGHT / 2 };
 
+  private get way(): number {
+    return this.width - 2 * Demonstration.start.x;
+  }
+  private strokes(wall: number): number {
+    return (Math.max(0, wall - this.begin) * 1e-3 * STROKE) / this.slowness / this.way;
+  }
+
   at(wall: number): Spot {
-    const way = this.width - 2 * Demonstration.start.x;
-    const strokes = (Math.max(0, wall - this.begin) * 1e-3 * STROKE) / this.slowness / way;
-    const part = strokes % 1;
-    const x = Math.floor(strokes) % 2 ? 1 - part : part;
-    return { x: Demonstration.start.x + x * way, y: Demonstration.start.y };
+    const strokes = this.strokes(wall);
+    const x = strokes < 1 ? strokes : Math.max(0, 2 - strokes);
+    return { x: Demonstration.start.x + x * this.way, y: Demonstration.start.y };
   }
 }
 

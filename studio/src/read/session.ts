@@ -7,6 +7,7 @@ import type { Thread } from "./thread";
 
 const MM = 1e-3;
 const KEPT = 0.3; // s of the device for which samples are kept
+const LONGEST = 30_000; // rows of a reading, after which another begins
 const LATE = 25; // ms of the wall clock between two pictures beyond which time stands still
 const JUDGED = 300; // ms between two evaluations of the lines at least
 const REST = 3; // times that the evaluation rests as long as it took, for the thread of the pins
@@ -104,10 +105,13 @@ export class Session {
     if (!this.wall) this.wall = now - TICK;
     this.wall = Math.max(this.wall, now - LATE);
     while (this.wall < now) {
-      this.hand.follow(aim(this.wall), straight());
+      const at = aim(this.wall);
+      if (!this.hand.rests(at, straight())) this.hand.follow(at, straight());
       this.wall += TICK;
     }
-    this.advance(this.hand.end - ((this.wall - now) * 1e-3) / this.hand.slowness);
+    const ahead = ((this.wall - now) * 1e-3) / this.hand.slowness;
+    this.advance(Math.max(this.shown, this.hand.end - ahead));
+    if (this.hand.count > LONGEST) this.begin(this.hand.last.x, this.hand.last.y);
     this.evaluate(now);
   }
 

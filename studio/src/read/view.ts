@@ -162,6 +162,7 @@ export class ReadView {
       return { x: 1e-3 * x, y: 1e-3 * y };
     };
     session.follow(now, aim, () => hand.straight);
+    if (hand.demonstration?.ended(now)) this.demonstrate();
   }
 
   // ---- what comes back -----------------------------------------------------------------------------
