@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -42,15 +41,18 @@ pindrive_line line_of(const device::EvaluatedLine& line) {
           line.contrast};
 }
 
-/// Inputs of a scan that was not advanced yet, with the hand as it was given; refused without one.
-pindrive_error inputs_of(const pindrive_scan& scan, std::optional<device::ScanInputs>& inputs) {
+/// Refuses a scan that was advanced, or without a second row of the hand.
+pindrive_error check_begin(const pindrive_scan& scan) {
   const device::LiveHand& hand = scan.stream->hand();
-  if (scan.stream->now() != hand.begin() || hand.size() < 2)
-    return fail(PINDRIVE_BAD_VALUE,
-                "the scan must have two rows of the hand or more, and not be advanced yet");
-  inputs.emplace(device::ScanInputs{scan.owned->device, scan.page->raster(), hand.path(),
-                                    hand.plate(), hand.finger_load(), hand.begin()});
-  return PINDRIVE_OK;
+  if (scan.stream->now() == hand.begin() && hand.size() >= 2) return PINDRIVE_OK;
+  return fail(PINDRIVE_BAD_VALUE,
+              "the scan must have two rows of the hand or more, and not be advanced yet");
+}
+/// Inputs of a scan under its hand so far.
+device::ScanInputs inputs_of(const pindrive_scan& scan) {
+  const device::LiveHand& hand = scan.stream->hand();
+  return {scan.owned->device, scan.page->raster(), hand.path(),
+          hand.plate(),       hand.finger_load(),  hand.begin()};
 }
 
 constexpr std::size_t unlimited = std::numeric_limits<std::size_t>::max();
@@ -66,10 +68,9 @@ pindrive_error pindrive_scan_lines(const pindrive_scan* scan, pindrive_go_on go_
   if (!count) return null_pointer("count");
   if (!false_lines) return null_pointer("false_lines");
   if (capacity > 0 && !lines) return null_pointer("lines");
-  std::optional<device::ScanInputs> given;
-  if (const pindrive_error error = inputs_of(*scan, given)) return error;
+  if (const pindrive_error error = check_begin(*scan)) return error;
   return guarded([&]() -> pindrive_error {
-    const device::ScanInputs& inputs = *given;
+    const device::ScanInputs inputs = inputs_of(*scan);
     const device::Device& reader = inputs.device;
     const device::PageAlongPath page(inputs.raster, inputs.path, reader.axis,
                                      reader.controller.threshold);
@@ -101,14 +102,14 @@ pindrive_error pindrive_scan_load(const pindrive_scan* scan, size_t pin, double*
   if (!scan) return null_pointer("scan");
   if (!count) return null_pointer("count");
   if (capacity > 0 && (!times || !factors)) return null_pointer("times and factors");
-  std::optional<device::ScanInputs> inputs;
-  if (const pindrive_error error = inputs_of(*scan, inputs)) return error;
-  const std::size_t pins = inputs->device.spots.size();
+  if (const pindrive_error error = check_begin(*scan)) return error;
+  const device::ScanInputs inputs = inputs_of(*scan);
+  const std::size_t pins = inputs.device.spots.size();
   if (pin >= pins)
     return fail(PINDRIVE_BAD_VALUE, "a pin must be from 0 to %zu, not %zu", pins - 1, pin);
   return guarded([&]() -> pindrive_error {
     device::PinRun run;
-    run.energise(*inputs, pin, device::at_rest(inputs->device, inputs->begin), unlimited);
+    run.energise(inputs, pin, device::at_rest(inputs.device, inputs.begin), unlimited);
     *count = run.loads.size();
     const auto fitting = static_cast<std::ptrdiff_t>(std::min(capacity, *count));
     std::copy_n(run.load_times.begin(), fitting, times);
