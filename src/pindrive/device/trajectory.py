@@ -36,19 +36,7 @@ def roots(
     high: NDArray[np.float64],
     sign: NDArray[np.float64],
 ) -> NDArray[np.float64]:
-    """The first times at which f no longer has its sign, shape (n,); see `brackets`."""
-    return brackets(f, low, high, sign, max(2, PIECES // max(1, low.size)), 0.0)[1]
-
-
-def brackets(
-    f: Callable[[Any], NDArray[np.float64]],
-    low: NDArray[np.float64],
-    high: NDArray[np.float64],
-    sign: NDArray[np.float64],
-    pieces: int,
-    precision: float,
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The last places where f has its sign and the first where not, by cutting brackets.
+    """The first places at which f no longer has its sign, shape (n,), by cutting brackets.
 
     SciPy's brentq takes fewer steps, but loading scipy.optimize takes longer than a usual scan.
 
@@ -57,12 +45,10 @@ def brackets(
         low: Lower ends of the brackets, shape (n,); f changes its sign once in each.
         high: Upper ends of the brackets, shape (n,).
         sign: Sign of f at the lower ends, 1 or -1, shape (n,).
-        pieces: Number of pieces into which each bracket is cut at once.
-        precision: Largest width of a bracket at the end, as a part of its first width; 0:
-            neighbouring floats.
     """
+    pieces = max(2, PIECES // max(1, low.size))
     grid, row = np.arange(pieces + 1) / pieces, np.arange(low.size)
-    while (high - low > precision * low).any():
+    while (high > low).any():
         t = low[:, None] + (high - low)[:, None] * grid
         t[:, -1] = high
         first = np.argmax(sign[:, None] * f(t[:, 1:]) <= 0.0, axis=1) + 1
@@ -70,4 +56,4 @@ def brackets(
         if not ((low < before) | (after < high)).any():
             break
         low, high = before, after
-    return low, high
+    return high
