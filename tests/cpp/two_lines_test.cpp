@@ -25,7 +25,8 @@ void slow_and_fast_hands() {
   expect(slow.status == pd::Status::ok && slow.back > 0.9 && slow.distinct(5e-5),
          "under a slow hand the pin comes back");
   expect(!fast.shown && !fast.distinct(5e-5), "under a fast one the lines merge");
-  expect(lines.settles(slow, go_on), "under the slow hand it settles before the second line");
+  expect(lines.settling(slow, go_on).in_time,
+         "under the slow hand it settles before the second line");
   expect(lines.at(0.05, go_on).back == slow.back, "a trial leaves nothing behind");
 }
 
@@ -97,7 +98,10 @@ void a_pin_at_rest() {
 
 void an_end_on_request() {
   device::TwoLines lines(scanned::device_with(), 0.004, 0.002, criteria);
-  expect(lines.at(0.05, [] { return false; }).status == pd::Status::stopped, "stopped on request");
+  const auto stop = [] { return false; };
+  expect(lines.at(0.05, stop).status == pd::Status::stopped, "stopped on request");
+  const auto alone = lines.settling(lines.at(0.05, go_on), stop);
+  expect(alone.status == pd::Status::stopped && !alone.in_time, "so is a line alone");
 }
 
 }  // namespace

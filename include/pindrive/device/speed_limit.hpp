@@ -54,7 +54,9 @@ class SpeedLimitSearch {
       if (!distinct(speed)) return false;
       Record& record = trial(speed);
       if (!record.settles) {
-        record.settles = lines_.settles(record.trial, go_on);
+        const TwoLines::Settling alone = lines_.settling(record.trial, go_on);
+        if (alone.status != Status::ok) limit.status = alone.status;
+        record.settles = alone.in_time;
         report(++done_);
       }
       return *record.settles;

@@ -33,12 +33,16 @@ struct LineTrial {
   bool distinct(double direction) const { return shown && skin >= direction; }
 };
 
+/// Friction along the axis of a plate that moves to the right under a pin with its magnet off, N.
+inline double dragging_friction(const Device& device) {
+  const double residual = device.load(device.magnet.given().residual);
+  return device.drive.plate.kinetic * residual * std::abs(device.axis.along({1, 0}));
+}
+
 /// State of a pin under a hand in long uniform motion: dragged, and at rest.
 inline PinState steady_state(const Device& device) {
   const Drive<double>& drive = device.drive;
-  const double along = device.axis.along({1, 0});
-  const double plate =
-      drive.plate.kinetic * device.load(device.magnet.given().residual) * std::abs(along);
+  const double along = device.axis.along({1, 0}), plate = dragging_friction(device);
   PinState state = at_rest(device, 0);
   state.position = std::copysign(drag_of_plate(drive, plate, 1), along);
   if (std::isfinite(drive.finger.stiffness)) {
@@ -83,14 +87,20 @@ class TwoLines {
     return trial;
   }
 
-  /// True if the pin settles after the first line alone before the second line of a trial moves it.
+  /// Transient after the first line alone.
+  struct Settling {
+    bool in_time;   ///< over before the second line of a trial moves the pin
+    Status status;  ///< reason for an incomplete simulation
+  };
+
+  /// Goes over the first line alone, as in a trial of both.
   template <class GoOn>
-  bool settles(const LineTrial& trial, GoOn&& go_on) {
+  Settling settling(const LineTrial& trial, GoOn&& go_on) {
     const Found alone = pass(1, trial.speed, clear() + followed(), trial.ahead, go_on);
-    if (alone.status != Status::ok) return false;
-    for (std::size_t i = 0; i < trial.until.size(); ++i)
-      if (!(alone.evaluation.lines[i].settled <= trial.until[i])) return false;
-    return true;
+    bool in_time = alone.status == Status::ok;
+    for (std::size_t i = 0; in_time && i < trial.until.size(); ++i)
+      in_time = alone.evaluation.lines[i].settled <= trial.until[i];
+    return {in_time, alone.status};
   }
 
  private:
@@ -116,10 +126,8 @@ class TwoLines {
 
   /// Part of its way back to its place of rest that the pin comes after a line.
   double part_back(const EvaluatedLine& line) const {
-    const double along = std::abs(device_.axis.along({1, 0}));
-    const double plate =
-        device_.drive.plate.kinetic * device_.load(device_.magnet.given().residual) * along;
-    const double high = line.height - drag_of_plate(device_.drive, plate, 1);
+    const double rest = drag_of_plate(device_.drive, dragging_friction(device_), 1);
+    const double high = line.height - rest;
     return high > 0 ? zero_for_nan(line.returned / high) : 0;
   }
 
