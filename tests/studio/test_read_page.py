@@ -89,6 +89,14 @@ def test_a_saved_reading_is_repeated_by_python(read: Any, tmp_path: Path) -> Non
     assert expected[0] > 40 and expected[1] > 30
     if int(shown[0]) == expected[0]:  # the hand has come to rest since
         assert [int(cell) for cell in shown[:5]] == [*expected, found["lines.false"]]
+    time, shown_pins = read.evaluate(
+        "(({time, values}) => [time, Array.from(values.position)])"
+        "(pindrive.read.session.samples.at(-1))"
+    )
+    scanned = pd.scan(reading.device, reading.page, reading.hand)
+    expected_pins = [float(pin.position(time)) for pin in scanned.pins]
+    np.testing.assert_allclose(shown_pins, expected_pins, rtol=0.0, atol=1e-15)
+    assert max(map(abs, shown_pins)) > 1e-6
     written = saved(read, "device", tmp_path)
     assert pd.load_device(written, whole=True).values() == reading.device.values()
 

@@ -11,9 +11,6 @@ const HANDS = [0.005, 1] as const; // m/s
 export interface Opened {
   readonly open: { readonly device: DeviceInput; readonly page: Raster; readonly start: Start };
 }
-export interface Turned {
-  readonly page: Raster;
-}
 /** Rows of time, vx and vy that follow the rows before, and the time to advance to. */
 export interface Moved {
   readonly rows: Float64Array;
@@ -30,7 +27,7 @@ export interface Limited {
 export interface Loaded {
   readonly load: Judged["judge"] & { readonly pin: number };
 }
-export type Task = Opened | Turned | Moved | Judged | Limited | Loaded;
+export type Task = Opened | Moved | Judged | Limited | Loaded;
 
 /** Samples until a time: `values` holds, for each time, the sampled quantities of all pins. */
 export interface Samples {
@@ -69,7 +66,6 @@ export class Engine {
   answer(task: Task): Answer {
     try {
       if ("open" in task) this.open(task.open);
-      else if ("page" in task) this.scan?.setPage(task.page);
       else if ("until" in task) return this.advance(task);
       else if ("judge" in task) return this.withHand(task.judge, (scan) => scan.lines());
       else if ("load" in task)

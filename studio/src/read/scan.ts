@@ -34,10 +34,8 @@ export type Outcome = (typeof OUTCOMES)[number];
 export interface Line {
   readonly pin: number;
   readonly outcome: Outcome;
-  /** Time and place of its begin under the spot, s and m. */
+  /** Time of its begin under the spot, s. */
   readonly time: number;
-  readonly x: number;
-  readonly y: number;
   /** Way of the hand until the response, m. */
   readonly lag: number;
   /** Displacement of the pin, m. */
@@ -190,8 +188,6 @@ function lineAt(view: DataView, at: number): Line {
     pin: view.getUint32(at, true),
     outcome: OUTCOMES[view.getInt32(at + 4, true)]!,
     time: number(8),
-    x: number(16),
-    y: number(24),
     lag: number(48),
     stroke: number(136),
   };

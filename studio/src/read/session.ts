@@ -2,7 +2,7 @@
 
 import { type Answer, type Load, SAMPLED, type Samples, type Verdict } from "./engine";
 import { Hand, type HandRows, type Motion, TICK } from "./hand";
-import { type DeviceInput, type Line, type Raster, SHOWN, type Shown } from "./scan";
+import type { DeviceInput, Line, Raster, Shown } from "./scan";
 import type { Thread } from "./thread";
 
 const MM = 1e-3;
@@ -187,10 +187,4 @@ export class Session {
   get motion(): Motion {
     return this.hand.at(this.shown);
   }
-}
-
-/** The quantities of a picture, all zero, for pins without one. */
-export function noSample(pins: number): Sample {
-  const values = Object.fromEntries(Object.keys(SHOWN).map((name) => [name, new Float64Array(pins)]));
-  return { time: 0, values: values as Record<Shown, Float64Array> };
 }
