@@ -36,14 +36,14 @@ def read(page: Any) -> Any:
     return page
 
 
-def stroke(page: Any, seconds: float = 1.5, height: float = 0.5, slope: float = 0.0) -> None:
-    """Moves the pointer over the page from left to right."""
+def stroke(page: Any, seconds: float = 1.5, slope: float = 0.0, end: float = 0.97) -> None:
+    """Moves the pointer over the page from left to right, up to a part of its width."""
     box = page.locator("canvas.sheet").bounding_box()
     steps = int(60 * seconds)
     for i in range(steps + 1):
         part = i / steps
-        x = box["x"] + box["width"] * (0.03 + 0.94 * part)
-        page.mouse.move(x, box["y"] + box["height"] * (height + slope * (part - 0.5)))
+        x = box["x"] + box["width"] * (0.03 + (end - 0.03) * part)
+        page.mouse.move(x, box["y"] + box["height"] * (0.5 + slope * part))
         page.wait_for_timeout(1000 * seconds / steps)
 
 
@@ -73,9 +73,8 @@ def test_a_demonstration_runs_until_someone_takes_the_hand(read: Any) -> None:
 
 
 def test_a_saved_reading_is_repeated_by_python(read: Any, tmp_path: Path) -> None:
-    stroke(read)
-    read.mouse.move(5, 5)
-    read.wait_for_timeout(600)
+    stroke(read, slope=0.08, end=0.52)  # rests over the print, where magnets hold pins
+    read.wait_for_timeout(4500)  # until the hand needs no more rows
     shown = counts(read)
     path = saved(read, "file", tmp_path)
     assert path.name == "the-text-hello.json"
@@ -85,10 +84,8 @@ def test_a_saved_reading_is_repeated_by_python(read: Any, tmp_path: Path) -> Non
     found = evaluation.counts
     missed = found["lines.unseen"] + found["lines.faint"]
     expected = [found["lines.crossed"], found["lines.shown"], found["lines.merged"], missed]
-    assert int(shown[0]) <= expected[0]
-    assert expected[0] > 40 and expected[1] > 30
-    if int(shown[0]) == expected[0]:  # the hand has come to rest since
-        assert [int(cell) for cell in shown[:5]] == [*expected, found["lines.false"]]
+    assert expected[0] > 20 and expected[1] > 10
+    assert [int(cell) for cell in shown[:5]] == [*expected, found["lines.false"]]
     time, shown_pins = read.evaluate(
         "(({time, values}) => [time, Array.from(values.position)])"
         "(pindrive.read.session.samples.at(-1))"
@@ -96,7 +93,7 @@ def test_a_saved_reading_is_repeated_by_python(read: Any, tmp_path: Path) -> Non
     scanned = pd.scan(reading.device, reading.page, reading.hand)
     expected_pins = [float(pin.position(time)) for pin in scanned.pins]
     np.testing.assert_allclose(shown_pins, expected_pins, rtol=0.0, atol=1e-15)
-    assert max(map(abs, shown_pins)) > 1e-6
+    assert max(map(abs, shown_pins)) > 1e-4
     written = saved(read, "device", tmp_path)
     assert pd.load_device(written, whole=True).values() == reading.device.values()
 
