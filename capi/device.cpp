@@ -1,6 +1,7 @@
 // The C interface: a device by the keys of a device file.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <memory>
 #include <new>
@@ -8,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "contradictions.hpp"
 #include "device_parameters.hpp"
 #include "interface.hpp"
 #include "pindrive.h"
@@ -27,16 +29,6 @@ bool has_number(const char* key) {
          (in_table("drive.") || in_table("plate.") || in_table("finger.") || in_table("magnet.") ||
           in_table("control.") || in_table("criteria.") || std::strcmp(key, "array.axis") == 0);
 }
-
-/// Keys of rows, with the names of both columns.
-struct RowsKey {
-  const char *key, *first, *second;
-};
-constexpr RowsKey keys_of_rows[] = {{"plate.curve", "speed", "force"},
-                                    {"plate.coefficient_curve", "speed", "coefficient"},
-                                    {"finger.curve", "speed", "force"},
-                                    {"finger.coefficient_curve", "speed", "coefficient"},
-                                    {"magnet.voltage", "time", "value"}};
 
 /// Sets the value of a key in a list.
 template <class Value>
@@ -70,24 +62,6 @@ DeviceParameters parameters_of(const pindrive_device& device, std::vector<std::s
   return found;
 }
 
-/// Reads the criteria of a felt line.
-pindrive_error read(const DeviceParameters& parameters, pd::device::Criteria& criteria) {
-  const std::pair<const char*, double*> numbers[] = {
-      {"criteria.felt", &criteria.felt},
-      {"criteria.direction", &criteria.direction},
-      {"criteria.direction_sure", &criteria.direction_sure},
-      {"criteria.direction_speed", &criteria.direction_speed},
-      {"criteria.false_line", &criteria.false_line},
-      {"criteria.distinct", &criteria.distinct}};
-  pindrive_error error = PINDRIVE_OK;
-  for (const auto& [key, number] : numbers) {
-    const pd::device::InputQuantity& input = *pd::device::find_input(key);
-    *number = parameters.of(key, input.absent).value;
-    if (!error) error = check(key, input, *number);
-  }
-  return error;
-}
-
 }  // namespace
 
 pindrive_error pindrive_c::made_of(const pindrive_device& device,
@@ -95,30 +69,27 @@ pindrive_error pindrive_c::made_of(const pindrive_device& device,
   std::vector<std::string> names;
   const DeviceParameters parameters = parameters_of(device, names);
   pindrive_drive drive;
-  const pindrive_release release;
-  std::unique_ptr<const pd::device::Electromagnet> magnet;
-  pd::device::Controller controller{};
-  pd::device::Criteria criteria{};
-  pindrive_error error = parameters.fill(&drive, &DeviceParameters::Number::value);
-  if (!error) error = parameters.check_together();
-  if (!error) error = check(drive, release);
+  pindrive_error error = parameters.check(true);
+  if (!error) error = parameters.fill(&drive, &DeviceParameters::Number::value);
+  if (!error) error = check(drive, pindrive_release());
   if (!error && drive.plate.kinetic == 0)
-    error =
-        fail(PINDRIVE_BAD_VALUE,
-             "plate.kinetic must be greater than 0 N where a magnet holds by friction, got 0.0 N");
-  if (!error) error = parameters.read(magnet);
-  if (!error) error = parameters.read(controller);
-  if (!error) error = read(parameters, criteria);
-  const double axis = parameters.of("array.axis").value;
-  if (!error) error = check("array.axis", *pd::device::find_input("array.axis"), axis);
+    error = fail(PINDRIVE_BAD_VALUE, "plate.kinetic must be given, as a magnet holds by friction");
   if (error) return error;
+  const auto number = [&](const char* key) { return parameters.number(key); };
+  const pd::device::Criteria criteria{
+      number("criteria.felt"),           number("criteria.direction"),
+      number("criteria.direction_sure"), number("criteria.direction_speed"),
+      number("criteria.false_line"),     number("criteria.distinct")};
   const pd::OwnedContact<double> plate(drive.plate, drive.plate),
       finger(drive.finger, drive.finger);
-  const double normal_force = parameters.plate_normal_force().value;
   const auto owned = std::make_shared<OwnedDevice>(
       OwnedDevice{plate, finger,
-                  pd::device::Device{
-                      {}, normal_force, *magnet, controller, pd::device::Axis(axis), device.spots},
+                  pd::device::Device{{},
+                                     parameters.plate_normal_force().value,
+                                     *parameters.magnet(),
+                                     parameters.controller(),
+                                     pd::device::Axis(number("array.axis")),
+                                     device.spots},
                   criteria});
   owned->plate.contact.curve = owned->plate.branches.data();
   owned->finger.contact.curve = owned->finger.branches.data();
@@ -130,6 +101,26 @@ pindrive_error pindrive_c::made_of(const pindrive_device& device,
 }
 
 extern "C" {
+
+size_t pindrive_check_values(const pindrive_given* given, size_t count, int whole, char* text,
+                             size_t size) {
+  std::size_t found = 0;
+  if (text && size > 0) *text = 0;
+  guarded([&]() -> pindrive_error {
+    std::size_t used = 0;
+    for (const Problem& problem : problems_of(given, count, whole != 0)) {
+      const char* const between = found++ == 0 ? "" : "\n";
+      if (!text || used >= size) continue;
+      char* const end = text + used;
+      used += static_cast<std::size_t>(std::snprintf(end, size - used, "%s%s%s must be %s, got %s",
+                                                     between, problem.key, problem.part.get(),
+                                                     problem.required.get(), problem.given.get()));
+      if (used >= size) *end = 0;  // no part of a line
+    }
+    return PINDRIVE_OK;
+  });
+  return found;
+}
 
 pindrive_device* pindrive_device_new(void) {
   pindrive_device* device = nullptr;

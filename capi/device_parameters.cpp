@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "contradictions.hpp"
 #include "interface.hpp"
 #include "pindrive/device/inputs.hpp"
 #include "pindrive/device/magnet_construction.hpp"
-#include "wording.hpp"
 
 namespace pindrive_c {
 
@@ -41,20 +41,6 @@ struct Friction {
 constexpr Friction by_force = {"kinetic", "static", "curve.speed", "curve.force"};
 constexpr Friction by_coefficient = {"coefficient", "static_coefficient", "coefficient_curve.speed",
                                      "coefficient_curve.coefficient"};
-// The magnet by its behaviour, or by its construction.
-constexpr const char* by_times[] = {"hold_force", "rise_time", "fall_time", "saturation"};
-constexpr const char* by_coil[] = {"turns",
-                                   "pole_area",
-                                   "gap",
-                                   "wire_diameter",
-                                   "turn_length",
-                                   "supply_voltage",
-                                   "release_resistance",
-                                   "saturation_field",
-                                   "thermal_resistance",
-                                   "heat_capacity",
-                                   "lift",
-                                   "closing_force"};
 
 }  // namespace
 
@@ -69,6 +55,10 @@ std::size_t DeviceParameters::find(const char* key) const {
 Number DeviceParameters::of(const char* key, Number otherwise) const {
   const std::size_t i = find(key);
   return i < rows_.size() ? rows_[i].second : otherwise;
+}
+
+double DeviceParameters::number(const char* key) const {
+  return of(key, device::find_input(key)->absent).value;
 }
 
 std::vector<Number> DeviceParameters::list(const char* key) const {
@@ -111,78 +101,37 @@ pindrive_error DeviceParameters::fill_friction(pindrive_drive* drive, const char
   return error;
 }
 
-pindrive_error DeviceParameters::check_together() const {
-  const auto refused = [](const char* key, const char* required, const char* given) {
-    return fail(PINDRIVE_BAD_VALUE, "%s must be %s, got %s", key, required, given);
-  };
-  const auto shown = [&](const char* key) {
-    Text given;
-    given.add_number(of(key).value, unit_of(*device::find_input(key)));
-    return given;
-  };
-  for (const char* const contact : {"plate", "finger"}) {
-    const char* const forces[] = {"kinetic", "static", "curve"};
-    const char* const coefficients[] = {"coefficient", "static_coefficient", "coefficient_curve"};
-    const auto first = [&](const char* const(&names)[3]) -> const char* {
-      for (const char* const name : names) {
-        const Key key(contact, name);
-        if (has(key.text) || !list(Key(key.text, "speed").text).empty()) return name;
-      }
-      return nullptr;
-    };
-    const char *const force = first(forces), *const coefficient = first(coefficients);
-    const bool by_coefficient = coefficient != nullptr;
-    if (force && coefficient)
-      return fail(PINDRIVE_BAD_VALUE,
-                  "%s.%s must be left out where %s.%s gives the friction as a force, got both, "
-                  "%s.%s and %s.%s",
-                  contact, coefficient, contact, force, contact, coefficient, contact, force);
-    const Key limit(contact, by_coefficient ? "static_coefficient" : "static");
-    const Key kinetic(contact, by_coefficient ? "coefficient" : "kinetic");
-    if (has(limit.text) && has(kinetic.text))
-      if (const pindrive_error error = pindrive_c::check(
-              limit.text, of(limit.text).value, of(limit.text).value >= of(kinetic.text).value,
-              by_coefficient ? "at least the kinetic friction coefficient"
-                             : "at least the kinetic friction",
-              of(kinetic.text).value, unit_of(*device::find_input(limit.text))))
-        return error;
-    if (std::strcmp(contact, "plate") == 0) continue;
-    constexpr const char touch[] = "finger.touch_force";
-    if (by_coefficient && !has(touch))
-      return refused(touch, "given where a coefficient gives the finger's friction", "none");
-    if (force && has(touch))
-      return refused(touch, "left out where the finger's friction is given as a force",
-                     shown(touch).get());
+pindrive_error DeviceParameters::check(bool whole) const {
+  std::vector<pindrive_given> given;
+  std::vector<double> numbers;
+  numbers.reserve(rows_.size());
+  for (const auto& [key, value] : rows_)
+    if (!std::strchr(key, '[')) {
+      numbers.push_back(value.value);
+      given.push_back({key, &numbers.back(), 0});
+    }
+  for (const RowsKey& of : keys_of_rows) {
+    const std::vector<Number> first = list(Key(of.key, of.first).text),
+                              second = list(Key(of.key, of.second).text);
+    if (first.empty()) continue;
+    const double* const rows = numbers.data() + numbers.size();
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      numbers.push_back(first[i].value);
+      numbers.push_back(second[i].value);
+    }
+    given.push_back({of.key, rows, first.size()});
   }
-  for (const char* const key : {"drive.stop_stiffness", "drive.stop_damping"})
-    if (has(key) && !has("drive.travel"))
-      return refused(key, "left out without travel, as there are no end stops", shown(key).get());
-  if (of("drive.stop_damping").value != 0 && !has("drive.stop_stiffness"))
-    return refused("drive.stop_damping", "left out for rigid end stops; give stop_stiffness too",
-                   shown("drive.stop_damping").get());
-  const auto first_of_magnet = [&](const auto& names) -> const char* {
-    for (const char* const name : names)
-      if (has(Key("magnet", name).text)) return name;
-    return nullptr;
-  };
-  const char *const direct = first_of_magnet(by_times), *const made = first_of_magnet(by_coil);
-  if (direct && made)
-    return fail(PINDRIVE_BAD_VALUE,
-                "magnet.%s must be left out where %s describes the coil, got both, %s and %s",
-                direct, made, direct, made);
-  const bool lift = has("magnet.lift"), closing = has("magnet.closing_force");
-  if (lift != closing)
-    return refused(lift ? "magnet.lift" : "magnet.closing_force",
-                   lift ? "given with closing_force" : "given with lift", "it alone");
-  return PINDRIVE_OK;
+  const std::vector<Problem> problems = problems_of(given.data(), given.size(), whole);
+  if (problems.empty()) return PINDRIVE_OK;
+  const Problem& first = problems.front();
+  return fail(PINDRIVE_BAD_VALUE, "%s%s must be %s, got %s", first.key, first.part.get(),
+              first.required.get(), first.given.get());
 }
 
 pindrive_error DeviceParameters::fill(pindrive_drive* drive, double Number::* part) const {
   pindrive_error error = PINDRIVE_OK;
   constexpr const char table[] = "drive.";
   for (const auto& [key, value] : rows_) {
-    const device::InputQuantity* const input = device::find_input(key);
-    if (!error && input && part == &Number::value) error = check(key, *input, value.value);
     if (error || !begins(key, table)) continue;
     if (std::strcmp(key, "drive.damping_ratio") == 0)
       error = pindrive_drive_set(
@@ -198,135 +147,48 @@ pindrive_error DeviceParameters::fill(pindrive_drive* drive, double Number::* pa
 
 // ---- electromagnet -----------------------------------------------------------------------------
 
-namespace {
-
-/// Checked parameters, until one is refused.
-struct Checks {
-  const DeviceParameters& given;
-  pindrive_error error{PINDRIVE_OK};
-
-  /// Value of a key, or the one that holds without the key.
-  double number(const char* key) {
-    const device::InputQuantity& input = *device::find_input(key);
-    const double value = given.of(key, input.absent).value;
-    if (!error && !given.has(key) && std::isnan(value))
-      error = fail(PINDRIVE_BAD_VALUE, "%s must be given", key);
-    if (!error) error = check(key, input, value);
-    return value;
-  }
-  double number_or(const char* key, double otherwise) {
-    return given.has(key) ? number(key) : otherwise;
-  }
-  void allow(const char* name, double value, bool good, const char* allowed) {
-    if (!error) error = check(name, value, good, allowed);
-  }
-};
-
-device::MagnetParameters from_coil(Checks& checks, double deviation) {
-  const device::CoilConstruction coil{checks.number("magnet.turns"),
-                                      checks.number("magnet.pole_area"),
-                                      checks.number("magnet.gap"),
-                                      checks.number("magnet.wire_diameter"),
-                                      checks.number("magnet.turn_length"),
-                                      checks.number("magnet.supply_voltage"),
-                                      checks.number("magnet.release_resistance"),
-                                      checks.number("magnet.saturation_field")};
-  device::MagnetParameters found = coil.magnet(deviation);
-  found.thermal_resistance = checks.number("magnet.thermal_resistance");
-  found.heat_capacity = checks.number_or("magnet.heat_capacity", 0);
-  return found;
-}
-
-device::MagnetParameters from_times(Checks& checks, double deviation) {
+std::unique_ptr<const device::Electromagnet> DeviceParameters::magnet() const {
+  if (!has_magnet()) return nullptr;
+  const bool made = has("magnet.turns");
+  const double deviation = number("magnet.deviation");
   device::MagnetParameters found{};
-  found.saturation = checks.number("magnet.saturation");
-  found.rise_constant = device::rise_constant(checks.number("magnet.rise_time"), found.saturation);
-  found.fall_constant = device::fall_constant(checks.number("magnet.fall_time"), found.saturation);
-  found.hold_force = checks.number("magnet.hold_force");
-  found.deviation = deviation;
-  return found;
-}
-
-void read_gap(Checks& checks, device::MagnetParameters& magnet) {
-  if (!checks.given.has("magnet.lift")) return;
-  const double lift = checks.number("magnet.lift"), gap = checks.number("magnet.gap");
-  const double force = checks.number("magnet.closing_force");
-  magnet.open_inductance = gap / (gap + lift);
-  magnet.closing_flux = device::closing_flux(magnet, force);
-  const double open = magnet.open_inductance / magnet.saturation;
-  const double most =
-      magnet.residual + (magnet.hold_force - magnet.residual) * std::min(open * open, 1.0);
-  if (!checks.error)
-    checks.error = check("magnet.closing_force", force, force > magnet.residual,
-                         "more than the residual pull", magnet.residual, "N");
-  if (!checks.error)
-    checks.error = check("magnet.closing_force", force,
-                         force < most && magnet.closing_flux < magnet.open_inductance,
-                         "less than the pull of full current with the open gap", most, "N");
-}
-
-void read_voltage(Checks& checks, std::vector<device::VoltageStep>& steps) {
-  const double full = checks.number("magnet.supply_voltage");
-  const auto times = checks.given.list("magnet.voltage.time");
-  const auto volts = checks.given.list("magnet.voltage.value");
-  for (std::size_t i = 0; i < times.size() && !checks.error; ++i) {
-    const device::VoltageStep step{times[i].value, volts[i].value / full};
-    const bool later = i == 0 ? step.time == 0 : step.time > steps[i - 1].time;
-    const bool within = step.level >= 0 && step.level <= 1;
-    if (!later || !within)
-      checks.error = fail(
-          PINDRIVE_BAD_VALUE,
-          "magnet.voltage must begin at 0 s, its times increase, and be from 0 V to %.17g V", full);
-    steps.push_back(step);
+  if (made) {
+    const device::CoilConstruction coil{number("magnet.turns"),
+                                        number("magnet.pole_area"),
+                                        number("magnet.gap"),
+                                        number("magnet.wire_diameter"),
+                                        number("magnet.turn_length"),
+                                        number("magnet.supply_voltage"),
+                                        number("magnet.release_resistance"),
+                                        number("magnet.saturation_field")};
+    found = coil.magnet(deviation);
+    found.thermal_resistance = number("magnet.thermal_resistance");
+    found.heat_capacity = of("magnet.heat_capacity").value;
+  } else {
+    found.saturation = number("magnet.saturation");
+    found.rise_constant = device::rise_constant(number("magnet.rise_time"), found.saturation);
+    found.fall_constant = device::fall_constant(number("magnet.fall_time"), found.saturation);
+    found.hold_force = number("magnet.hold_force");
+    found.deviation = deviation;
   }
-}
-
-}  // namespace
-
-pindrive_error DeviceParameters::read(std::unique_ptr<const device::Electromagnet>& magnet) const {
-  magnet.reset();
-  if (!has("magnet.hold_force") && !has("magnet.turns")) return PINDRIVE_OK;
-  Checks checks{*this};
-  const double deviation = checks.number("magnet.deviation");
-  device::MagnetParameters found =
-      has("magnet.turns") ? from_coil(checks, deviation) : from_times(checks, deviation);
-  found.residual = checks.number("magnet.residual");
-  if (!checks.error)
-    checks.error = check("magnet.residual", found.residual, found.residual < found.hold_force,
-                         "less than the hold force", found.hold_force, "N");
-  if (const bool frequency = has("magnet.pwm_frequency"), duty = has("magnet.pwm_duty");
-      !checks.error && frequency != duty)
-    checks.error =
-        fail(PINDRIVE_BAD_VALUE, "magnet.%s must be given with %s, got it alone",
-             frequency ? "pwm_frequency" : "pwm_duty", frequency ? "pwm_duty" : "pwm_frequency");
-  read_gap(checks, found);
-  found.pulse_duty = checks.number_or("magnet.pwm_duty", 1);
-  found.pulse_frequency = checks.number_or("magnet.pwm_frequency", 1);
-  checks.number("plate.preload");
-  const double normal_force = plate_normal_force().value;
-  checks.allow("weight and plate.preload", normal_force,
-               normal_force > 0 && normal_force < infinity, "above 0 and finite");
+  found.residual = number("magnet.residual");
+  if (has("magnet.lift")) {
+    const double gap = number("magnet.gap");
+    found.open_inductance = gap / (gap + number("magnet.lift"));
+    found.closing_flux = device::closing_flux(found, number("magnet.closing_force"));
+  }
+  found.pulse_duty = of("magnet.pwm_duty", 1).value;
+  found.pulse_frequency = of("magnet.pwm_frequency", 1).value;
   std::vector<device::VoltageStep> steps;
-  if (has("magnet.turns")) read_voltage(checks, steps);
-  if (!checks.error)
-    magnet = std::make_unique<const device::Electromagnet>(found, std::move(steps));
-  return checks.error;
+  const auto times = list("magnet.voltage.time"), volts = list("magnet.voltage.value");
+  for (std::size_t i = 0; i < times.size(); ++i)
+    steps.push_back({times[i].value, volts[i].value / number("magnet.supply_voltage")});
+  return std::make_unique<const device::Electromagnet>(found, std::move(steps));
 }
 
-pindrive_error DeviceParameters::read(device::Controller& controller) const {
-  Checks checks{*this};
-  controller = {checks.number("control.sample_rate"), checks.number("control.latency"),
-                checks.number("control.threshold"), checks.number("control.hysteresis")};
-  const double threshold = controller.threshold, band = controller.hysteresis;
-  const double widest = 2 * std::min(threshold, 1 - threshold);
-  if (!checks.error && band > widest) {
-    Text given;
-    given.add_number(band);
-    checks.error = fail(PINDRIVE_BAD_VALUE,
-                        "control.hysteresis must be at most %g about a threshold of %g, got %s",
-                        widest, threshold, given.get());
-  }
-  return checks.error;
+device::Controller DeviceParameters::controller() const {
+  return {number("control.sample_rate"), number("control.latency"), number("control.threshold"),
+          number("control.hysteresis")};
 }
 
 }  // namespace pindrive_c

@@ -13,6 +13,16 @@
 
 namespace pindrive_c {
 
+/// Key of rows, with the names of both columns: "plate.curve.speed[1]", "plate.curve.force[1]".
+struct RowsKey {
+  const char *key, *first, *second;
+};
+inline constexpr RowsKey keys_of_rows[] = {{"plate.curve", "speed", "force"},
+                                           {"plate.coefficient_curve", "speed", "coefficient"},
+                                           {"finger.curve", "speed", "force"},
+                                           {"finger.coefficient_curve", "speed", "coefficient"},
+                                           {"magnet.voltage", "time", "value"}};
+
 /// Values by key in SI units, with their derivatives along a direction. Keeps the keys by reference.
 class DeviceParameters {
  public:
@@ -23,6 +33,8 @@ class DeviceParameters {
   bool has(const char* key) const { return find(key) < rows_.size(); }
   /// Value of a key; `otherwise` without one.
   Number of(const char* key, Number otherwise = 0) const;
+  /// Value of a key, or the usual one; NaN without any.
+  double number(const char* key) const;
   /// Values of "key[1]", "key[2]" …
   std::vector<Number> list(const char* key) const;
 
@@ -31,13 +43,14 @@ class DeviceParameters {
   /// Plate load without a current: that of the residual pull.
   Number residual_load() const;
 
-  /// Checks that the parameters, each in its range, do not contradict each other.
-  pindrive_error check_together() const;
+  /// Checks the parameters, each by itself and together; `whole`: as those of a device with a magnet.
+  pindrive_error check(bool whole) const;
   /// Sets the numbers of a drive, or, by `part`, their derivatives.
   pindrive_error fill(pindrive_drive* drive, double Number::* part) const;
-  /// Reads the electromagnet; null without one. Refused where a parameter is out of its range.
-  pindrive_error read(std::unique_ptr<const pindrive::device::Electromagnet>& magnet) const;
-  pindrive_error read(pindrive::device::Controller& controller) const;
+  bool has_magnet() const { return has("magnet.hold_force") || has("magnet.turns"); }
+  /// The electromagnet of checked parameters, and the control block.
+  std::unique_ptr<const pindrive::device::Electromagnet> magnet() const;
+  pindrive::device::Controller controller() const;
 
  private:
   std::size_t find(const char* key) const;

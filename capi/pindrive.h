@@ -402,6 +402,20 @@ PINDRIVE_API pindrive_error pindrive_stepper_read(const void *bytes, size_t size
 
 /* ---- devices under a moving hand ------------------------------------------------------------- */
 
+/* A value of a device file by its key ("plate.kinetic"), in SI units. rows 0: values points to a number; otherwise
+ * to as many rows (x, y), such as speed and force. values null: given, but not known. */
+typedef struct pindrive_given {
+  const char *key;
+  const double *values;
+  size_t rows;
+} pindrive_given;
+
+/* Checks values of a device file: the bounds of each and what they require of each other, with `whole` also what a
+ * device with magnet, control block and array requires. Writes a line for each problem into text, which has room for
+ * `size` characters with the zero at its end; lines that do not fit are left out. The number of problems. */
+PINDRIVE_API size_t pindrive_check_values(const pindrive_given *given, size_t count, int whole,
+                                          char *text, size_t size);
+
 /* A device of pins that electromagnets switch: a control block for each pin samples the page under its spot
  * and switches its coil, which presses pin and plate together. A hand moves the device over the page. */
 typedef struct pindrive_device pindrive_device;

@@ -19,16 +19,17 @@ namespace {
 
 using pindrive_c::fail;
 
-/// Makes the magnet of the parameters, without a current.
+/// Makes the magnet of the parameters, which are checked, without a current.
 pindrive_error make_magnet(const Given& given, double time, Magnet& magnet) {
   magnet = {};
-  auto controller = std::make_unique<pindrive::device::Controller>();
-  const pindrive_error error = given.parameters().read(magnet.electromagnet);
-  if (error || !magnet.electromagnet) return error;
+  const pindrive_error error = given.parameters().check(given.parameters().has_magnet());
+  if (error) return error;
+  magnet.electromagnet = given.parameters().magnet();
+  if (!magnet.electromagnet) return PINDRIVE_OK;
   if (given.has_luminance()) {
-    if (const pindrive_error bad = given.parameters().read(*controller)) return bad;
-    magnet.control.sample = controller->sample_from(time);
-    magnet.controller = std::move(controller);
+    magnet.controller =
+        std::make_unique<pindrive::device::Controller>(given.parameters().controller());
+    magnet.control.sample = magnet.controller->sample_from(time);
   }
   magnet.coil = std::make_unique<pindrive::device::Coil>(*magnet.electromagnet, time);
   magnet.normal_force = given.parameters().plate_normal_force().value;
@@ -95,7 +96,6 @@ pindrive_error Instance::make(Stepper& stepper, Magnet& magnet) const {
   pindrive_stepper* made = nullptr;
   pindrive_error error = make_magnet(given, values_.begin, magnet);
   if (!error) error = given.fill(drive.get(), release.get(), &Number::value);
-  if (!error) error = given.parameters().check_together();
   if (!error && magnet.present())
     error =
         pindrive_release_set(release.get(), "plate_load", given.parameters().residual_load().value);

@@ -15,8 +15,6 @@ from typing import Any
 import pint
 
 from pindrive import __version__
-from pindrive.device.coil import COIL, COIL_NEEDS
-from pindrive.device.electromagnet import DIRECT
 from pindrive.files.keys import (
     ALONE,
     AROUND,
@@ -29,9 +27,8 @@ from pindrive.files.keys import (
     template,
     usual_rows,
 )
-from pindrive.motion.drive import SLOPES
 from pindrive.motion.friction import COEFFICIENT_OF, PRESSED_BY
-from pindrive.motion.release import CONTINUOUS, INPUTS
+from pindrive.motion.release import INPUTS
 from pindrive.plot.style import CURVES, EVENT_SHAPE, PALETTE, SIGNS, event_name
 from pindrive.quantities import budgets
 from pindrive.quantities.drive import COLUMNS
@@ -42,14 +39,8 @@ from pindrive.quantities.table import QUANTITIES
 from pindrive.quantities.units import DEFINITIONS
 
 READER = Path(__file__).resolve().parents[1] / "examples" / "tactile-reader.toml"
-PARTS = (
-    *SLOPES.values(),
-    "profile.rate",
-    "phase",
-    *(f"coil.{name}" for name in ("resistance", "inductance", "current", "field", "power")),
-    *(name for pair in COLUMNS.values() for name in pair),
-)
-"""Quantities of a drive's parts that the page checks."""
+PARTS = [name for pair in COLUMNS.values() for name in pair]
+"""Quantities of a drive's parts in its rows."""
 
 
 def brief(fields: dict[str, Any]) -> dict[str, Any]:
@@ -166,18 +157,12 @@ def tables() -> dict[str, Any]:
         "tables": TABLES,
         "alone": ALONE,
         "around": AROUND,
-        "slopes": SLOPES,
         "coefficients": COEFFICIENT_OF,
         "pressedBy": {
             contact: {QUANTITIES[name].key: factor for name, factor in parts.items()}
             for contact, parts in PRESSED_BY.items()
         },
         "overTime": INPUTS,
-        "continuous": [QUANTITIES[name].key for name in CONTINUOUS],
-        "coil": COIL,
-        "coilNeeds": {name: QUANTITIES[name].meaning for name in COIL_NEEDS},
-        "magnet": DIRECT,
-        "pins": [budgets.PINS.most, budgets.PINS.counted],
         "studyKeys": STUDY_KEYS,
         "inputRows": budgets.INPUT_ROWS.most,
         "units": units(),

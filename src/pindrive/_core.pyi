@@ -216,6 +216,9 @@ def input_quantities() -> list:
 
 def bounds_words(bounds: tuple[float, float, bool, bool, float], unit: str) -> str: ...
 
+def value_problems(given: Sequence[tuple[str, float | Sequence[tuple[float, float]] | None]], whole: bool) -> list[tuple[str, str, str, str, list[str]]]:
+    """Problems of values by key, SI: bounds of each, and contradictions."""
+
 settling_band: float = 0.05
 
 event_limit: int = 1000000

@@ -1,12 +1,20 @@
 // Table of the inputs and its wording for the Python extension. No logic lives here.
 #include <nanobind/nanobind.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
+#include <nanobind/stl/variant.h>
+#include <nanobind/stl/vector.h>
 
-#include <limits>
+#include <optional>
 #include <string>
 #include <tuple>
+#include <utility>
+#include <variant>
+#include <vector>
 
+#include "contradictions.hpp"
 #include "pindrive/device/inputs.hpp"
 #include "wording.hpp"
 
@@ -21,6 +29,35 @@ using BoundsNumbers = std::tuple<double, double, bool, bool, double>;
 
 BoundsNumbers numbers_of(const device::Bounds& b) {
   return {b.lower, b.upper, b.lower_closed, b.upper_closed, b.also};
+}
+
+using GivenRows = std::vector<std::pair<double, double>>;
+/// A value by its key: a number, rows, or None: not known.
+using Given = std::pair<std::string, std::optional<std::variant<double, GivenRows>>>;
+/// Key, part of the value, required and given in words, and the keys that it contradicts.
+using ProblemWords =
+    std::tuple<std::string, std::string, std::string, std::string, std::vector<std::string>>;
+
+std::vector<ProblemWords> problems_of(const std::vector<Given>& given, bool whole) {
+  static_assert(sizeof(GivenRows::value_type) == 2 * sizeof(double));
+  std::vector<pindrive_given> values;
+  for (const auto& [key, value] : given)
+    if (!value)
+      values.push_back({key.c_str(), nullptr, 0});
+    else if (const auto* const number = std::get_if<double>(&*value))
+      values.push_back({key.c_str(), number, 0});
+    else if (const auto& rows = std::get<GivenRows>(*value); !rows.empty())
+      values.push_back({key.c_str(), &rows.front().first, rows.size()});
+  std::vector<ProblemWords> found;
+  for (const pindrive_c::Problem& problem :
+       pindrive_c::problems_of(values.data(), values.size(), whole)) {
+    std::vector<std::string> with;
+    for (const char* const key : problem.with)
+      if (key) with.emplace_back(key);
+    found.emplace_back(problem.key, problem.part.get(), problem.required.get(), problem.given.get(),
+                       std::move(with));
+  }
+  return found;
 }
 
 }  // namespace
@@ -46,4 +83,6 @@ void bind_inputs(nb::module_& m) {
         return std::string(text.get());
       },
       "bounds"_a, "unit"_a);
+  m.def("value_problems", &problems_of, "given"_a, "whole"_a,
+        "Problems of values by key, SI: bounds of each, and contradictions.");
 }

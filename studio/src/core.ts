@@ -103,6 +103,7 @@ type Exports = { readonly memory: WebAssembly.Memory } & Readonly<
 
 const MORE = 1; // PINDRIVE_MORE: there was more than fitted
 const INTERFACE = 2; // PINDRIVE_INTERFACE that this file is written for
+const TEXT_BYTES = 1 << 13;
 const OUTCOME_BYTES = 56;
 const SEGMENT_BYTES = 80;
 const EVENT_BYTES = 40;
@@ -139,6 +140,36 @@ export class Core {
 
   statusText(status: number): string {
     return this.text(this.wasm.pindrive_status_text!(status));
+  }
+
+  /**
+   * Problems of values of a device file, SI, in a line each: the bounds of each value, and what they require of
+   * each other; `whole`: of a device with magnet, control block and array. Null: given, but not known.
+   */
+  problems(given: Readonly<Record<string, number | Rows | null>>, whole = false): string[] {
+    const keys = Object.keys(given);
+    const columns = keys.map((key) => {
+      const value = given[key]!;
+      return value === null ? [] : typeof value === "number" ? [value] : value.flat();
+    });
+    const numbers = columns.reduce((sum, { length }) => sum + length, 0);
+    return this.borrowed(8 * numbers + 12 * keys.length + TEXT_BYTES, (at) =>
+      this.named(keys, (addresses) => {
+        const [table, text] = [at + 8 * numbers, at + 8 * numbers + 12 * keys.length];
+        let next = at;
+        columns.forEach((column, i) => {
+          new Float64Array(this.buffer, next, column.length).set(column);
+          const rows = typeof given[keys[i]!] === "number" ? 0 : column.length / 2;
+          [addresses[i]!, column.length ? next : 0, rows].forEach((word, j) => {
+            this.view().setUint32(table + 12 * i + 4 * j, word, true);
+          });
+          next += 8 * column.length;
+        });
+        this.wasm.pindrive_check_values!(table, keys.length, Number(whole), text, TEXT_BYTES);
+        const said = this.text(text);
+        return said ? said.split("\n") : [];
+      }),
+    );
   }
 
   /** The motion of a release; to be freed. Throws CoreError on what the core cannot follow. */

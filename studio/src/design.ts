@@ -1,6 +1,5 @@
 // A design: the values that a device file gives, what follows from them, and what the core is given.
-import { dampingOf, MOUSE, RELEASED, STOPS } from "./checks";
-import type { Input, Rows } from "./core";
+import type { Core, Input, Rows } from "./core";
 import { type Device, readDevice } from "./device";
 import type { Given } from "./files";
 import {
@@ -21,9 +20,25 @@ export interface Design extends Device {
   readonly shown: boolean;
 }
 
+const MOUSE = "motion.mouse_velocity";
+/** Keys of end stops, each of which requires the keys before it. */
+const STOPS = ["travel", "stop_stiffness", "stop_damping"] as const;
+/** Keys of a release beside its inputs over time. */
+const RELEASED = ["displacement", "velocity", "skin_stretch", "duration"] as const;
+
 /** A device file as a design. Throws DeviceError. */
-export function designOf({ text, file, rows }: Given): Design {
-  return { ...readDevice(text, file, rows), shown: true };
+export function designOf(core: Core, { text, file, rows }: Given): Design {
+  return { ...readDevice(core, text, file, rows), shown: true };
+}
+
+/** Damping, given or by its ratio, N*s/m. */
+function dampingOf(values: Values): number {
+  const damping = values["drive.damping"];
+  if (typeof damping === "number") return damping;
+  const [ratio, mass, stiffness] = ["drive.damping_ratio", "drive.mass", "drive.stiffness"].map(
+    (key) => values[key] as number,
+  ) as [number, number, number];
+  return 2 * ratio * Math.sqrt(mass) * Math.sqrt(stiffness);
 }
 
 export function isRows(value: Value | null | undefined): value is Rows {

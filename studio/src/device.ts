@@ -1,26 +1,21 @@
 // Device files: TOML with units, read into the values of a drive and its release, and written again.
 // What is wrong is said in the lines that the command prints: file, key, value and bound.
-import {
-  checkCurve,
-  checkDrive,
-  checkOneKind,
-  checkRows,
-  checkStatic,
-  checkStops,
-  checkStretch,
-  checkTouch,
-  checkWithinTravel,
-  MOUSE,
-  Refusal,
-} from "./checks";
-import type { Row, Rows } from "./core";
-import { CONTACTS, frictionKeys, type Value, type Values } from "./friction";
+import type { Core, Row, Rows } from "./core";
+import type { Value, Values } from "./friction";
 import { nearest, unknownInFile } from "./names";
 import { floatRepr, general, quoted } from "./python";
 import { columnsOf, DRIVE, INPUTS, type Quantity, required, TABLES } from "./table";
 import { isTable, parseToml, TomlError, type TomlTable, type TomlValue } from "./toml";
 import { toSi, UnitError } from "./units";
-import { fits } from "./whole";
+
+const MOUSE = "motion.mouse_velocity";
+
+/** A value that is refused; its words have no place yet. */
+class Refusal extends Error {
+  constructor(label: string, requirement: string, given: string) {
+    super(`${label} must be ${requirement}, got ${given}`);
+  }
+}
 
 export interface Device {
   readonly name: string;
@@ -71,8 +66,13 @@ function firstBadByte(bytes: Uint8Array): number {
 }
 
 /** The device that a file describes. `rows`: what stands in CSV files that it names, SI, by key. */
-export function readDevice(text: string, file: string, rows: Readonly<Record<string, Rows>> = {}): Device {
-  return new Reader(readTables(text, file), file, rows).device();
+export function readDevice(
+  core: Core,
+  text: string,
+  file: string,
+  rows: Readonly<Record<string, Rows>> = {},
+): Device {
+  return new Reader(core, readTables(text, file), file, rows).device();
 }
 
 function readTables(text: string, file: string): TomlTable {
@@ -92,9 +92,11 @@ function readTables(text: string, file: string): TomlTable {
 class Reader {
   private readonly tables: Record<string, TomlTable> = {};
   private readonly problems: string[] = [];
+  /** Given values, SI; null: malformed. */
   private readonly values: Record<string, Value | null> = {};
 
   constructor(
+    private readonly core: Core,
     private readonly given: TomlTable,
     private readonly file: string,
     private readonly rows: Readonly<Record<string, Rows>>,
@@ -129,20 +131,12 @@ class Reader {
     this.checkTexts();
     const hand = whole && !("mouse_velocity" in tables.motion!);
     if (hand) meant.add("motion.mouse_velocity");
-    const before = problems.length;
     this.readValues(whole ? TABLES.tables : TABLES.alone, meant);
-    if (hand) this.values["motion.mouse_velocity"] = this.values["scan.hand_speed"] ?? null;
-    this.checkContacts();
-    const complete = problems.length === before && this.allRead(whole);
-    if (complete) this.checkTogether();
-    if (complete && whole) {
-      for (const { check, keys } of fits(this.values, tables)) this.attempt(check, ...keys);
-    }
+    problems.push(...this.core.problems(this.values, whole).map((problem) => `${file}: ${problem}`));
     if (problems.length) throw new DeviceError(problems);
-    this.attempt(() => checkDrive(this.values));
-    if (problems.length) throw new DeviceError(problems);
+    if (hand) this.values[MOUSE] = this.values["scan.hand_speed"] ?? INPUTS.get("scan.hand_speed")!.absent!;
     const of = tables.device!;
-    const given = [...DRIVE.keys()].filter((key) => this.isGiven(key) || (hand && key === MOUSE));
+    const given = [...DRIVE.keys()].filter((key) => key in this.values);
     return {
       name: String(of.name ?? ""),
       description: String(of.description ?? ""),
@@ -156,11 +150,6 @@ class Reader {
   private isGiven(key: string): boolean {
     const [table, name] = split(key);
     return name in this.tables[table]!;
-  }
-
-  private allRead(whole: boolean): boolean {
-    const names = whole ? TABLES.tables : TABLES.alone;
-    return [...INPUTS.keys()].every((key) => !names.includes(split(key)[0]) || key in this.values);
   }
 
   private unknownKeys(): string[] {
@@ -189,63 +178,28 @@ class Reader {
 
   private readValues(names: readonly string[], meant: ReadonlySet<string | undefined>): void {
     for (const [key, quantity] of INPUTS) {
-      const [table, name] = split(key);
+      const [table] = split(key);
       if (!names.includes(table)) continue;
       const others = quantity.alternative ?? [];
       if (this.isGiven(key)) {
-        this.attempt(() => {
-          this.values[key] = this.rows[key] ?? readValue(this.tables[table]![name]!, quantity);
-        });
-      } else if (!quantity.mandatory || others.some((key) => split(key)[1] in this.tables[table]!)) {
-        this.values[key] = quantity.absent ?? null;
-      } else if (!meant.has(key) && !others.some((other) => meant.has(other))) {
+        this.values[key] = this.read(key, quantity);
+      } else if (quantity.mandatory && !others.some((other) => this.isGiven(other))) {
+        if (meant.has(key) || others.some((other) => meant.has(other))) continue;
         this.problems.push(`${this.file}: ${key} is missing; write ${quantity.line} in [${table}]`);
       }
     }
   }
 
-  /** Adds what a check refuses, with its key: the first of `keys` of which its label is the last part. */
-  private attempt(check: () => void, ...keys: string[]): void {
+  /** A value that the file gives; null with a problem. */
+  private read(key: string, quantity: Quantity): Value | null {
+    const [table, name] = split(key);
     try {
-      check();
+      return this.rows[key] ?? readValue(this.tables[table]![name]!, quantity);
     } catch (error) {
       if (!(error instanceof Refusal)) throw error;
-      const own = error.label.split("[")[0]!;
-      const full = keys.find((key) => key.endsWith(`.${own}`)) ?? own;
-      this.problems.push(`${this.file}: ${full}${error.message.slice(own.length)}`);
+      this.problems.push(`${this.file}: ${error.message}`);
+      return null;
     }
-  }
-
-  private checkContacts(): void {
-    for (const table of CONTACTS) {
-      const all = [...frictionKeys(table, false), ...frictionKeys(table, true)];
-      const given = all.filter((key) => this.values[key] != null);
-      const coefficients = given.some((key) => frictionKeys(table, true).includes(key));
-      const before = this.problems.length;
-      this.attempt(() => checkOneKind(table, given));
-      if (this.problems.length > before) continue;
-      const [ofKinetic, ofStatic, ofCurve] = frictionKeys(table, coefficients);
-      const [curve, still] = [this.values[ofCurve], this.values[ofStatic]];
-      let kinetic = this.values[ofKinetic];
-      if (Array.isArray(curve)) {
-        const rows = curve as Rows;
-        kinetic ??= rows[0]![1];
-        this.attempt(() => checkCurve(rows, kinetic as number, ofCurve), ofCurve);
-      }
-      if (typeof still === "number" && typeof kinetic === "number") {
-        this.attempt(() => checkStatic(still, kinetic as number, ofStatic), ofStatic);
-      }
-      const touch = "finger.touch_force";
-      if (table === "finger" && given.length && touch in this.values) {
-        this.attempt(() => checkTouch(coefficients, this.values[touch]), touch);
-      }
-    }
-  }
-
-  private checkTogether(): void {
-    this.attempt(() => checkStops(this.values), "drive.stop_stiffness", "drive.stop_damping");
-    this.attempt(() => checkWithinTravel(this.values), "motion.displacement");
-    this.attempt(() => checkStretch(this.values), "motion.skin_stretch");
   }
 }
 
@@ -310,7 +264,7 @@ function readRows(value: TomlValue, quantity: Quantity): Rows {
   if (!Array.isArray(value) || !value.length) {
     throw new Refusal(key, `rows, like ${quantity.usualRows}`, quoted(value));
   }
-  const rows = value.map((row, i): Row => {
+  return value.map((row, i): Row => {
     if (!Array.isArray(row) || row.length !== 2) {
       const like = examples.map((example) => quoted(example)).join(", ");
       throw new Refusal(`${key}[${i}]`, `a ${first} and a ${second}, like ${like}`, quoted(row));
@@ -320,6 +274,4 @@ function readRows(value: TomlValue, quantity: Quantity): Rows {
       readNumber(row[1]!, along, examples[1], `${key}[${i}] ${second}`),
     ];
   });
-  if (quantity.rowsOf !== "places") checkRows(rows, quantity);
-  return rows;
 }

@@ -1,6 +1,5 @@
 // A recording fitted: its time offset, and parameters by Gauss-Newton steps with exact derivatives.
 
-import { problemOf } from "./checks";
 import { type Core, CoreError, type Motion, type QuantityName } from "./core";
 import { coreInput, direction, isRows, withValue } from "./design";
 import type { Values } from "./friction";
@@ -122,7 +121,7 @@ export function fit(
       if (!change) continue;
       const next = keys.reduce((now, key, i) => scaled(now, key, Math.exp(clamped(change[i]!))), values);
       const nextShift = shift + (freeOffset ? change[keys.length]! : 0);
-      if (problemOf(next)) continue;
+      if (core.problems(next).length) continue;
       const left = residuals(core, data, next, nextShift);
       const [before, after] = [squares(rest), squares(left)];
       if (!(after < before)) continue;

@@ -36,13 +36,13 @@ class Studio {
 
   private async showRelease(hash: string): Promise<void> {
     const given = givenDevice();
-    const state = await fromHash(hash);
+    const state = await fromHash(this.core, hash);
     this.choose("page");
     if (this.page) {
       if (state) this.page.change(state, "");
       return;
     }
-    this.page = new Page(this.core, this.wasm, state ?? initialState());
+    this.page = new Page(this.core, this.wasm, state ?? initialState(this.core));
     this.page.mount(this.places.page);
     if (given && !state) this.page.load(given, true);
   }
@@ -52,8 +52,8 @@ class Studio {
     const current = this.page && currentDesign(this.page.state);
     const whole = current && Object.keys(current.around).length ? current : this.givenWhole();
     if (!this.read) {
-      const design = whole ?? designOf({ text: TABLES.reader, file: "the reader", rows: {} });
-      this.read = new ReadView(this.wasm, design, (release) => this.showDesign(release));
+      const design = whole ?? designOf(this.core, { text: TABLES.reader, file: "the reader", rows: {} });
+      this.read = new ReadView(this.core, this.wasm, design, (release) => this.showDesign(release));
       this.places.read.append(this.read.element);
     } else if (whole && whole !== this.opened) this.read.open(whole);
     this.opened = whole;
@@ -72,7 +72,7 @@ class Studio {
   private givenWhole(): Design | null {
     const given = givenDevice();
     if (!given) return null;
-    const design = designOf(given);
+    const design = designOf(this.core, given);
     return Object.keys(design.around).length ? design : null;
   }
 

@@ -59,7 +59,7 @@ interface Device {
 
 function ofDevice(core: Core, asked: Device): unknown {
   const text = decodeText(Uint8Array.from(Buffer.from(asked.device, "base64")), asked.file);
-  const device = readDevice(text, asked.file);
+  const device = readDevice(core, text, asked.file);
   const values = asked.set ? withValue(device.values, ...asked.set) : device.values;
   if (asked.direction) return { core: direction(values, asked.direction, 1) };
   if (asked.csv) {
@@ -85,7 +85,7 @@ function corners(values: Values, x: string, y: string): unknown {
 }
 
 function ofReading(core: Core, { device, page, pixel, hand: saved, pictures }: Read["read"]): unknown {
-  const design = readDevice(device, "the device");
+  const design = readDevice(core, device, "the device");
   const input = deviceInput(design);
   const grey = Uint8Array.from(Buffer.from(page.grey, "base64"));
   const hand = Hand.of(saved);

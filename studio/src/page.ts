@@ -1,7 +1,6 @@
 // The page: the state, what is computed of it at each change, and the parts that show it.
 import { Animation } from "./animation";
 import { Charts } from "./charts";
-import { problemOf } from "./checks";
 import { type Core, CoreError } from "./core";
 import { type Design, withValue } from "./design";
 import { Designs } from "./designs";
@@ -39,7 +38,8 @@ export class Page {
   private readonly phase: PhasePlane;
   private readonly animation: Animation;
   private readonly player: Player;
-  private readonly panel = new Panel(
+  private readonly panel: Panel = new Panel(
+    (values) => this.core.problems(values)[0] ?? "",
     () => this.values,
     (values, kind) => this.setValues(values, kind),
   );
@@ -199,9 +199,7 @@ export class Page {
   /** Loads the text of a device file as a new design; what is wrong is said at the top. */
   load(given: Given, replace: boolean): boolean {
     try {
-      const device = readDevice(given.text, given.file, given.rows);
-      const problem = problemOf(device.values);
-      if (problem) throw new DeviceError([problem]);
+      const device = readDevice(this.core, given.text, given.file, given.rows);
       this.add({ ...device, name: device.name || given.file.replace(/\.toml$/i, ""), shown: true }, replace);
       this.say("");
       return true;

@@ -1,5 +1,4 @@
 // The parameters of the current design: a slider and a field each, with unit, bounds and meaning.
-import { problemOf } from "./checks";
 import { applies, isRows, valueFor, withValue } from "./design";
 import { readNumber } from "./device";
 import { h, option, show, symbol, textField } from "./dom";
@@ -29,6 +28,8 @@ export class Panel {
   private base: { key: string; values: Values; now: string } | null = null;
 
   constructor(
+    /** Error of values, in one line; empty without one. */
+    private readonly problemOf: (values: Values) => string,
     private readonly now: () => Values,
     private readonly change: (values: Values, kind: string) => void,
   ) {
@@ -118,7 +119,7 @@ export class Panel {
           quantity.usual!,
           key,
         );
-        const problem = problemOf(withValue(this.before(key), key, value));
+        const problem = this.problemOf(withValue(this.before(key), key, value));
         note.textContent = problem;
         if (!problem) this.set(key, value, "");
       } catch (error) {
@@ -129,7 +130,7 @@ export class Panel {
     field.addEventListener("change", () => type(field.value));
     slider.addEventListener("input", () => {
       const value = valueAt(range, Number(slider.value) / STEPS);
-      const problem = problemOf(withValue(this.before(key), key, value));
+      const problem = this.problemOf(withValue(this.before(key), key, value));
       note.textContent = problem;
       if (!problem) this.set(key, value, `slider ${key}`);
     });

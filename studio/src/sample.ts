@@ -1,6 +1,5 @@
 // Samples of motions for plots: columns at common times, with both limits at each event.
 
-import { problemOf } from "./checks";
 import {
   type Core,
   CoreError,
@@ -89,7 +88,7 @@ export function simulateAll(
 }
 
 function begin(core: Core, values: Values): Made {
-  const problem = problemOf(values);
+  const [problem] = core.problems(values);
   if (problem) throw new CoreError(problem);
   const motion = core.simulate(coreInput(values));
   const given = valueFor(values, "motion.duration");

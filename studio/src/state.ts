@@ -1,5 +1,6 @@
 // The state of the page, its history, and the link that holds it whole.
 
+import type { Core } from "./core";
 import type { Design } from "./design";
 import { readDevice } from "./device";
 import type { Values } from "./friction";
@@ -26,8 +27,8 @@ export interface State {
 /** A change, from the newest state: two may come before anything is drawn anew. */
 export type Step = (now: State) => State;
 
-export function initialState(): State {
-  const device = readDevice(TABLES.template, "the template");
+export function initialState(core: Core): State {
+  const device = readDevice(core, TABLES.template, "the template");
   return {
     designs: [{ ...device, shown: true }],
     current: 0,
@@ -106,7 +107,7 @@ export async function toHash(state: State): Promise<string> {
 }
 
 /** The state in a link; null where it holds none that this page can read. */
-export async function fromHash(hash: string): Promise<State | null> {
+export async function fromHash(core: Core, hash: string): Promise<State | null> {
   const text = hash.replace(/^#/, "").replaceAll("-", "+").replaceAll("_", "/");
   if (!text) return null;
   try {
@@ -118,7 +119,7 @@ export async function fromHash(hash: string): Promise<State | null> {
         : value,
     ) as State;
     const whole = Array.isArray(state.designs) && state.designs[state.current] && state.map;
-    return whole ? { ...initialState(), ...state } : null;
+    return whole ? { ...initialState(core), ...state } : null;
   } catch {
     return null;
   }

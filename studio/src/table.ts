@@ -63,21 +63,12 @@ interface Tables {
   readonly tables: readonly string[];
   readonly alone: readonly string[];
   readonly around: readonly string[];
-  /** Quantity of the slopes between the points of a curve. */
-  readonly slopes: Readonly<Record<string, string>>;
   /** The coefficient by which a friction force may be given instead, by key. */
   readonly coefficients: Readonly<Record<string, string>>;
   /** Normal force on each contact: keys, and their factors. */
   readonly pressedBy: Readonly<Record<string, Readonly<Record<string, number>>>>;
-  /** Inputs of a release over time, by name; inputs without steps, by key. */
+  /** Inputs of a release over time, by name. */
   readonly overTime: readonly string[];
-  readonly continuous: readonly string[];
-  /** Design of a coil; its mandatory keys, with their meanings; alternatives to a coil. */
-  readonly coil: readonly string[];
-  readonly coilNeeds: Readonly<Record<string, string>>;
-  readonly magnet: readonly string[];
-  /** Largest number of pins in an array, and its name in messages. */
-  readonly pins: readonly [number, string];
   readonly studyKeys: readonly string[];
   readonly inputRows: number;
   readonly units: {

@@ -629,7 +629,7 @@ static void a_device(void) {
   expect(pindrive_device_set_rows(device, "magnet.voltage", times, volts, 2) == PINDRIVE_OK, "rows");
   pindrive_device_set(device, "magnet.turns", 250);
   refuses(pindrive_scan_new(device, 0, 0, 0, 0, 0, 1, &scan), PINDRIVE_BAD_VALUE,
-          "magnet.pole_area must be given");
+          "magnet.turns must be given with pole_area");
   pindrive_device_free(device);
 }
 

@@ -156,7 +156,11 @@ IN_C = {
         "segment_count": "outcome_of",
         **dict.fromkeys(("stop_force", "columns"), "evaluate"),
     },
-    "": {"simulate_batch": "batch", "statuses": "status_text"},
+    "": {
+        "simulate_batch": "batch",
+        "statuses": "status_text",
+        "value_problems": "check_values",
+    },
 }
 """The function of pindrive.h for what the extension calls otherwise."""
 OF_THE_DEVICE = {

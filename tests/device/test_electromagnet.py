@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from pindrive.device import Coil, CoilState, Commands, Electromagnet
-from pindrive.device.electromagnet import check_one_way
+from pindrive.quantities.contradictions import problems_of
 
 COIL = Coil(
     turns=300,
@@ -209,9 +209,16 @@ def test_bad_magnets_are_refused(given: dict[str, float], message: str) -> None:
 
 
 def test_magnet_is_given_in_one_way() -> None:
-    check_one_way({"hold_force", "rise_time"})
-    check_one_way({"residual"})
-    with pytest.raises(ValueError, match="hold_force must be left out where turns describes"):
-        check_one_way({"hold_force", "turns"})
-    with pytest.raises(ValueError, match=r"turns must be given with pole_area \(area of one"):
-        check_one_way({"turns", "gap"})
+    def words(*names: str) -> list[str]:
+        given = {f"magnet.{name}": None for name in names}
+        return [problem.words for problem in problems_of(given, whole=True)]
+
+    assert not words("hold_force", "rise_time") + words("residual")
+    assert words("hold_force", "turns") == [
+        "magnet.hold_force must be left out where turns describes the coil, "
+        "got both, hold_force and turns"
+    ]
+    assert words("turns", "gap") == [
+        "magnet.turns must be given with pole_area, wire_diameter, turn_length, supply_voltage, "
+        "got turns, gap alone"
+    ]

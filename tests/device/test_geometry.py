@@ -132,7 +132,7 @@ def test_magnets_of_other_rows_come_as_close() -> None:
                 ),
                 outer_diameter=0.0025,
             ),
-            "pole_area must be at most half of the magnet's face, 2.454e-06 m^2, as it has two "
+            "pole_area must be at most half of the magnet's face, 2.45437e-06 m^2, as it has two "
             "poles, got 3e-06 m^2",
         ),
         (

@@ -311,8 +311,8 @@ def test_numbers_keep_every_bit(value: float) -> None:
         (
             '"10 g"\nstiffness = "100 N/m"',
             '"1e-12 kg"\nstiffness = "1e-12 N/m"',
-            "FILE: damping must be such that the damping ratio is 0 or at least 1e-11 and at most "
-            "1e6, got 0.4 N*s/m, which makes it 2e+11",
+            "FILE: drive.damping must be such that the damping ratio is 0 or at least 1e-11 and at "
+            "most 1e6, got 0.4 N*s/m, which makes it 2e+11",
         ),
         (
             '"10 g"',

@@ -163,7 +163,7 @@ MISTAKES = {
         "magnet.hold_force must be left out where turns describes the coil, got both, hold_force "
         "and turns"
     ),
-    "[magnet]\nturns = 3": "magnet.turns must be given with pole_area (area of one of its two",
+    "[magnet]\nturns = 3": "magnet.turns must be given with pole_area, gap, wire_diameter, ",
     '[magnet]\nforce = "1 N"': "unknown key magnet.force; did you mean magnet.hold_force or "
     "motion.force?",
     "[control]\nthreshold = 1.5": "control.threshold must be finite and at least 0 and at most 1",

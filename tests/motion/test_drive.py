@@ -129,7 +129,7 @@ def test_curve_alone_gives_the_kinetic_friction() -> None:
         ),
         (
             lambda: drive(plate=Contact(curve=[(0, 1), (1e-9, 100)])),
-            "plate curve slope must be at most 1e6 times critical damping, got 9.9e+10 N*s/m",
+            "plate.curve slope must be at most 1e6 times critical damping, got 9.9e+10 N*s/m",
         ),
         (lambda: Contact(curve=[(0, 1), (1e-320, 2)]), "curve slope must be finite"),
         (lambda: drive(mass=[0.01, 0.02]), "mass must be one number; simulate_batch takes arrays"),

@@ -33,7 +33,7 @@ def test_end_stops_are_given_and_left_out(page: Any, tmp_path: Path) -> None:
     page.uncheck("#drive-stop_stiffness-given")  # a release beyond rigid stops
     settled(page)
     said = page.locator("#summary").inner_text()
-    assert said == "displacement must be at most travel, 0.0012 m, either way, got 0.002 m"
+    assert said == "motion.displacement must be at most travel, 0.0012 m, either way, got 0.002 m"
     page.uncheck("#drive-travel-given")
     settled(page)
     assert "stop_stiffness" not in page.evaluate(f"Object.keys({VALUES}).join()")

@@ -10,12 +10,8 @@ the inductance with the open gap over that with the closed one.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from math import sqrt
 from typing import Final
-
-from pindrive.quantities.refusal import refusal
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,28 +26,3 @@ class Closing:
 
 CLOSED: Final = Closing(flux=0.0, inductance=1.0)
 """That of a gap that does not open."""
-
-
-def closing_at(
-    force: float, inductance: float, pull: Callable[[float], float], saturation: float
-) -> Closing:
-    """The closing of a gap that closes against a force (N).
-
-    Args:
-        force: The pull beyond which it is closed, N.
-        inductance: Inductance with the open gap over that with the closed gap.
-        pull: Pull at a flux linkage, given as a part of that of the full current, N.
-        saturation: The part at which the pull stops growing.
-
-    Raises:
-        ValueError: The gap would never close, or never open.
-    """
-    residual, most = pull(0.0), pull(inductance)
-    if force <= residual:
-        required = f"more than the residual pull, {residual!r} N"
-        raise ValueError(refusal("closing_force", required, f"{force!r} N"))
-    flux = saturation * sqrt((force - residual) / (pull(1.0) - residual))
-    if force >= most or flux >= inductance:
-        required = f"less than the pull of full current with the open gap, {most!r} N"
-        raise ValueError(refusal("closing_force", required, f"{force!r} N"))
-    return Closing(flux, inductance)

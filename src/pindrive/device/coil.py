@@ -7,10 +7,11 @@ from math import pi
 from typing import Final
 
 from pindrive.device.heating import Heat
+from pindrive.quantities.contradictions import refuse
 from pindrive.quantities.electromagnet import COIL as ROWS
 from pindrive.quantities.electromagnet import MADE, MAGNET
 from pindrive.quantities.part import Number, OptionalNumber, Part, checked_by
-from pindrive.quantities.refusal import refusal
+from pindrive.quantities.quantity import Rows
 
 TABLE: Final = Part(MAGNET + ROWS + MADE)
 """Table of the device file with the keys of a magnet."""
@@ -70,12 +71,7 @@ class Coil:
 
     def __post_init__(self) -> None:
         """Validate what follows from them."""
-        # Each value is in range, but a quotient of values may be out of its own.
-        for name in ("resistance", "inductance", "current", "field", "power"):
-            TABLE.check(f"coil.{name}", getattr(self, name))
-        if (self.lift is None) != (self.closing_force is None):
-            one, other = ("lift", "closing_force")[:: 1 if self.closing_force is None else -1]
-            raise ValueError(refusal(one, f"given with {other}", "it alone"))
+        refuse(values_of(self) | {"magnet.residual": None}, whole=True)
 
     @property
     def resistance(self) -> float:
@@ -130,11 +126,7 @@ COIL_NEEDS: Final = tuple(field.name for field in fields(Coil) if field.default 
 """Mandatory keys of a coil."""
 
 
-def check_poles(coil: Coil | None, outer_diameter: float | None) -> None:
-    """Refuse two poles whose area is more than the face of the magnet (m) has."""
-    if coil is None or outer_diameter is None:
-        return
-    face = pi / 4.0 * outer_diameter**2
-    if 2.0 * coil.pole_area > face:
-        required = f"at most half of the magnet's face, {0.5 * face:.4g} m^2, as it has two poles"
-        raise ValueError(refusal("pole_area", required, f"{coil.pole_area!r} m^2"))
+def values_of(coil: Coil) -> dict[str, float | Rows | None]:
+    """The given values of a coil by the keys of a device file."""
+    values = {f"magnet.{name}": getattr(coil, name) for name in COIL}
+    return {key: value for key, value in values.items() if value is not None}

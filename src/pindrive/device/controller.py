@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pindrive.quantities import budgets
+from pindrive.quantities.contradictions import refuse
 from pindrive.quantities.part import Number
-from pindrive.quantities.refusal import refusal
 from pindrive.quantities.table import checked, default
 
 
@@ -50,7 +50,8 @@ class ControlBlock:
 
     def __post_init__(self) -> None:
         """Validate what follows from them."""
-        check_band(self.threshold, self.hysteresis)
+        band = {"control.threshold": self.threshold, "control.hysteresis": self.hysteresis}
+        refuse(band, whole=True)
 
     def sample_times(self, begin: float, end: float) -> NDArray[np.float64]:
         """Return the sampling instants in [begin, end), s, shape (n,)."""
@@ -64,11 +65,3 @@ class ControlBlock:
         each, lasts = ceil((end - begin) * self.sample_rate), end - begin
         of = f"{pins} pins, {lasts:g} s at {self.sample_rate:g} Hz"
         budgets.SAMPLES_OF_CONTROL.check(float(pins * each), of)
-
-
-def check_band(threshold: float, hysteresis: float) -> None:
-    """Refuse a band of luminance that is not within [0, 1]: it would never switch back."""
-    widest = 2.0 * min(threshold, 1.0 - threshold)
-    if hysteresis > widest:
-        required = f"at most {widest:g} about a threshold of {threshold:g}"
-        raise ValueError(refusal("hysteresis", required, repr(hysteresis)))

@@ -19,8 +19,6 @@ from pindrive import _core
 from pindrive.device.closing import Closing
 from pindrive.device.heating import Heat
 from pindrive.quantities import budgets
-from pindrive.quantities.refusal import refusal
-from pindrive.quantities.rows import check_increasing
 
 Numbers = tuple[list[float], list[tuple[float, float]]]
 """An electromagnet as the core has it: numbers, and rows (time, level) of its voltage."""
@@ -253,20 +251,7 @@ class VoltageSteps:
 
     @classmethod
     def of(cls, rows: Sequence[tuple[float, float]], full: float) -> VoltageSteps:
-        """Rows (time since it was switched on in s, V) as parts of a full voltage (V).
-
-        Raises:
-            ValueError: The first is not at 0 s, times do not increase, or a voltage is negative or
-                beyond the full one.
-        """
-        if not rows or rows[0][0] != 0.0:
-            given = f"{rows[0][0]!r} s" if rows else "none"
-            raise ValueError(refusal("voltage[0] time", "0 s, when the coil is switched on", given))
-        check_increasing([t for t, _ in rows], "s", label="voltage[{}] time")
-        for i, (_, volts) in enumerate(rows):
-            if not 0.0 <= volts <= full:
-                required = f"from 0 V to the supply voltage, {full!r} V"
-                raise ValueError(refusal(f"voltage[{i}]", required, f"{volts!r} V"))
+        """Rows (time since it was switched on in s, V) as parts of a full voltage (V)."""
         times, volts_ = zip(*rows, strict=True)
         return cls(times, tuple(volts / full for volts in volts_))
 

@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 
 from pindrive import _core
 from pindrive.device.controller import ControlBlock
-from pindrive.device.electromagnet import Electromagnet, check_holds
+from pindrive.device.electromagnet import Electromagnet
 from pindrive.device.pin_array import Neighbours, PinArray
 from pindrive.motion.coefficients import Coefficients
-from pindrive.motion.drive import Drive
+from pindrive.motion.drive import Drive, values_of
 from pindrive.motion.release import drive_numbers
+from pindrive.quantities.contradictions import refuse
 from pindrive.quantities.part import Number
 from pindrive.quantities.table import checked, default
 from pindrive.quantities.value import concise
@@ -43,7 +44,7 @@ class Device:
 
     def __post_init__(self) -> None:
         """Validate what fits together."""
-        check_holds(self.drive.plate)
+        refuse(values_of(self.drive), whole=True)
 
     @property
     def core(self) -> _core.Device:

@@ -18,8 +18,8 @@ from typing import Final, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pindrive.device.closing import CLOSED, Closing, closing_at
-from pindrive.device.coil import COIL, COIL_NEEDS, TABLE, Coil, check_poles, default
+from pindrive.device.closing import CLOSED, Closing
+from pindrive.device.coil import TABLE, Coil, default, values_of
 from pindrive.device.current import (
     CoilState,
     Commands,
@@ -28,29 +28,12 @@ from pindrive.device.current import (
     Pulses,
     VoltageSteps,
 )
-from pindrive.motion.drive import Contact
+from pindrive.quantities.contradictions import refuse
 from pindrive.quantities.part import Number, OptionalNumber, checked_by
 from pindrive.quantities.refusal import refusal
 
 DIRECT: Final = ("hold_force", "rise_time", "fall_time", "saturation")
 """Source of the pull without a coil."""
-
-
-def check_one_way(given: set[str], table: str = "") -> None:
-    """Refuse a magnet given both by what it does and by how it is made, or by half a coil."""
-    made = [name for name in COIL if name in given]
-    if not made:
-        return
-    direct = [name for name in DIRECT if name in given]
-    label = f"{table}.{(direct or made)[0]}".removeprefix(".")
-    if direct:
-        required = f"left out where {made[0]} describes the coil"
-        raise ValueError(refusal(label, required, f"both, {direct[0]} and {made[0]}"))
-    missing = [name for name in COIL_NEEDS if name not in given]
-    if missing:
-        needed = ", ".join(f"{name} ({TABLE.rows[name].meaning})" for name in missing)
-        given_alone = f"{', '.join(made)} alone"
-        raise ValueError(refusal(label, f"given with {needed}", given_alone))
 
 
 @checked_by(TABLE)
@@ -94,13 +77,12 @@ class Electromagnet:
 
     def __post_init__(self) -> None:
         """Validate what follows from them."""
-        check_residual(self.residual, self.hold_force)
-        check_poles(self.coil, self.outer_diameter)
-        check_pulses(self.pwm_frequency, self.pwm_duty)
-        if self.steps is not None and self.pwm_frequency is not None:
-            required = "left out where pwm_frequency gives pulses"
-            raise ValueError(refusal("voltage", required, "both"))
-        _ = self.closing  # each force is in range, but the gap may never close or open
+        names = ("residual", "pwm_frequency", "pwm_duty", "outer_diameter")
+        values = {f"magnet.{name}": getattr(self, name) for name in names}
+        known = {key: value for key, value in values.items() if value is not None}
+        made = {"magnet.hold_force": self.hold_force} if self.coil is None else values_of(self.coil)
+        steps = {} if self.steps is None else {"magnet.voltage": None}
+        refuse(known | made | steps, whole=True)
 
     @classmethod
     def from_times(
@@ -178,6 +160,8 @@ class Electromagnet:
         Raises:
             ValueError: A value is invalid, as for the class.
         """
+        if voltage is not None:
+            refuse(values_of(coil) | {"magnet.voltage": tuple(voltage)}, whole=True)
         return cls(
             hold_force=coil.pull,
             rise_constant=coil.inductance / coil.resistance,
@@ -199,8 +183,8 @@ class Electromagnet:
         coil = self.coil
         if coil is None or coil.lift is None or coil.closing_force is None:
             return CLOSED
-        inductance = coil.gap / (coil.gap + coil.lift)
-        return closing_at(coil.closing_force, inductance, self.pull, self.saturation)
+        part = (coil.closing_force - self.residual) / (self.hold_force - self.residual)
+        return Closing(self.saturation * sqrt(part), coil.gap / (coil.gap + coil.lift))
 
     @property
     def rise_time(self) -> float:
@@ -342,24 +326,3 @@ class Electromagnet:
         state = before.numbers(pull, commands.at_first)
         heat = None if self.coil is None else self.coil.heat
         return Current.under(self.core_numbers, state, commands.times, begin, end, heat)
-
-
-def check_pulses(frequency: float | None, duty: float | None) -> None:
-    """Reject a pulse frequency (Hz) without a duty cycle, and the reverse."""
-    if (frequency is None) != (duty is None):
-        one, other = ("pwm_frequency", "pwm_duty")[:: 1 if duty is None else -1]
-        raise ValueError(refusal(one, f"given with {other}", "it alone"))
-
-
-def check_residual(residual: float, hold_force: float) -> None:
-    """Refuse a residual pull (N) that is not less than the hold force (N)."""
-    if residual >= hold_force:
-        required = f"less than the hold force, {hold_force!r} N"
-        raise ValueError(refusal("residual", required, f"{residual!r} N"))
-
-
-def check_holds(plate: Contact) -> None:
-    """Refuse a plate that no magnet can hold by."""
-    if plate.kinetic == 0.0:
-        required = "greater than 0 N where a magnet holds by friction"
-        raise ValueError(refusal("plate.kinetic", required, "0.0 N"))

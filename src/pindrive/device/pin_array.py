@@ -11,7 +11,7 @@ from math import cos, sin, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from pindrive.quantities import budgets
+from pindrive.quantities.contradictions import refuse
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.table import check, default
 from pindrive.quantities.value import concise
@@ -71,7 +71,6 @@ class PinArray:
         places = _pairs(places, "places")
         if not places:
             raise ValueError(refusal("places", "at least one place", "none"))
-        check_apart(places)
         shows = places if spots is None else _pairs(spots, "spots")
         if len(shows) != len(places):
             raise ValueError(refusal("spots", f"as many as pins, {len(places)}", str(len(shows))))
@@ -80,8 +79,11 @@ class PinArray:
         object.__setattr__(self, "axis", check("axis", axis))
         object.__setattr__(self, "pin_diameter", check("pin_diameter", pin_diameter))
         slot = None if slot_length is None else check("slot_length", slot_length)
-        check_slot(slot, self.pin_diameter)
         object.__setattr__(self, "slot_length", slot)
+        refuse({"array.places": places}, whole=True)
+        if slot is not None:
+            size = {"array.pin_diameter": self.pin_diameter, "array.slot_length": slot}
+            refuse(size, whole=True)
 
     @classmethod
     def grid(
@@ -109,8 +111,9 @@ class PinArray:
         Raises:
             ValueError: A value is invalid, as for the class, or a count is no whole number.
         """
-        across, down = check_count("columns", columns), check_count("rows", rows)
-        check_pins(across, down)
+        counts = check("columns", columns), check("rows", rows)
+        refuse(dict(zip(("array.columns", "array.rows"), counts, strict=True)), whole=True)
+        across, down = map(int, counts)
         step = check("pitch", pitch)
         places = [
             ((i - 0.5 * (across - 1)) * step, (j - 0.5 * (down - 1)) * step)
@@ -199,29 +202,6 @@ class PinArray:
         return np.stack([ax * along - ay * across, ay * along + ax * across], axis=1)
 
 
-def check_count(name: str, value: float, label: str = "") -> int:
-    """`value` as a whole number of at least 1."""
-    number = check(name, value, label=label or name)
-    if number != int(number):
-        raise ValueError(refusal(label or name, "a whole number", repr(value)))
-    return int(number)
-
-
-def check_pins(columns: float, rows: float) -> None:
-    """Refuse a grid of too many pins."""
-    budgets.PINS.check(columns * rows, f"{columns:g} columns of {rows:g} rows")
-
-
-def check_apart(places: Places) -> None:
-    """Refuse two pins at one place."""
-    seen: dict[tuple[float, float], int] = {}
-    for i, (x, y) in enumerate(places):
-        if (x, y) in seen:
-            given = f"pins {seen[x, y]} and {i} both at ({x!r} m, {y!r} m)"
-            raise ValueError(refusal("places", "places of their own", given))
-        seen[x, y] = i
-
-
 def _pairs(places: Iterable[Place], label: str) -> Places:
     try:
         pairs = [(x, y) for x, y in places]
@@ -239,10 +219,3 @@ def _pairs(places: Iterable[Place], label: str) -> Places:
 def _scaled(places: Iterable[tuple[float, float]], scale: float | str) -> Places:
     factor = check("spot_scale", scale)
     return tuple((factor * x, factor * y) for x, y in places)
-
-
-def check_slot(slot_length: float | None, pin_diameter: float) -> None:
-    """Refuse a slot (m) in which the pin has no room."""
-    if slot_length is not None and slot_length < pin_diameter:
-        required = f"at least array.pin_diameter, {pin_diameter!r} m, which moves in it"
-        raise ValueError(refusal("slot_length", required, f"{slot_length!r} m"))

@@ -5,9 +5,10 @@ from __future__ import annotations
 from itertools import pairwise
 from math import copysign, inf
 
-from pindrive.motion.drive import Contact, Drive, check_presses
+from pindrive.motion.drive import Contact, Drive, values_of
 from pindrive.motion.profile import Profile
 from pindrive.motion.release import initial, input_of
+from pindrive.quantities.contradictions import refuse
 
 
 def finger_load(drive: Drive, touch: float | str | Profile | None, begin: float) -> float | Profile:
@@ -24,7 +25,10 @@ def finger_load(drive: Drive, touch: float | str | Profile | None, begin: float)
     if touch is None:
         return 1.0
     given = input_of("touch", touch)
-    usual = check_presses(given, drive.finger.coefficient is not None, drive.touch_force)
+    rows = given.rows if isinstance(given, Profile) else given
+    refuse(values_of(drive) | {"scan.touch": rows}, whole=True)
+    usual = drive.touch_force
+    assert usual
     if not isinstance(given, Profile):
         return given / usual
     return Profile([t - begin for t in given.times], [force / usual for force in given.values])

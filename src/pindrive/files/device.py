@@ -23,7 +23,6 @@ from pindrive.files.keys import (
     DRIVE,
     KEYS,
     NAMES,
-    NUMERIC_KEYS,
     STUDY_KEYS,
     TABLES,
     Tables,
@@ -38,9 +37,7 @@ from pindrive.files.schema import (
     Place,
     Whole,
     complete,
-    contact_problems,
     drive_of,
-    drive_problems,
     over_time,
     read_given,
     release_of,
@@ -50,6 +47,7 @@ from pindrive.motion.drive import Drive
 from pindrive.motion.friction import COEFFICIENTS
 from pindrive.motion.profile import Profile
 from pindrive.motion.release import Release
+from pindrive.quantities.contradictions import problems_of
 from pindrive.quantities.quantity import Rows, counted
 from pindrive.quantities.refusal import quoted, refusal
 from pindrive.quantities.table import warn_of
@@ -402,13 +400,8 @@ def _assembled(
     values, found = complete(given, malformed, names, place, {*meant, *left_out})
     if hand:  # a single release is at the hand's speed then
         values["motion.mouse_velocity"] = values.get("scan.hand_speed")
-    found += contact_problems(values, place)
-    all_known = all(key in values for key in NUMERIC_KEYS if key.partition(".")[0] in names)
-    around = Whole(values) if whole and all_known and not found else None
-    if all_known and not found:
-        found += drive_problems(values, place)
-    if around:
-        found += around.problems(given, place)
+    known = {**given, **dict.fromkeys(malformed)}
+    found += [problem.at(place) for problem in problems_of(known, whole=whole)]
     if problems := [*problems, *found]:
         raise ConfigError(problems)
     try:
@@ -426,7 +419,7 @@ def _assembled(
         given=given,
         tables=tables,
         settings=tuple(settings),
-        whole=around,
+        whole=Whole(values) if whole else None,
     )
     _warn(device, place)
     return device

@@ -5,16 +5,15 @@ The table of quantities has the keys, their units, bounds and defaults.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Iterable, Mapping
+from collections.abc import Callable, Container, Mapping
 from dataclasses import dataclass
 from functools import cache
 from math import inf
 from typing import Any, Final
 
 from pindrive.device.coil import COIL, COIL_NEEDS, Coil
-from pindrive.device.controller import check_band
-from pindrive.device.electromagnet import DIRECT, Electromagnet, check_holds, check_one_way
-from pindrive.device.pin_array import PinArray, check_apart, check_count, check_pins, check_slot
+from pindrive.device.electromagnet import DIRECT, Electromagnet
+from pindrive.device.pin_array import PinArray
 from pindrive.files.keys import (
     DRIVE,
     NUMERIC_KEYS,
@@ -24,56 +23,19 @@ from pindrive.files.keys import (
     number,
     usual_rows,
 )
-from pindrive.motion.drive import (
-    SLOPES,
-    Contact,
-    Drive,
-    check_curve,
-    check_one_kind,
-    check_presses,
-    check_static,
-    check_stops,
-    check_stretch,
-    check_touch,
-    check_within_travel,
-)
-from pindrive.motion.friction import (
-    COEFFICIENTS,
-    normal_force,
-)
+from pindrive.motion.drive import Contact, Drive
+from pindrive.motion.friction import normal_force
 from pindrive.motion.profile import Profile
-from pindrive.motion.release import CONTINUOUS, INPUTS, Release, initial
+from pindrive.motion.release import INPUTS, Release
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import Quantity, Rows
-from pindrive.quantities.refusal import Refusal, quoted, refusal
-from pindrive.quantities.rows import check_increasing, check_slopes, check_times
+from pindrive.quantities.refusal import quoted, refusal
 from pindrive.quantities.table import QUANTITIES
 
 _GRID: Final = ("columns", "rows", "pitch")
 
 Place = Callable[..., str]
 """Place of keys: the command line if it contains a key, otherwise the file."""
-
-
-class Problems(list[str]):
-    """Errors of a device file, a line each."""
-
-    def __init__(self, place: Place) -> None:
-        super().__init__()
-        self._place = place
-
-    def check(self, check: Callable[..., object], *values: object, keys: tuple[str, ...]) -> None:
-        """Add what a check refuses of values, with the place of their keys; the first is named."""
-        try:
-            check(*values)
-        except ValueError as error:
-            said, where = error.args[0], self._place(*keys)
-            if isinstance(said, Refusal):
-                own = said.label.partition("[")[0]
-                named = [key for key in keys if key.endswith(f".{own}")]
-                self.append(said.at(where, (named or keys)[0]))
-            else:
-                self.append(f"{where}: {said}")
 
 
 def read_given(
@@ -164,17 +126,6 @@ def _rows(value: object, quantity: Quantity, key: str, place: str) -> Rows:
                 number(row[1], quantity, examples[1], f"{key}[{i}] {words[1]}", place),
             )
         )
-    if quantity.rows_of == "places":
-        return tuple(rows)
-    label = f"{key}[{{}}] {words[0]}"
-    firsts = [first for first, _ in rows]
-    if quantity.rows_of in SLOPES:
-        check_increasing(firsts, across.unit, where=place, label=label)
-        check_slopes(rows, QUANTITIES[SLOPES[quantity.rows_of]], where=place, label=key)
-    else:
-        no_step = " (a jump would take an infinite force)" if quantity.name in CONTINUOUS else ""
-        check_times(firsts, where=place, label=label, steps=not no_step, why=no_step)
-        check_slopes(rows, QUANTITIES["profile.rate"], where=place, label=key)
     return tuple(rows)
 
 
@@ -230,53 +181,6 @@ def release_of(values: Mapping[str, Value]) -> Release:
     return Release(**given)
 
 
-def contact_problems(values: Mapping[str, Value], place: Place) -> list[str]:
-    """Return the contradictions within [plate] and [finger], as far as their values are known."""
-    problems = Problems(place)
-    for table in ("plate", "finger"):
-        names = (*COEFFICIENTS, *COEFFICIENTS.values())
-        given = [name for name in names if values.get(f"{table}.{name}") is not None]
-        by_coefficient = any(name not in COEFFICIENTS for name in given)
-        keys = tuple(f"{table}.{name}" for name in reversed(given))
-        before = len(problems)
-        problems.check(check_one_kind, given, table, place, keys=keys or (table,))
-        if len(problems) > before:
-            continue
-        of_kinetic, of_static, of_curve = (
-            f"{table}.{name}"
-            for name in (COEFFICIENTS.values() if by_coefficient else COEFFICIENTS)
-        )
-        curve, static, kinetic = (values.get(key) for key in (of_curve, of_static, of_kinetic))
-        if isinstance(curve, tuple):
-            kinetic = curve[0][1] if kinetic is None else kinetic
-            name = of_curve.partition(".")[2]
-            problems.check(check_curve, curve, kinetic, name, keys=(of_curve, of_kinetic))
-        if static is not None and kinetic is not None:
-            keys = of_static, of_kinetic, of_curve
-            problems.check(check_static, static, kinetic, of_static.partition(".")[2], keys=keys)
-        if table == "finger" and given and "finger.touch_force" in values:
-            keys = ("finger.touch_force", *keys)
-            problems.check(check_touch, by_coefficient, values["finger.touch_force"], keys=keys)
-    return problems
-
-
-def drive_problems(values: Mapping[str, Value], place: Place) -> list[str]:
-    """Return the contradictions between the tables, which are consistent in themselves."""
-    finger, stretch = contact_of(values, "finger"), values["motion.skin_stretch"]
-    problems = Problems(place)
-    stops = tuple(f"drive.{name}" for name in ("travel", "stop_stiffness", "stop_damping"))
-    travel, stiffness, damping = (values[key] for key in stops)
-    problems.check(check_stops, travel, stiffness, damping, keys=(*stops[1:], stops[0]))
-    start = ("motion.displacement", "drive.travel")
-    problems.check(check_within_travel, values[start[0]], travel, stiffness, keys=start)
-    load = over_time(values["motion.finger_load"])
-    assert load is not None  # default 1
-    if stretch is not None:
-        stretch_keys = ("motion.skin_stretch", "finger.stiffness")
-        problems.check(check_stretch, stretch, finger, initial(load), keys=stretch_keys)
-    return problems
-
-
 def over_time(value: Value) -> float | Profile | None:
     """A constant, or rows (time, value) as a profile."""
     return Profile(*zip(*value, strict=True)) if isinstance(value, tuple) else value
@@ -297,9 +201,6 @@ class Whole:
         voltage = given.pop("voltage")
         coil = {name: given.pop(name) for name in COIL}
         if all(coil[name] is None for name in COIL_NEEDS):
-            if voltage is not None:
-                required = "given with a coil, by turns, gap, wire_diameter and the like"
-                raise ValueError(refusal("voltage", required, "it alone"))
             return Electromagnet.from_times(**given)
         around = {name: value for name, value in given.items() if name not in DIRECT}
         return Electromagnet.from_coil(Coil(**coil), **around, voltage=voltage)
@@ -319,41 +220,3 @@ class Whole:
         if found["array.places"] is not None:
             found |= dict.fromkeys((f"array.{name}" for name in _GRID), None)
         return found
-
-    def problems(self, given: Container[str], place: Place) -> list[str]:
-        """Return all contradictions; `given` holds the keys that the file gives."""
-        values, problems = self.values, Problems(place)
-        plate_keys = ("plate", "plate.curve", "plate.kinetic")
-        problems.check(check_holds, contact_of(values, "plate"), keys=plate_keys)
-        magnet_keys = tuple(key for key in WHOLE if key.startswith("magnet.") and key in given)
-        problems.check(self._check_magnet, magnet_keys, keys=magnet_keys or ("magnet",))
-        band = values["control.threshold"], values["control.hysteresis"]
-        problems.check(check_band, *band, keys=("control.hysteresis", "control.threshold"))
-        if (places := values["array.places"]) is not None:
-            problems.check(_check_no_grid, given, keys=("array.places",))
-            problems.check(check_apart, places, keys=("array.places",))
-        slot = values["array.slot_length"], values["array.pin_diameter"]
-        problems.check(check_slot, *slot, keys=("array.slot_length", "array.pin_diameter"))
-        if (touch := values["scan.touch"]) is not None:
-            given_by = contact_of(values, "finger").coefficient is not None
-            force = values["finger.touch_force"]
-            keys = ("scan.touch", "finger")
-            problems.check(check_presses, touch, given_by, force, keys=keys)
-        counts = "array.columns", "array.rows"
-        for key in counts:
-            problems.check(check_count, key.partition(".")[2], values[key], keys=(key,))
-        problems.check(check_pins, *(values[key] for key in counts), keys=counts)
-        return problems
-
-    def _check_magnet(self, keys: Iterable[str]) -> None:
-        """Refuse a magnet described by two ways or by half of one, or one that cannot be."""
-        check_one_way({key.partition(".")[2] for key in keys}, "magnet")
-        self.magnet()
-
-
-def _check_no_grid(given: Container[str]) -> None:
-    """Refuse a grid beside places."""
-    for name in _GRID:
-        if f"array.{name}" in given:
-            required = "left out where columns, rows or pitch are given"
-            raise ValueError(refusal("places", required, f"it beside array.{name}"))

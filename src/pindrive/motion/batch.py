@@ -11,11 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from pindrive import _core
 from pindrive.lazy import xr
-from pindrive.motion.drive import Drive, check_one_kind, check_stops
+from pindrive.motion.drive import Drive
 from pindrive.motion.friction import COEFFICIENT_OF, COEFFICIENTS, PRESSED_BY, friction_force
 from pindrive.motion.profile import Profile
 from pindrive.motion.release import Release, check_fits
 from pindrive.quantities.budgets import worker_count
+from pindrive.quantities.contradictions import refuse
 from pindrive.quantities.drive import OR_INFINITE
 from pindrive.quantities.names import Names, number_names
 from pindrive.quantities.quantity import POSITIVE_OR_RIGID, Bounds
@@ -317,7 +318,8 @@ def _friction(drive: Drive, varied: Collection[str]) -> dict[str, float | None]:
         names = [n for pair in COEFFICIENTS.items() for n in pair if f"{table}_{n}" in varied]
         by_coefficient = contact.coefficient is not None
         own = "coefficient" if by_coefficient else "kinetic"
-        check_one_kind([own, *names], table)
+        pressed = ["touch_force"] if table == "finger" and by_coefficient else []
+        refuse({f"{table}.{name}": None for name in (own, *names, *pressed)})
         static = COEFFICIENTS["static"] if by_coefficient else "static"
         found |= {f"{table}_{name}": getattr(contact, name) for name in (own, static)}
         if by_coefficient:
@@ -326,6 +328,12 @@ def _friction(drive: Drive, varied: Collection[str]) -> dict[str, float | None]:
             required = "left out where the finger's friction is given as a force"
             raise ValueError(refusal("touch_force", required, "it"))
     return found
+
+
+def _largest(values: NDArray[np.float64]) -> float | None:
+    """The largest value but for NaN; None without one."""
+    known = values[~np.isnan(values)]
+    return float(known.max()) if known.size else None
 
 
 def _stops(
@@ -338,7 +346,7 @@ def _stops(
     Raises:
         ValueError: A value of the stops lacks the values that it needs.
     """
-    check_stops(*(float(given[n].max(initial=0.0)) if n in given else None for n in _STOPS))
+    refuse({f"drive.{n}": _largest(_allowed(n, given[n])) for n in _STOPS if n in given})
     if "travel" not in given:
         return []
     left_out = {"stop_stiffness": np.array(inf), "stop_damping": np.array(0.0)}

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from functools import partial
 from math import inf, isinf, nan, sqrt
 from typing import Any, Final
 
 from pindrive.motion.friction import COEFFICIENTS, normal_force
+from pindrive.quantities.contradictions import refuse, refuse_contact
 from pindrive.quantities.drive import DRIVE_QUANTITIES, PARTS
 from pindrive.quantities.part import Part
-from pindrive.quantities.quantity import brief
 from pindrive.quantities.refusal import refusal
-from pindrive.quantities.rows import check_increasing, check_slopes, slopes_of
 from pindrive.quantities.value import concise
 
 __all__ = ["Contact", "Drive"]
@@ -79,7 +78,9 @@ class Contact:
             "coefficient_curve": coefficient_curve,
         }
         given = forces | coefficients
-        by_coefficient = check_one_kind([name for name in given if given[name] is not None])
+        by_coefficient = any(value is not None for value in coefficients.values())
+        if by_coefficient and any(value is not None for value in forces.values()):
+            refuse_contact({name: None for name in given if given[name] is not None})
         chosen = coefficients if by_coefficient else forces
         found = dict(zip(chosen, _checked_friction(*chosen, *chosen.values()), strict=True))
         if by_coefficient:
@@ -229,25 +230,14 @@ class Drive:
 
     def _check_together(self) -> None:
         """Validate what follows from the values together; coefficients become forces."""
-        ratios = _TABLE.rows["damping_ratio"].limits
-        if float(f"{self.damping_ratio:.12g}") not in ratios:  # the parts of a ratio are rounded
-            required = f"such that the damping ratio is {ratios.words()}"
-            given = f"{self.damping!r} N*s/m, which makes it {self.damping_ratio:g}"
-            raise ValueError(refusal("damping", required, given))
-        check_stops(self.travel, self.stop_stiffness, self.stop_damping)
         for label, contact in (("plate", self.plate), ("finger", self.finger)):
             if not isinstance(contact, Contact):
                 raise ValueError(refusal(label, "a Contact", repr(contact)))
-            if label == "finger":
-                check_touch(contact.coefficient is not None, self.touch_force)
+        refuse(values_of(self))
+        for label, contact in (("plate", self.plate), ("finger", self.finger)):
             if contact.coefficient is not None:
                 pressed = contact.pressed_by(normal_force(label, partial(getattr, self)))
                 object.__setattr__(self, label, pressed)
-                contact = pressed
-            steepest = max(map(abs, slopes_of(contact.curve or ())), default=0.0)
-            if steepest > ratios.upper * self._critical_damping:  # acts as damping
-                most = f"at most {brief(ratios.upper)} times critical damping"
-                raise ValueError(refusal(f"{label} curve slope", most, f"{steepest:g} N*s/m"))
 
     def replace(self, **changes: Any) -> Drive:
         """A drive with other values of the arguments of `Drive`; the damping stays unless given.
@@ -302,108 +292,17 @@ class Drive:
         return 2.0 * sqrt(self.mass) * sqrt(self.stiffness)
 
 
-def check_touch(by_coefficient: bool, touch_force: float | None) -> None:
-    """Reject a finger coefficient without a touch force (N), and the reverse."""
-    if by_coefficient and touch_force is None:
-        required = "given where a coefficient gives the finger's friction"
-        raise ValueError(refusal("touch_force", required, "none"))
-    if not by_coefficient and touch_force is not None:
-        required = "left out where the finger's friction is given as a force"
-        raise ValueError(refusal("touch_force", required, f"{touch_force!r} N"))
-
-
-def check_presses(touch: object, by_coefficient: bool, touch_force: float | None) -> float:
-    """Refuse a touch force over time where friction does not follow it; the usual one, N."""
-    if by_coefficient and touch_force:
-        return touch_force
-    friction = "no force" if by_coefficient else "given as a force"
-    required = (
-        f"left out where the finger's friction is {friction}; "
-        "it needs finger.coefficient and a finger.touch_force greater than 0 N"
-    )
-    given = f"{touch!r} N" if isinstance(touch, float) else "one over time"
-    raise ValueError(refusal("touch", required, given))
-
-
-def check_stops(travel: float | None, stiffness: float | None, damping: float | None) -> None:
-    """Refuse what describes end stops (m, N/m, N*s/m) without what they need."""
-    for name, value, unit in (
-        ("stop_stiffness", stiffness, "N/m"),
-        ("stop_damping", damping, "N*s/m"),
-    ):
-        if value is not None and travel is None:
-            required = "left out without travel, as there are no end stops"
-            raise ValueError(refusal(name, required, f"{value!r} {unit}"))
-    if damping and stiffness is None:
-        required = "left out for rigid end stops; give stop_stiffness too"
-        raise ValueError(refusal("stop_damping", required, f"{damping!r} N*s/m"))
-
-
-def check_within_travel(displacement: float, travel: float | None, stiffness: float | None) -> None:
-    """Refuse a displacement (m) beyond rigid end stops."""
-    if travel is not None and stiffness is None and abs(displacement) > travel:
-        required = f"at most travel, {travel!r} m, either way"
-        raise ValueError(refusal("displacement", required, f"{displacement!r} m"))
-
-
-def check_stretch(stretch: float, finger: Contact, load: float) -> None:
-    """Refuse a stretch (m) that the finger's skin cannot have under a load."""
-    given = f"{stretch!r} m"
-    if finger.rigid:
-        raise ValueError(refusal("skin_stretch", "left out for a rigid finger", given))
-    largest = finger.static_friction * load / finger.stiffness
-    if abs(stretch) > largest:
-        required = f"at most static friction over stiffness, {largest!r} m, either way"
-        raise ValueError(refusal("skin_stretch", required, given))
-
-
-def check_one_kind(
-    given: Sequence[str], table: str = "", where: Callable[[str], str] = lambda _: ""
-) -> bool:
-    """Refuse friction given both by forces and by coefficients; whether it is by coefficients.
-
-    Args:
-        given: Names of the given arguments.
-        table: Table of the device file, for messages.
-        where: Place of a key, for messages.
-    """
-    forces, coefficients = (
-        [name for name in names if name in given]
-        for names in zip(*COEFFICIENTS.items(), strict=True)
-    )
-    if not (forces and coefficients):
-        return bool(coefficients)
-    one, other = (f"{table}.{names[0]}".removeprefix(".") for names in (coefficients, forces))
-    required, both = f"left out where {other} gives the friction as a force", [one, other]
-    if where(one) != where(other):
-        both = [f"{key} ({where(key)})" for key in both]
-    raise ValueError(refusal(one, required, f"both, {' and '.join(both)}"))
-
-
-def check_static(static: float, kinetic: float, name: str = "static") -> None:
-    """Refuse static friction below kinetic friction, both forces (N) or coefficients."""
-    unit = _unit_of(name)
-    if static < kinetic:
-        required = f"at least the kinetic {_NOUN[unit]}, {kinetic!r}{unit}"
-        raise ValueError(refusal(name, required, f"{static!r}{unit}"))
-
-
-def check_curve(rows: Sequence[tuple[float, float]], kinetic: float, name: str = "curve") -> None:
-    """Refuse rows (m/s, N or coefficients) that do not start at speed 0 with the kinetic one."""
-    unit = _unit_of(name)
-    (speed, value), what = rows[0], "force" if unit else "coefficient"
-    if speed != 0.0:
-        raise ValueError(refusal(f"{name}[0] speed", "0 m/s", f"{speed!r} m/s"))
-    if value != kinetic:
-        required = f"the kinetic {_NOUN[unit]}, {kinetic!r}{unit}"
-        raise ValueError(refusal(f"{name}[0] {what}", required, f"{value!r}{unit}"))
-
-
-_NOUN: Final = {" N": "friction", "": "friction coefficient"}
-
-
-def _unit_of(name: str) -> str:
-    return "" if "coefficient" in name else " N"
+def values_of(drive: Drive) -> dict[str, Any]:
+    """The given values of a drive by the keys of a device file, friction as it is given."""
+    own = ("mass", "stiffness", "damping", "travel", "stop_stiffness", "stop_damping")
+    values = {f"drive.{name}": getattr(drive, name) for name in own}
+    values |= {"plate.preload": drive.preload, "finger.touch_force": drive.touch_force}
+    for table, contact in (("plate", drive.plate), ("finger", drive.finger)):
+        names = COEFFICIENTS if contact.coefficient is None else COEFFICIENTS.values()
+        values |= {f"{table}.{name}": getattr(contact, name) for name in names}
+    if not drive.finger.rigid:
+        values["finger.stiffness"] = drive.finger.stiffness
+    return {key: value for key, value in values.items() if value is not None}
 
 
 def _checked_friction(
@@ -415,11 +314,11 @@ def _checked_friction(
         kind = "a number in N" if of_kinetic == "kinetic" else "a plain number"
         raise ValueError(refusal(of_kinetic, f"{kind} unless a curve is given", "None"))
     at_rest = rows[0][1] if kinetic is None and rows else check(of_kinetic, kinetic)
-    if rows:
-        check_curve(rows, at_rest, of_curve)
     if static is not None:
         static = check(of_static, static)
-        check_static(static, at_rest, of_static)
+    if rows or static is not None:
+        values = {of_kinetic: at_rest, of_static: static, of_curve: rows}
+        refuse_contact({name: value for name, value in values.items() if value is not None})
     return at_rest, static, rows
 
 
@@ -437,11 +336,4 @@ def _checked_curve(
         [check(f"curve.{part}", row[j], label=f"{name}[{i}] {part}") for i, row in enumerate(rows)]
         for j, part in enumerate(("speed", what))
     )
-    check_increasing(speeds, "m/s", label=f"{name}[{{}}] speed")
-    found = tuple(zip(speeds, values, strict=True))
-    check_slopes(found, _TABLE.rows[SLOPES[name]], label=name)
-    return found
-
-
-SLOPES: Final = {"curve": "curve.slope", "coefficient_curve": "curve.coefficient_slope"}
-"""Slopes between the points of a friction curve."""
+    return tuple(zip(speeds, values, strict=True))

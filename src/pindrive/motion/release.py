@@ -7,12 +7,9 @@ from math import inf, nan
 from typing import Any, Final
 
 from pindrive.motion.core_numbers import CoreNumbers, DriveNumbers, Rows
-from pindrive.motion.drive import (
-    Drive,
-    check_stretch,
-    check_within_travel,
-)
+from pindrive.motion.drive import Drive, values_of
 from pindrive.motion.profile import Profile, check_continuous
+from pindrive.quantities.contradictions import refuse
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.table import QUANTITIES, check, default
 from pindrive.quantities.value import concise
@@ -138,9 +135,17 @@ def check_fits(drive: Drive, release: Release) -> None:
         raise ValueError(refusal("release", "a Release", repr(release)))
     if not drive.plate.rigid:
         raise ValueError(refusal("plate stiffness", "infinite", f"{drive.plate.stiffness!r} N/m"))
-    check_within_travel(release.displacement, drive.travel, drive.stop_stiffness)
+    if drive.travel is not None or release.skin_stretch is not None:
+        refuse(values_of(drive) | _start_of(release))
+
+
+def _start_of(release: Release) -> dict[str, Any]:
+    """The values of a start that others limit, by key."""
+    start = {"motion.displacement": release.displacement}
     if release.skin_stretch is not None:
-        check_stretch(release.skin_stretch, drive.finger, initial(release.finger_load))
+        start["motion.skin_stretch"] = release.skin_stretch
+        start["motion.finger_load"] = initial(release.finger_load)
+    return start
 
 
 def core_numbers(drive: Drive, release: Release, duration: float | None) -> CoreNumbers:

@@ -11,10 +11,9 @@ from pindrive.motion.core_numbers import CoreNumbers
 from pindrive.motion.drive import Drive
 from pindrive.motion.motion import Motion, solve
 from pindrive.motion.release import Release, check_fits
+from pindrive.quantities.contradictions import refuse
 from pindrive.quantities.drive import DRIVE_QUANTITIES
-from pindrive.quantities.quantity import brief
-from pindrive.quantities.refusal import refusal
-from pindrive.quantities.table import QUANTITIES, check, warn_of
+from pindrive.quantities.table import check, warn_of
 
 _SEEN = {quantity.name: quantity.seen for quantity in DRIVE_QUANTITIES if quantity.seen}
 _GLANCE = (
@@ -83,7 +82,8 @@ def simulated(
     check_fits(drive, release)
     end = None if duration is None else check("duration", duration)
     if end is not None:
-        check_phase(end, drive.natural_frequency)
+        keys = ("drive.mass", "drive.stiffness", "motion.duration")
+        refuse(dict(zip(keys, (drive.mass, drive.stiffness, end), strict=True)))
     return solve(drive, release, end, check("settling_band", settling_band))
 
 
@@ -95,15 +95,6 @@ def motion_of(device: pindrive.DeviceFile) -> Motion:
         duration=device.duration,
         settling_band=device.settling_band,
     )
-
-
-def check_phase(duration: float, natural_frequency: float) -> None:
-    """Refuse a duration (s) in which the phase grows beyond what doubles tell apart."""
-    bounds = QUANTITIES["phase"].limits
-    if duration * natural_frequency > bounds.upper:
-        longest, phase = brief(bounds.upper / natural_frequency), brief(bounds.upper)
-        required = f"at most {longest} s, {phase} over the natural frequency"
-        raise ValueError(refusal("duration", required, f"{duration!r} s"))
 
 
 def _plausible(numbers: CoreNumbers) -> bool:

@@ -41,9 +41,6 @@ class Budget:
             raise ValueError(refusal(self.counted, f"at most {self.most}", shown, where))
 
 
-PINS: Final = Budget(
-    "the pins of the array", 10_000, "each is a motion of its own: a full page of Braille has 6000"
-)
 SAMPLES_OF_CONTROL: Final = Budget(
     "the samples of the control block",
     20_000_000,

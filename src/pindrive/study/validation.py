@@ -7,14 +7,11 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from pindrive.device.electromagnet import check_one_way
-from pindrive.device.pin_array import check_count
 from pindrive.files.keys import NUMERIC_KEYS
-from pindrive.files.schema import table_of
 from pindrive.motion.coefficients import KINETIC, within
-from pindrive.motion.drive import check_one_kind
 from pindrive.motion.friction import COEFFICIENTS, normal_force
 from pindrive.quantities import budgets
+from pindrive.quantities.contradictions import problems_of
 from pindrive.quantities.table import QUANTITIES
 from pindrive.study.design import COUNTS, Columns
 from pindrive.study.distributions import (
@@ -72,14 +69,8 @@ def _unreadable(study: Study) -> Iterator[str]:
 def _among(device: DeviceFile, axes: Mapping[str, Axis]) -> Iterator[str]:
     if {"drive.damping", "drive.damping_ratio"} <= axes.keys():
         yield "vary drive.damping or drive.damping_ratio, not both"
-    for table in ("plate", "finger"):
-        names = [name for pair in COEFFICIENTS.items() for name in pair]
-        varied = [name for name in names if f"{table}.{name}" in axes]
-        own = [name for name in names if f"{table}.{name}" in device.given]
-        try:
-            check_one_kind([*own, *varied], table)
-        except ValueError as error:
-            yield str(error)
+    given = dict.fromkeys((*device.given, *axes))
+    yield from (problem.words for problem in problems_of(given, whole=True))
     drive = device.drive
     if "finger.touch_force" in axes and drive.finger.coefficient is None:
         yield "finger.touch_force cannot be varied where finger.kinetic is a force"
@@ -100,16 +91,6 @@ def _in_words(keys: tuple[str, ...]) -> str:
 
 def _around(study: Study, axes: Mapping[str, Axis]) -> Iterator[str]:
     """Return the errors of the tables around the drive."""
-    magnet = {name for table, _, name in (key.partition(".") for key in axes) if table == "magnet"}
-    if magnet:
-        try:
-            check_one_way(magnet | table_of(study.device.given, "magnet").keys(), table="magnet")
-        except ValueError as error:
-            yield str(error)
-    if "array.places" in study.device.given:
-        for key in ("array.columns", "array.rows", "array.pitch"):
-            if key in axes:
-                yield f"{key} cannot be varied beside array.places"
     if "scan.touch" in axes and study.device.drive.finger.coefficient is None:
         yield "scan.touch cannot be varied where finger.kinetic is a force"
     if "finger.touch_force" in axes and "scan.touch" in study.device.given:
@@ -122,10 +103,11 @@ def _around(study: Study, axes: Mapping[str, Axis]) -> Iterator[str]:
             try:
                 budgets.AXIS_VALUES.check(axis.count, key)
                 few = axis.values if isinstance(axis, Listed) else axis.at(np.arange(axis.count))
-                for value in few:
-                    check_count(key.partition(".")[2], float(value), label=key)
             except ValueError as error:
                 yield str(error)
+                continue
+            for value in few:
+                yield from (p.words for p in problems_of({key: float(value)}, whole=True))
 
 
 _PAIRS: Final = [

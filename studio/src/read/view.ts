@@ -1,5 +1,5 @@
 // The view "Read": a page, a hand that the person moves, and what the pins do under it.
-import type { Row } from "../core";
+import type { Core, Row } from "../core";
 import { type Design, designOf } from "../design";
 import { DeviceError } from "../device";
 import { button, card, download, fileName, h, menu, option } from "../dom";
@@ -79,6 +79,7 @@ export class ReadView {
   private readonly tasks: HTMLElement[];
 
   constructor(
+    private readonly core: Core,
     wasm: ArrayBuffer,
     private design: Design,
     private readonly showRelease: (design: Design) => void,
@@ -352,7 +353,7 @@ export class ReadView {
 
   /** Shows a reading that was saved, and repeats it. */
   private show(reading: SavedReading, file: string): void {
-    const design = designOf({ text: reading.device, file, rows: {} });
+    const design = designOf(this.core, { text: reading.device, file, rows: {} });
     this.paper.show(reading.page, reading.title);
     this.session.setPage(this.paper.raster);
     this.open(design);
@@ -383,7 +384,8 @@ export class ReadView {
     const { name } = file;
     try {
       if (/\.json$/i.test(name)) this.show(await readingOf(await file.text()), name);
-      else if (/\.toml$/i.test(name)) this.open(designOf({ text: await file.text(), file: name, rows: {} }));
+      else if (/\.toml$/i.test(name))
+        this.open(designOf(this.core, { text: await file.text(), file: name, rows: {} }));
       else await this.takePicture(file);
     } catch (error) {
       this.say(error instanceof DeviceError ? error.message : `${name}: ${(error as Error).message}`);
