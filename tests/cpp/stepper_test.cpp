@@ -243,6 +243,29 @@ void events() {
   expect(stepper.tau() > 0, "nor one that differs by rounding");
 }
 
+/// Inputs that are set once more in one instant: the segments tell all transitions, one after the other.
+void set_twice() {
+  pd::Stepper<double> stepper(drive, release);
+  expect(stepper.step(1), "a pin at rest on the finger");
+  std::vector<pd::Segment<double>> segments;
+  const auto keep = [&](const auto& segment, const auto&) {
+    segments.push_back(segment);
+    return true;
+  };
+  pd::InputLines<double> lines = stepper.inputs();
+  lines.force = {1, 0};
+  stepper.set(lines, infinity, keep);
+  expect(segments.size() == 1 && segments[0].event.finger == pd::Transition::slip, "is pushed");
+  lines.force = {0, 0};
+  stepper.set(lines, infinity, keep);
+  expect(stepper.mode().finger == pd::ContactState::stick, "... and is not, in the same instant");
+  expect(segments.size() == 2 && segments[1].event.finger == pd::Transition::stick,
+         "the second change has its event");
+  expect(segments[1].begin == 1 && segments[1].end == 1, "... at the end of a segment of no time");
+  stepper.set(lines, 2.0, keep);
+  expect(segments.size() == 2, "a change without a transition has none");
+}
+
 /// Events at rigid and elastic stops in steps; a jerk of the housing, which throws the pin from one rigid stop.
 void at_the_stops() {
   for (const double stiffness : {infinity, 2000.0}) {
@@ -404,6 +427,7 @@ int main() {
   the_same_as_in_one_run();
   segments_between_rows();
   events();
+  set_twice();
   at_the_stops();
   a_jump();
   across_and_back();

@@ -9,51 +9,10 @@ import pytest
 from numpy.typing import NDArray
 
 from oracle.coil_course import ReferenceMagnet, decide
-from pindrive.device import Coil, CoilState, Commands, Electromagnet, HandPath, Scene, scan
-from random_scans import RandomScan
+from pindrive.device import CoilState, Commands, HandPath, Scene, scan
+from random_scans import RandomScan, random_magnet
 
 PARTS = ("begins", "starts", "targets", "constants", "inductances")
-
-
-def random_magnet(rng: np.random.Generator) -> Electromagnet | None:
-    """By times or by a coil, with pulses, voltage steps and a gap that opens; None: impossible."""
-
-    def between(low: float, high: float) -> float:
-        return float(np.exp(rng.uniform(np.log(low), np.log(high))))
-
-    given: dict[str, Any] = {
-        "residual": float(rng.choice([0.0, 0.005])),
-        "deviation": between(1e-5, 1e-2),
-    }
-    if rng.random() < 0.5:
-        given |= {"pwm_frequency": between(100.0, 3000.0), "pwm_duty": rng.uniform(0.1, 0.9)}
-    if rng.random() < 0.3:
-        return Electromagnet(
-            hold_force=between(0.1, 20.0),
-            rise_constant=between(1e-4, 1e-2),
-            fall_constant=between(1e-4, 1e-2),
-            saturation=float(rng.choice([1.0, rng.uniform(0.1, 1.0)])),
-            **given,
-        )
-    opens = rng.random() < 0.5
-    coil = Coil(
-        turns=250,
-        pole_area=between(1e-6, 5e-6),
-        gap=between(2e-5, 2e-4),
-        wire_diameter=between(4e-5, 2e-4),
-        turn_length=0.0088,
-        supply_voltage=between(0.5, 10.0),
-        release_resistance=float(rng.choice([0.0, between(1.0, 100.0)])),
-        lift=between(1e-5, 1e-4) if opens else None,
-        closing_force=0.02 if opens else None,
-    )
-    volts = coil.supply_voltage
-    steps = [(0.0, volts), (0.003, 0.5 * volts), (0.02, 0.7 * volts)]
-    voltage = None if "pwm_duty" in given or rng.random() < 0.5 else steps
-    try:
-        return Electromagnet.from_coil(coil, voltage=voltage, **given)
-    except ValueError:  # the gap would never close, or never open
-        return None
 
 
 def test_currents_and_pulls_of_random_magnets() -> None:

@@ -273,6 +273,11 @@ class Stepper {
     if (ends) {
       segment_.event = event;
       goes_on(sink, segment_, evolution_.pin.state);
+    } else if (!same_mode(segment_.mode, evolution_.pin.mode())) {
+      // Inputs set once more in one instant: the mode that was selected in between ends at once.
+      segment_.event = evolution_.transitions(segment_.mode);
+      segment_.end = evolution_.pin.time;
+      goes_on(sink, segment_, evolution_.pin.state);
     }
     evolution_.begin(segment_);
     tau_ = evolution_.earliest(segment_.flow);
