@@ -133,7 +133,7 @@ def print_study(count: int) -> None:
 
 def print_stream() -> None:
     """A millisecond of the reader under a live hand, by `stream.c`."""
-    sources = ("scan", "device", "device_parameters", "drive", "stepper")
+    sources = ("scan", "contradictions", "device", "device_parameters", "drive", "stepper")
     with TemporaryDirectory() as folder:
         c, program = Path(folder, "stream.o"), Path(folder, "stream")
         capi = f"-I{ROOT / 'capi'}"

@@ -1,7 +1,8 @@
 """200 random devices with all their parts, against the replaced evaluation, coil and control block.
 
-Coils by their construction or times, pulses, voltage steps, gaps that open, heat; rigid and compliant
-fingers that press over time; end stops; oblique, recorded and straight hands; states to go on from.
+Coils by their construction or times, pulses, voltage steps, gaps that open, heat; rigid and
+compliant fingers that press over time; end stops; oblique, recorded and straight hands; states to
+go on from.
 """
 
 from __future__ import annotations
