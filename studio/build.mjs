@@ -7,14 +7,13 @@ import { build } from "esbuild";
 const [wasm, page] = process.argv.slice(2);
 const LARGEST = 520_000; // bytes of the whole page
 
-async function bundle(entry, format, define = {}) {
+async function bundle(entry, format) {
   const { outputFiles } = await build({
     entryPoints: [entry],
     bundle: true,
     minify: true,
     write: false,
     format,
-    define,
     target: "es2022",
     charset: "utf8",
     legalComments: "eof",
@@ -37,13 +36,10 @@ function packed(bytes) {
   return deflateRawSync(bytes, { level: 9 }).toString("base64");
 }
 
-const worker = await bundle("src/mapworker.ts", "iife");
-const readWorker = await bundle("src/read/readworker.ts", "iife");
-const define = { MAP_WORKER: JSON.stringify(worker), READ_WORKER: JSON.stringify(readWorker) };
 const parts = {
   STYLE: await style("uplot/dist/uPlot.min.css", "src/style.css"),
   CORE: packed(readFileSync(wasm)),
-  PROGRAM: packed(await bundle("src/main.ts", "esm", define)),
+  PROGRAM: packed(await bundle("src/main.ts", "iife")),
   BOOT: await bundle("src/boot.ts", "esm"),
 };
 const html = readFileSync("src/index.html", "utf8").replace(

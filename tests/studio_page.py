@@ -8,7 +8,12 @@ from typing import Any
 import pindrive as pd
 from command import EXAMPLE
 
-FRAMES = "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
+FRAMES = """async () => {
+  const frames = () => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)));
+  await frames();
+  await window.pindrive.page?.settled();
+  await frames();
+}"""
 VALUES = "pindrive.page.state.designs[pindrive.page.state.current].values"
 
 

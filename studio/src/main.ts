@@ -7,6 +7,7 @@ import { Page } from "./page";
 import { ReadView } from "./read/view";
 import { currentDesign, fromHash, initialState } from "./state";
 import { TABLES } from "./table";
+import { type Program, serve } from "./thread";
 
 const READ = "#read";
 
@@ -20,7 +21,7 @@ class Studio {
 
   constructor(
     readonly core: Core,
-    private readonly wasm: ArrayBuffer,
+    private readonly program: Program,
   ) {
     const place = document.getElementById("page")!;
     const read = document.createElement("div");
@@ -42,7 +43,7 @@ class Studio {
       if (state) this.page.change(state, "");
       return;
     }
-    this.page = new Page(this.core, this.wasm, state ?? initialState(this.core));
+    this.page = new Page(this.core, this.program, state ?? initialState(this.core));
     this.page.mount(this.places.page);
     if (given && !state) this.page.load(given, true);
   }
@@ -53,7 +54,7 @@ class Studio {
     const whole = current && Object.keys(current.around).length ? current : this.givenWhole();
     if (!this.read) {
       const design = whole ?? designOf(this.core, { text: TABLES.reader, file: "the reader", rows: {} });
-      this.read = new ReadView(this.core, this.wasm, design, (release) => this.showDesign(release));
+      this.read = new ReadView(this.core, this.program, design, (release) => this.showDesign(release));
       this.places.read.append(this.read.element);
     } else if (whole && whole !== this.opened) this.read.open(whole);
     this.opened = whole;
@@ -87,10 +88,10 @@ class Studio {
   }
 }
 
-/** Shows the page; `wasm` is the core. */
-export async function begin(wasm: ArrayBuffer): Promise<void> {
-  const core = await Core.load(wasm);
-  const studio = new Studio(core, wasm);
+/** Shows the page. */
+async function begin(program: Program): Promise<void> {
+  const core = await Core.load(program.wasm);
+  const studio = new Studio(core, program);
   await studio.show(location.hash);
   window.addEventListener("hashchange", () => void studio.show(location.hash));
   // For scripts in the console, and tests: the core, and the page with its state.
@@ -107,3 +108,9 @@ export async function begin(wasm: ArrayBuffer): Promise<void> {
   Object.assign(globalThis, { pindrive: tested });
   document.documentElement.dataset.ready = "";
 }
+
+export type Begin = typeof begin;
+
+if (typeof document === "undefined")
+  serve(); // in a thread of the page
+else Object.assign(globalThis, { begin });

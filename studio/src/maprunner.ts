@@ -1,43 +1,27 @@
-// The map kept up to date: the newest task goes to a thread of its own as soon as that is idle.
+// The map kept up to date, by a thread of its own.
 
-import type { Core } from "./core";
 import { axesOf, mapTask } from "./map";
-import { computeMap, type MapResult, type MapTask } from "./mapgrid";
+import type { MapResult, MapTask } from "./mapgrid";
 import { MapView } from "./mapview";
 import { currentDesign, type State } from "./state";
 import type { Look } from "./theme";
-
-declare const MAP_WORKER: string; // the text of mapworker.ts, which the build puts here
+import { Newest, type Program, Thread } from "./thread";
 
 export class MapRunner {
-  /** The last map, and what was asked for it. */
+  /** The last map. */
   last: MapResult | null = null;
+  /** The task of which the thread was asked last. */
   task: MapTask | null = null;
   private readonly view: MapView;
-  private worker: Worker | null = null;
-  /** True while the thread has not responded. */
-  busy = false;
-  private next: (() => MapTask) | null = null;
+  readonly newest: Newest<"map">;
   private state: State | null = null;
 
-  constructor(
-    private readonly core: Core,
-    wasm: ArrayBuffer,
-    look: Look,
-    choose: (point: Readonly<Record<string, number>>) => void,
-  ) {
+  constructor(program: Program, look: Look, choose: (point: Readonly<Record<string, number>>) => void) {
     this.view = new MapView(look, (x, y) => {
       const { map } = this.state!;
       choose({ [map.x]: x, [map.y]: y });
     });
-    try {
-      this.worker = new Worker(URL.createObjectURL(new Blob([MAP_WORKER], { type: "text/javascript" })));
-      this.worker.addEventListener("message", ({ data }: MessageEvent<MapResult>) => this.answered(data));
-      this.worker.addEventListener("error", () => this.failed());
-      this.worker.postMessage({ wasm });
-    } catch {
-      this.worker = null;
-    }
+    this.newest = new Newest(new Thread(program), "map");
   }
 
   get element(): HTMLElement {
@@ -66,39 +50,21 @@ export class MapRunner {
       limited: limits.length > 0,
       at: [values[x] as number, values[y] as number],
     });
-    this.next = () => mapTask(values, x, y, axes, state.number, limits);
     this.view.element.dataset.stale = "";
-    setTimeout(() => this.send()); // after what is seen at once
-  }
-
-  private send(): void {
-    if (this.busy || !this.next) return;
-    const task = this.next();
-    this.task = task;
-    this.next = null;
-    if (this.worker) {
-      this.busy = true;
-      this.worker.postMessage({ task });
-    } else {
-      this.answered(computeMap(this.core, task));
-    }
-  }
-
-  /** Without its thread, the map is computed here. */
-  private failed(): void {
-    this.worker = null;
-    const unanswered = this.busy ? this.task : null;
-    this.busy = false;
-    this.next ??= unanswered && (() => unanswered);
-    this.send();
+    const task = (): MapTask => {
+      this.task = mapTask(values, x, y, axes, state.number, limits);
+      return this.task;
+    };
+    const failed = (error: Error): void => {
+      this.view.element.dataset.failed = error.message;
+    };
+    setTimeout(() => this.newest.ask(task, (result) => this.answered(result), failed)); // after what is seen at once
   }
 
   private answered(result: MapResult): void {
-    this.busy = false;
     this.last = result;
     this.view.setResult(result);
     this.view.element.dataset.took = result.took.toFixed(3);
-    if (!this.next) delete this.view.element.dataset.stale;
-    this.send();
+    if (!this.newest.waits) delete this.view.element.dataset.stale;
   }
 }

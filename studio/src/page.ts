@@ -1,14 +1,13 @@
 // The page: the state, what is computed of it at each change, and the parts that show it.
 import { Animation } from "./animation";
 import { Charts } from "./charts";
-import { type Core, CoreError } from "./core";
+import type { Core } from "./core";
 import { type Design, withValue } from "./design";
 import { Designs } from "./designs";
 import { DeviceError, decodeText, readDevice } from "./device";
 import { button, card, download, fileName, h, menu, option } from "./dom";
 import { figureSvg, pngOf } from "./figure";
 import { choose, type Given } from "./files";
-import { fit, fitOffset } from "./fit";
 import { FitPanel } from "./fitpanel";
 import type { Values } from "./friction";
 import { MapControls, mapKeys } from "./mapcontrols";
@@ -19,17 +18,21 @@ import { PhasePlane } from "./phaseplane";
 import { Player } from "./player";
 import { givenOf, PRESETS } from "./presets";
 import { RecordingError, readRecording } from "./recording";
-import { Bars, EventsTable, effects, NumbersTable, sentence } from "./results";
-import { simulateAll } from "./sample";
+import { Bars, EventsTable, NumbersTable, sentence } from "./results";
 import { currentDesign, History, type State, toHash, withDesign } from "./state";
 import { NUMBERS, TABLES } from "./table";
 import { currentLook, type Scheme, setScheme } from "./theme";
-import { currentCurves, currentValues, type Line, type Overlay, type View } from "./view";
+import { Newest, type Program, Stopped, Thread } from "./thread";
+import { currentCurves, type Line, type Overlay, type View } from "./view";
+import type { Answer, MotionsFound, Task } from "./work";
 import { deviceFile, eventsCsv, samplesCsv } from "./write";
+
+const LONG = 300; // ms after which a simulation is said to take long
+const STOPPED = "Stopped. A change of a value simulates again.";
 
 export class Page {
   readonly history: History;
-  view!: View;
+  view: View;
   private overlay: Overlay | null = null;
   private look = currentLook();
   private asked = false;
@@ -49,6 +52,16 @@ export class Page {
   private readonly events = new EventsTable((time) => this.setCursor(time));
   private readonly bars = new Bars();
   private readonly map: MapRunner;
+  private readonly thread: Thread;
+  private readonly motions: Newest<"motions">;
+  private busyTimer = 0;
+  /** Shown while a simulation takes long. */
+  private readonly busy = h(
+    "p",
+    { id: "busy", role: "status", hidden: true },
+    "Simulating a long motion … ",
+    button("Stop", "Stop the simulation", () => this.thread.stop()),
+  );
   private readonly fitting: FitPanel;
   private readonly words = h("p", { id: "summary", role: "status" });
   private readonly signs = stopSigns();
@@ -58,10 +71,13 @@ export class Page {
 
   constructor(
     readonly core: Core,
-    wasm: ArrayBuffer,
+    program: Program,
     state: State,
   ) {
     this.history = new History(state);
+    this.view = { state, lines: [], end: 1e-3, overlay: null };
+    this.thread = new Thread(program);
+    this.motions = new Newest(this.thread, "motions");
     this.charts = new Charts(this.look, { cursor: (time) => this.setCursor(time, true) });
     this.phase = new PhasePlane(this.look);
     this.animation = new Animation(this.look, (position) =>
@@ -71,7 +87,7 @@ export class Page {
       (time) => this.setCursor(time),
       () => ({ curves: currentCurves(this.view), end: this.view.end }),
     );
-    this.map = new MapRunner(core, wasm, this.look, (point) =>
+    this.map = new MapRunner(program, this.look, (point) =>
       this.setValues(
         Object.entries(point).reduce((values, [key, value]) => withValue(values, key, value), this.values),
         "map",
@@ -81,12 +97,8 @@ export class Page {
       open: () => choose(".csv,.txt", (file) => void this.takeFile(file)),
       remove: () => this.setOverlay(null),
       offset: (offset) => this.setOverlay({ ...this.overlay!, offset }),
-      fitOffset: () =>
-        this.setOverlay({
-          ...this.overlay!,
-          offset: fitOffset(this.core, this.overlay!.recording, this.values),
-        }),
-      fit: (keys, freeOffset) => this.fit(keys, freeOffset),
+      fitOffset: () => void this.fitOffset(),
+      fit: (keys, freeOffset) => void this.fit(keys, freeOffset),
     });
     document.addEventListener("keydown", (event) => this.key(event));
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.setLook());
@@ -109,7 +121,15 @@ export class Page {
       h(
         "div",
         { class: "column" },
-        card("curves", "Motion", this.words, this.player.element, this.charts.element, legend(this.signs)),
+        card(
+          "curves",
+          "Motion",
+          this.words,
+          this.busy,
+          this.player.element,
+          this.charts.element,
+          legend(this.signs),
+        ),
         card("bars-card", "Derivatives", this.bars.element),
         card("events", "Events", this.events.element),
       ),
@@ -228,28 +248,55 @@ export class Page {
     }
   }
 
-  private fit(keys: readonly string[], freeOffset: boolean): void {
+  private async fitOffset(): Promise<void> {
+    const { recording } = this.overlay!;
+    const offset = await this.waited("offset", { recording, values: this.values });
+    if (offset !== null) this.setOverlay({ recording, offset });
+  }
+
+  private async fit(keys: readonly string[], freeOffset: boolean): Promise<void> {
     if (!this.overlay || (!keys.length && !freeOffset)) {
       this.say("choose at least one parameter, or the time of the release, to be fitted");
       return;
     }
+    const found = await this.waited("fit", { ...this.overlay, values: this.values, keys, freeOffset });
+    if (!found) return;
+    this.overlay = { ...this.overlay, offset: found.offset };
+    this.fitting.setResult(found);
+    this.setValues(found.values, "");
+    this.say("");
+  }
+
+  /** The answer of the thread to a task; null with a message if there is none. */
+  private async waited<K extends "fit" | "offset">(kind: K, task: Task<K>): Promise<Answer<K> | null> {
+    this.showBusy();
     try {
-      const found = fit(
-        this.core,
-        this.overlay.recording,
-        this.values,
-        keys,
-        this.overlay.offset,
-        freeOffset,
-      );
-      this.overlay = { ...this.overlay, offset: found.offset };
-      this.fitting.setResult(found);
-      this.setValues(found.values, "");
-      this.say("");
+      return await this.thread.ask(kind, task);
     } catch (error) {
-      if (!(error instanceof CoreError)) throw error;
-      this.say(error.message);
+      this.say(error instanceof Stopped ? "the fit was stopped" : (error as Error).message);
+      return null;
+    } finally {
+      this.hideBusy();
     }
+  }
+
+  /** Shows that a computation takes long, if it does, with a button that stops it. */
+  private showBusy(): void {
+    clearTimeout(this.busyTimer);
+    this.busyTimer = window.setTimeout(() => {
+      this.busy.hidden = false;
+    }, LONG);
+  }
+
+  private hideBusy(): void {
+    clearTimeout(this.busyTimer);
+    this.busy.hidden = true;
+  }
+
+  /** Resolves when what was changed is simulated and drawn. */
+  async settled(): Promise<void> {
+    while (this.asked) await new Promise((drawn) => requestAnimationFrame(drawn));
+    await this.motions.settled();
   }
 
   private step(which: "undo" | "redo"): void {
@@ -285,33 +332,28 @@ export class Page {
     });
   }
 
-  /** Computes everything anew and draws it, but for the map, whose thread answers later. */
+  /** Shows the state, and has the thread simulate it; what follows is drawn when it answers. */
   render(): void {
-    const state = this.settled(this.state);
+    const state = this.settledAxes(this.state);
     this.history.replace(state);
-    const { lines, end } = this.lines(state);
-    this.history.replace({ ...state, cursor: Math.min(state.cursor, end) });
-    this.view = { state: this.state, lines, end, overlay: this.overlay };
-    this.charts.update(this.view);
-    this.phase.update(this.view);
-    this.animation.update(this.view);
-    this.player.update(this.view);
-    this.numbers.update(this.view);
-    this.events.update(this.view);
-    this.panel.update(currentValues(this.view));
-    this.signs.hidden = !("drive.travel" in currentValues(this.view));
+    const { values } = currentDesign(state);
+    this.panel.update(values);
+    this.signs.hidden = !("drive.travel" in values);
     this.designs.update(state, this.look);
     this.controls.update(state);
-    this.fitting.update(currentValues(this.view), this.overlay);
-    this.words.textContent = sentence(this.view, (status) => this.core.statusText(status));
-    const curves = currentCurves(this.view);
-    const number = NUMBERS.get(state.number)!;
-    this.bars.update(
-      curves ? effects(this.core, currentValues(this.view), state.number, curves.duration) : [],
-      number,
-      curves?.numbers[state.number] ?? NaN,
-    );
+    this.fitting.update(values, this.overlay);
     this.map.update(state);
+    const shown = shownLines(state);
+    const designs = shown.map((line) => line.values);
+    if (!this.motions.busy) this.showBusy();
+    this.motions.ask(
+      () => ({ designs, number: state.number }),
+      (found) => this.draw(shown, found),
+      (error) => {
+        const words = error instanceof Stopped ? STOPPED : error.message;
+        this.draw(shown, { end: 1e-3, found: shown.map(() => ({ problem: words })), effects: [] });
+      },
+    );
     this.undo.disabled = !this.history.canUndo;
     this.redo.disabled = !this.history.canRedo;
     document.title = `${currentDesign(state).name || "design"} – pindrive studio`;
@@ -319,35 +361,29 @@ export class Page {
     this.linkTimer = window.setTimeout(() => void this.link(), 700);
   }
 
+  /** Draws motions that were found. */
+  private draw(shown: readonly Omit<Line, "result">[], { end, found, effects }: MotionsFound): void {
+    if (!this.motions.waits) this.hideBusy();
+    const lines = shown.map((line, i) => ({ ...line, result: found[i]! }));
+    this.history.replace({ ...this.state, cursor: Math.min(this.state.cursor, end) });
+    this.view = { state: this.state, lines, end, overlay: this.overlay };
+    this.charts.update(this.view);
+    this.phase.update(this.view);
+    this.animation.update(this.view);
+    this.player.update(this.view);
+    this.numbers.update(this.view);
+    this.events.update(this.view);
+    this.words.textContent = sentence(this.view, (status) => this.core.statusText(status));
+    const { number } = this.state;
+    this.bars.update(effects, NUMBERS.get(number)!, currentCurves(this.view)?.numbers[number] ?? NaN);
+  }
+
   /** The axes of the map must be numbers of the current design. */
-  private settled(state: State): State {
+  private settledAxes(state: State): State {
     const keys = mapKeys(state);
     const x = keys.includes(state.map.x) ? state.map.x : keys[0]!;
     const y = keys.includes(state.map.y) && state.map.y !== x ? state.map.y : keys.find((key) => key !== x)!;
     return x === state.map.x && y === state.map.y ? state : { ...state, map: { x, y } };
-  }
-
-  private lines(state: State): { lines: Line[]; end: number } {
-    const shown: Omit<Line, "result">[] = [
-      {
-        name: currentDesign(state).name || "current",
-        kind: "current",
-        values: currentDesign(state).values,
-        index: state.current,
-      },
-      ...(state.ghost ? [{ name: "ghost", kind: "ghost" as const, values: state.ghost, index: -1 }] : []),
-      ...state.designs.flatMap((design, index) =>
-        design.shown && index !== state.current
-          ? [{ name: design.name, kind: "other" as const, values: design.values, index }]
-          : [],
-      ),
-    ];
-    const { end, found } = simulateAll(
-      this.core,
-      shown.map(({ values }) => values),
-      null,
-    );
-    return { lines: shown.map((line, i) => ({ ...line, result: found[i]! })), end };
   }
 
   private setLook(): void {
@@ -440,6 +476,20 @@ export class Page {
       }
     }
   }
+}
+
+/** What is drawn: the current design, the ghost, the other shown designs. */
+function shownLines(state: State): Omit<Line, "result">[] {
+  const { name, values } = currentDesign(state);
+  return [
+    { name: name || "current", kind: "current", values, index: state.current },
+    ...(state.ghost ? [{ name: "ghost", kind: "ghost" as const, values: state.ghost, index: -1 }] : []),
+    ...state.designs.flatMap((design, index) =>
+      design.shown && index !== state.current
+        ? [{ name: design.name, kind: "other" as const, values: design.values, index }]
+        : [],
+    ),
+  ];
 }
 
 function entry(classes: string, words: string): HTMLElement {

@@ -1,9 +1,7 @@
 // The numbers of the motion beside those it is compared with, its events, and bars of derivatives.
 
-import { type Core, CoreError } from "./core";
-import { coreInput, direction, settlingBand, variedKeys } from "./design";
 import { h, refill } from "./dom";
-import type { Values } from "./friction";
+import type { Effect } from "./effects";
 import { DRIVE, digits, label, NUMBERS, type Quantity, shownNumber, TABLES, text, unitOf } from "./table";
 import { currentCurves, curvesOf, type View } from "./view";
 
@@ -170,30 +168,6 @@ export class EventsTable {
         : h("p", { class: "note" }, "No event: the contacts do not change."),
     ]);
   }
-}
-
-export interface Effect {
-  readonly key: string;
-  /** Change of the number by 1 % of the key, SI. */
-  readonly change: number;
-}
-
-/** Exact derivatives of a number by each given parameter, times 1 % of the parameter. */
-export function effects(core: Core, values: Values, name: string, duration: number): Effect[] {
-  const input = coreInput(values);
-  return variedKeys(values).flatMap((key): Effect[] => {
-    try {
-      const derivative = core.differentiate(input, direction(values, key, 0.01));
-      try {
-        return [{ key, change: derivative.numbers(duration, settlingBand(values))[name]! }];
-      } finally {
-        derivative.free();
-      }
-    } catch (error) {
-      if (error instanceof CoreError) return [{ key, change: NaN }];
-      throw error;
-    }
-  });
 }
 
 export class Bars {

@@ -294,6 +294,43 @@ def test_an_error_of_the_syntax_has_its_place(page: Any, tmp_path: Path) -> None
     assert said.startswith("bad.toml: is not valid TOML: ") and said.endswith(f"({place}")
 
 
+def test_a_long_motion_leaves_the_page_free_and_is_stopped(page: Any, tmp_path: Path) -> None:
+    """An undamped pin under hardly any friction turns a million times."""
+    path = tmp_path / "long.toml"
+    text = EXAMPLE.read_text("utf-8").replace("damping_ratio = 0.16", "damping_ratio = 0")
+    for given in ('"22 mN"', '"26.5 mN"', '"5 mN"', '"7.5 mN"'):
+        text = text.replace(f"= {given}", '= "1e-7 N"')
+    path.write_text(text, "utf-8")
+    with page.expect_file_chooser() as chooser:
+        page.get_by_role("button", name="Open …", exact=True).click()
+    chooser.value.set_files(path)
+    stop = page.get_by_role("button", name="Stop", exact=True)
+    stop.wait_for(state="visible")
+    longest = page.evaluate("""async () => {
+      let [longest, last] = [0, performance.now()];
+      for (let i = 0; i < 30; ++i) {
+        await new Promise(done => setTimeout(done));
+        longest = Math.max(longest, performance.now() - last);
+        last = performance.now();
+      }
+      return longest;
+    }""")
+    assert longest < 1000  # the simulation itself takes ten times as long
+    page.fill("#drive-mass", "12")
+    page.keyboard.press("Enter")
+    assert value(page, "drive.mass") == pytest.approx(0.012)
+    stop.click()
+    page.wait_for_timeout(400)
+    stop.click()  # of the mass that was typed
+    settled(page)
+    assert page.locator("#summary").inner_text().startswith("Stopped.")
+    assert stop.is_hidden()
+    page.fill("#drive-damping_ratio", "0.16")
+    page.keyboard.press("Enter")
+    settled(page)
+    assert "rests" in page.locator("#summary").inner_text() or numbers_shown(page)
+
+
 def test_typed_text_outlasts_a_drawing_of_the_page(page: Any) -> None:
     """A field keeps its text while the page is redrawn in the next frame."""
     page.locator("#drive-stiffness").select_text()

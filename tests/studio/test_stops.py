@@ -61,8 +61,8 @@ def test_derivatives_and_maps_of_end_stops_are_those_of_python(page: Any, tmp_pa
     page.select_option("#map-x", "drive.travel")
     page.select_option("#map-y", "drive.stop_stiffness")
     drawn = (
-        "(() => { const {busy, next, task} = pindrive.page.map;"
-        " return !busy && !next && Boolean(task?.varied.travel && task.varied.stop_stiffness); })()"
+        "(() => { const {newest, task} = pindrive.page.map;"
+        " return !newest.busy && Boolean(task?.varied.travel && task.varied.stop_stiffness); })()"
     )
     for _ in range(1200):  # its policy forbids it to wait by itself
         if page.evaluate(drawn):

@@ -1,9 +1,9 @@
 // One reading: a hand over a page, advanced with the pictures, and repeated at any speed.
 
+import type { Thread } from "../thread";
 import { type Answer, type Load, SAMPLED, type Samples, type Verdict } from "./engine";
 import { Hand, type HandRows, type Motion, TICK } from "./hand";
 import type { DeviceInput, Line, Raster, Shown } from "./scan";
-import type { Thread } from "./thread";
 
 const MM = 1e-3;
 const KEPT = 0.3; // s of the device for which samples are kept
@@ -96,7 +96,7 @@ export class Session {
     [this.shown, this.sent, this.wall, this.pending] = [0, 0, 0, false];
     [this.samples, this.judgedRows] = [[], 0];
     this.listener.began();
-    void this.live.ask({ open: this.opening }).then((answer) => this.checked(answer));
+    void this.live.ask("read", { open: this.opening }).then((answer) => this.checked(answer));
   }
 
   /** The hand follows an aim, m, until now (ms), and the pins follow the hand. */
@@ -127,7 +127,7 @@ export class Session {
     const { hand, epoch } = this;
     const rows = hand.rowsFrom(this.sent);
     [this.sent, this.pending] = [hand.count, true];
-    void this.live.ask({ rows, until }).then((answer) => {
+    void this.live.ask("read", { rows, until }).then((answer) => {
       if (epoch !== this.epoch) return;
       this.pending = false;
       if (!this.checked(answer)) return;
@@ -163,7 +163,7 @@ export class Session {
   /** Rows of the factor of the plate friction of a pin under the hand so far; null if there are none. */
   async load(pin: number): Promise<Load["load"] | null> {
     const task = { load: { ...this.opening, rows: this.hand.rowsFrom(0), pin } };
-    const answer = this.hand.count < 2 ? null : await this.judge.ask(task);
+    const answer = this.hand.count < 2 ? null : await this.judge.ask("read", task);
     return answer && "load" in answer ? answer.load : null;
   }
 
@@ -174,7 +174,7 @@ export class Session {
     if (hand.count < 2) return;
     this.judgedRows = hand.count;
     const task = { judge: { ...this.opening, rows: hand.rowsFrom(0) } };
-    void this.judge.ask(task).then((answer) => {
+    void this.judge.ask("read", task).then((answer) => {
       const took = performance.now() - now;
       this.judgeFrom = now + took + Math.max(JUDGED, REST * took);
       if (epoch !== this.epoch || !answer || !("lines" in answer)) return;

@@ -7,6 +7,7 @@ import { choose } from "../files";
 import { navigation } from "../navigation";
 import { TABLES } from "../table";
 import { currentLook } from "../theme";
+import { type Program, Thread } from "../thread";
 import { deviceFile } from "../write";
 import { Controls } from "./controls";
 import { deviceInput, spotsOf, valuesOf } from "./device";
@@ -28,7 +29,6 @@ import { speedOf } from "./sentence";
 import { type Sample, Session } from "./session";
 import { Skin } from "./skin";
 import { TASKS } from "./tasks";
-import { Thread } from "./thread";
 
 const [WIDE, NARROW] = [44, 36]; // mm of page on a screen, and on a telephone
 const PITCHES = [1, 2, 3, 4]; // mm, on the dial
@@ -80,7 +80,7 @@ export class ReadView {
 
   constructor(
     private readonly core: Core,
-    wasm: ArrayBuffer,
+    program: Program,
     private design: Design,
     private readonly showRelease: (design: Design) => void,
   ) {
@@ -89,8 +89,8 @@ export class ReadView {
     this.chosen = middleOf(this.input.spots);
     this.felt = new Felt(this.paper.width, this.input.spots);
     this.skin = new Skin(this.input.spots.length);
-    this.judge = new Thread(wasm);
-    this.session = new Session(new Thread(wasm), this.judge, this.input, this.paper.raster, {
+    this.judge = new Thread(program);
+    this.session = new Session(new Thread(program), this.judge, this.input, this.paper.raster, {
       sampled: (samples, hand) => this.sampled(samples, hand),
       judged: (lines, falseLines) => this.judged(lines, falseLines),
       began: () => this.began(),
@@ -231,7 +231,7 @@ export class ReadView {
       this.limitsAsked += 1;
       const number = this.limitsAsked;
       const task = { limits: { device: this.input, pitches: PITCHES.map((pitch) => 1e-3 * pitch) } };
-      void this.judge.ask(task).then((answer) => {
+      void this.judge.ask("read", task).then((answer) => {
         if (number !== this.limitsAsked || !answer || !("limits" in answer)) return;
         const { limits } = answer as Limits;
         this.limits = limits.map(({ to }, i) => ({ pitch: PITCHES[i]!, speed: 1e3 * to }));
