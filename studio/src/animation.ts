@@ -6,11 +6,13 @@ import { columnAt } from "./sample";
 import type { Look } from "./theme";
 import { currentCurves, type View } from "./view";
 
+const NAMED = 260; // px of width from which the parts are named
+
 export class Animation {
   private readonly canvas: Canvas;
   private view: View | null = null;
   /** Pixels for a metre of the pin's deflection, and its rest, in the last drawing. */
-  private drawn = { scale: 1, middle: 0 };
+  private drawn: { readonly scale: number; readonly middle: number } | null = null;
   /** Scale while the pin is dragged: it stays as it was when the pin was taken. */
   private held: { readonly scale: number; readonly middle: number } | null = null;
 
@@ -119,9 +121,9 @@ export class Animation {
       [0.96 * w, top],
       [0.96 * w, bottom],
     ]);
-    // The spring from the housing to the electromagnet.
+    // Spring and damper from the housing to the electromagnet.
     const magnet = 0.085 * w;
-    const springY = 0.6 * height;
+    const springY = 0.56 * height;
     const [from, to, coils] = [0.06 * w, pin - magnet, 9];
     context.lineWidth = 1.5;
     context.strokeStyle = look.text;
@@ -135,6 +137,30 @@ export class Animation {
       points.push([begin + (i + 0.5) * part, springY + (i % 2 ? 1 : -1) * 0.05 * height]);
     points.push([to - 0.02 * w, springY], [to, springY]);
     line(context, points);
+    const damperY = 0.71 * height;
+    const cup = from + 0.45 * (0.54 * w - magnet - from);
+    const [open, piston] = [
+      cup + 0.12 * w,
+      Math.min(Math.max(cup + 0.06 * w + 0.4 * (pin - middle), cup + 5), cup + 0.11 * w),
+    ];
+    line(context, [
+      [from, damperY],
+      [cup, damperY],
+    ]);
+    line(context, [
+      [open, damperY - 0.04 * height],
+      [cup, damperY - 0.04 * height],
+      [cup, damperY + 0.04 * height],
+      [open, damperY + 0.04 * height],
+    ]);
+    line(context, [
+      [piston, damperY - 0.03 * height],
+      [piston, damperY + 0.03 * height],
+    ]);
+    line(context, [
+      [piston, damperY],
+      [to, damperY],
+    ]);
     // Electromagnet and pin, in the colour of what they do.
     const name = {
       carried: "carried by the plate",
@@ -177,6 +203,9 @@ export class Animation {
       (columnAt(curves, "finger_force", time) / largest) * 0.2 * w,
       look.events.slip!,
     );
+    this.label(context, pin);
+    context.textBaseline = "middle";
+    context.textAlign = "left";
     context.fillStyle = look.text;
     context.fillText(`${(1e3 * time).toFixed(2)} ms`, 8, 0.06 * height + 4);
     context.textAlign = "right";
@@ -185,6 +214,32 @@ export class Animation {
       w - 8,
       0.06 * height + 4,
     );
+  }
+
+  /** Names the parts, where there is room for words. */
+  private label(context: CanvasRenderingContext2D, pin: number): void {
+    const { width: w, height } = this.canvas;
+    if (w < NAMED) return;
+    context.textBaseline = "middle";
+    const plate = "plate, moving";
+    context.fillStyle = this.look.grid;
+    context.fillRect(0.01 * w, 0.87 * height, context.measureText(plate).width + 0.02 * w, 0.12 * height);
+    context.fillStyle = this.look.text;
+    const names: readonly (readonly [string, number, number, CanvasTextAlign])[] = [
+      ["finger", 0.54 * w, 0.13 * height, "center"],
+      ["mouse", 0.08 * w, 0.36 * height, "left"],
+      ["spring", 0.16 * w, 0.46 * height, "left"],
+      ["damper", 0.08 * w, 0.65 * height, "left"],
+      ["pin", pin + 0.025 * w, 0.38 * height, "left"],
+      [plate, 0.02 * w, 0.93 * height, "left"],
+    ];
+    for (const [name, x, y, align] of names) {
+      context.textAlign = align;
+      context.fillText(name, x, y);
+    }
+    context.textAlign = "center";
+    context.fillStyle = this.look.surface;
+    context.fillText("magnet", pin, 0.62 * height);
   }
 }
 

@@ -106,6 +106,7 @@ async function begin(program: Program): Promise<void> {
     },
   };
   Object.assign(globalThis, { pindrive: tested });
+  await studio.page?.settled();
   document.documentElement.dataset.ready = "";
 }
 

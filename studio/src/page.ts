@@ -10,6 +10,7 @@ import { figureSvg, pngOf } from "./figure";
 import { choose, type Given } from "./files";
 import { FitPanel } from "./fitpanel";
 import type { Values } from "./friction";
+import { help } from "./help";
 import { MapControls, mapKeys } from "./mapcontrols";
 import { MapRunner } from "./maprunner";
 import { navigation } from "./navigation";
@@ -19,6 +20,7 @@ import { Player } from "./player";
 import { givenOf, PRESETS } from "./presets";
 import { RecordingError, readRecording } from "./recording";
 import { Bars, EventsTable, NumbersTable, sentence } from "./results";
+import { Sketch } from "./sketch";
 import { currentDesign, History, type State, toHash, withDesign } from "./state";
 import { NUMBERS, TABLES } from "./table";
 import { currentLook, type Scheme, setScheme } from "./theme";
@@ -40,6 +42,7 @@ export class Page {
   private readonly charts: Charts;
   private readonly phase: PhasePlane;
   private readonly animation: Animation;
+  private readonly sketch: Sketch;
   private readonly player: Player;
   private readonly panel: Panel = new Panel(
     (values) => this.core.problems(values)[0] ?? "",
@@ -80,6 +83,7 @@ export class Page {
     this.motions = new Newest(this.thread, "motions");
     this.charts = new Charts(this.look, { cursor: (time) => this.setCursor(time, true) });
     this.phase = new PhasePlane(this.look);
+    this.sketch = new Sketch(this.look);
     this.animation = new Animation(this.look, (position) =>
       this.setValues(withValue(this.values, "motion.displacement", position), "pin"),
     );
@@ -139,7 +143,7 @@ export class Page {
         h(
           "div",
           { class: "column" },
-          card("device-view", "Device", this.animation.element),
+          card("device-view", "Device", this.animation.element, this.sketch.element),
           card("plane", "Phase plane", this.phase.element),
           card("fit-card", "Recording", this.fitting.element),
         ),
@@ -202,6 +206,7 @@ export class Page {
     if (!fromCharts) this.charts.setCursor(cursor);
     this.phase.update(this.view);
     this.animation.update(this.view);
+    this.sketch.update(this.view);
     this.player.update(this.view);
   }
 
@@ -295,8 +300,9 @@ export class Page {
 
   /** Resolves when what was changed is simulated and drawn. */
   async settled(): Promise<void> {
-    while (this.asked) await new Promise((drawn) => requestAnimationFrame(drawn));
-    await this.motions.settled();
+    while (this.asked || this.motions.busy || !this.thread.idle) {
+      await new Promise((drawn) => requestAnimationFrame(drawn));
+    }
   }
 
   private step(which: "undo" | "redo"): void {
@@ -370,6 +376,7 @@ export class Page {
     this.charts.update(this.view);
     this.phase.update(this.view);
     this.animation.update(this.view);
+    this.sketch.update(this.view);
     this.player.update(this.view);
     this.numbers.update(this.view);
     this.events.update(this.view);
@@ -388,7 +395,8 @@ export class Page {
 
   private setLook(): void {
     this.look = currentLook();
-    for (const part of [this.charts, this.phase, this.animation, this.map]) part.setLook(this.look);
+    for (const part of [this.charts, this.phase, this.animation, this.sketch, this.map])
+      part.setLook(this.look);
     this.ask();
   }
 
@@ -451,6 +459,7 @@ export class Page {
         button("Share", "A link to this state, in the clipboard", () => void this.save("link")),
         this.undo,
         this.redo,
+        help("release"),
         scheme,
       ),
     );
@@ -510,6 +519,8 @@ function legend(more: HTMLElement): HTMLElement {
     entry("swatch carried", "carried by the plate"),
     entry("swatch resting", "at rest"),
     entry("swatch gripping", "gripped by skin"),
+    entry("swatch line", "friction of the plate"),
+    entry("swatch line dashed", "of the finger"),
     entry("mark stick plate", "sticks"),
     entry("mark slip plate", "slips"),
     entry("mark reverse plate", "reverses"),

@@ -105,7 +105,6 @@ export class Newest<K extends Kind> {
   private next: Request<K> | null = null;
   /** The task in the thread; null: none. */
   task: Task<K> | null = null;
-  private done: Promise<void> = Promise.resolve();
 
   constructor(
     private readonly thread: Thread,
@@ -123,17 +122,7 @@ export class Newest<K extends Kind> {
 
   ask(task: () => Task<K>, take: (answer: Answer<K>) => void, failed: (error: Error) => void): void {
     this.next = { task, take, failed };
-    if (!this.task) this.done = this.run();
-  }
-
-  /** Ends the task in the thread. */
-  stop(): void {
-    if (this.task) this.thread.stop();
-  }
-
-  /** Resolves when all is answered. */
-  async settled(): Promise<void> {
-    while (this.busy) await this.done;
+    if (!this.task) void this.run();
   }
 
   private async run(): Promise<void> {

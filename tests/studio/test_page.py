@@ -294,6 +294,27 @@ def test_an_error_of_the_syntax_has_its_place(page: Any, tmp_path: Path) -> None
     assert said.startswith("bad.toml: is not valid TOML: ") and said.endswith(f"({place}")
 
 
+def test_device_and_curve_stay_in_sight_beside_a_slider_on_a_telephone(page: Any) -> None:
+    page.set_viewport_size({"width": 390, "height": 844})
+    settled(page)
+    for key in ("drive-mass", "finger-kinetic", "motion-displacement"):
+        slider = page.locator(f"#{key}-slider")
+        slider.scroll_into_view_if_needed()
+        slider.focus()
+        settled(page)
+        device, curve = (page.locator(of).bounding_box() for of in (".animation", ".sketch"))
+        place = slider.bounding_box()
+        assert device["y"] >= -1 and curve["y"] + curve["height"] < place["y"] < 844, key
+
+
+def test_help_explains_the_view_and_closes(page: Any) -> None:
+    page.get_by_role("button", name="Help", exact=True).click()
+    words = page.get_by_role("dialog").inner_text()
+    assert "Space" in words and pd.__version__ in words
+    page.keyboard.press("Escape")
+    assert page.get_by_role("dialog").count() == 0
+
+
 def test_a_long_motion_leaves_the_page_free_and_is_stopped(page: Any, tmp_path: Path) -> None:
     """An undamped pin under hardly any friction turns a million times."""
     path = tmp_path / "long.toml"

@@ -4,6 +4,7 @@ import { type Design, designOf } from "../design";
 import { DeviceError } from "../device";
 import { button, card, download, fileName, h, menu, option } from "../dom";
 import { choose } from "../files";
+import { help } from "../help";
 import { navigation } from "../navigation";
 import { TABLES } from "../table";
 import { currentLook } from "../theme";
@@ -475,7 +476,7 @@ export class ReadView {
       "A picture of a page, a saved reading (JSON), or a device file (TOML)",
       () => choose("image/*,.json,.toml", (file) => void this.takeFile(file)),
     );
-    const buttons = h("div", { class: "buttons" }, open, save, share);
+    const buttons = h("div", { class: "buttons" }, open, save, share, help("read"));
     return h(
       "header",
       {},
