@@ -9,7 +9,8 @@ import pindrive as pd
 from command import EXAMPLE
 
 FRAMES = """async () => {
-  const frames = () => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)));
+  const frames = () => new Promise(
+    done => requestAnimationFrame(() => requestAnimationFrame(done)));
   await frames();
   await window.pindrive.page?.settled();
   await frames();

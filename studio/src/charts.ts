@@ -3,7 +3,7 @@ import uPlot from "uplot";
 import type { QuantityName } from "./core";
 import { h } from "./dom";
 import type { Channel } from "./recording";
-import { columnAt } from "./sample";
+import { columnAt, type Span } from "./sample";
 import { SERIES, unitOf } from "./table";
 import type { Look } from "./theme";
 import { currentCurves, curvesOf, eventPath, isOpen, type Line, type View } from "./view";
@@ -27,10 +27,14 @@ const PANELS: readonly Panel[] = [
   },
   { title: "Skin stretch", symbol: "s", names: ["stretch"], channel: null },
 ];
+const LEAST = 5; // px of a span that is dragged
+const MARKS = 200; // signs of events in one plot
 const POINTS = 4000; // samples of a recording in one plot
 
 export interface ChartActions {
   readonly cursor: (time: number) => void;
+  /** Shows a span of the time axis, s; null: all of it. */
+  readonly zoom: (span: Span | null) => void;
 }
 
 /** The panels over time. Times are in ms and values in display units. */
@@ -64,14 +68,18 @@ export class Charts {
     }
     const times = currentTimes(view);
     const milliseconds = scaledColumn(times, 1e3);
+    const [from, to] = view.span;
+    const first = times.findIndex((time) => time >= from);
+    const last = times.findLastIndex((time) => time <= to);
+    const shown = <T>(column: readonly T[]): readonly T[] => column.slice(first, last + 1);
     for (const { plot, panel } of this.plots) {
       const columns = inOrder(view).flatMap((line) =>
         namesFor(panel, line).map((name) => column(line, name, times.length)),
       );
       plot.batch(() => {
         plot.setData([milliseconds, ...columns] as unknown as uPlot.AlignedData, false);
-        plot.setScale("x", { min: 0, max: 1e3 * view.end });
-        plot.setScale("y", extent(columns, overlayOf(view, panel)));
+        plot.setScale("x", { min: 1e3 * view.span[0], max: 1e3 * view.span[1] });
+        plot.setScale("y", extent(columns.map(shown), overlayOf(view, panel)));
       });
     }
     this.setCursor(view.state.cursor);
@@ -117,7 +125,13 @@ export class Charts {
       scales: { x: { time: false, auto: false }, y: { auto: false } },
       cursor: {
         y: false,
-        drag: { x: false, y: false },
+        drag: { x: true, y: false, setScale: false },
+        bind: {
+          dblclick: () => () => {
+            this.actions.zoom(null);
+            return null;
+          },
+        },
         points: {
           size: 7,
           fill: (plot: uPlot, i: number) =>
@@ -149,6 +163,14 @@ export class Charts {
       hooks: {
         drawAxes: [(plot) => this.drawPhases(plot), (plot) => this.drawRecording(plot, panel)],
         draw: [(plot) => this.drawMarks(plot, panel)],
+        setSelect: [
+          (plot) => {
+            const { left, width } = plot.select;
+            if (!(width > LEAST)) return;
+            plot.setSelect({ left: 0, width: 0, top: 0, height: 0 }, false);
+            this.actions.zoom([plot.posToVal(left, "x") / 1e3, plot.posToVal(left + width, "x") / 1e3]);
+          },
+        ],
         setCursor: [
           (plot) => {
             const { left } = plot.cursor;
@@ -179,11 +201,16 @@ export class Charts {
     const curves = this.view && currentCurves(this.view);
     if (!curves) return;
     const { ctx, bbox } = plot;
+    ctx.save();
+    ctx.beginPath();
+    ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+    ctx.clip();
     for (const { kind, begin, end } of curves.phases) {
       ctx.fillStyle = this.look.phases[kind]!;
       const [from, to] = [begin, end].map((time) => plot.valToPos(1e3 * time, "x", true)) as [number, number];
       ctx.fillRect(from, bbox.top, Math.max(to - from, 1), bbox.height);
     }
+    ctx.restore();
   }
 
   /** Under the curves. */
@@ -213,7 +240,8 @@ export class Charts {
     const curves = currentCurves(view);
     if (curves && panel.names[0] !== "plate_force") {
       const name = panel.names[0]!;
-      const shown = curves.events.slice(0, 200);
+      const [from, to] = view.span;
+      const shown = curves.events.filter(({ time }) => time >= from && time <= to).slice(0, MARKS);
       for (const { kind, contact, time } of shown) {
         const value = columnAt(curves, name, time) * scaleOf(name);
         const [x, y] = [plot.valToPos(1e3 * time, "x", true), plot.valToPos(value, "y", true)];

@@ -23,7 +23,8 @@ export function figureSvg(view: View, title: string): string {
   const panels = names.map(([name, symbol], i) => panel(view, name, symbol, TOP + i * (HEIGHT + GAP)));
   const bottom = TOP + names.length * (HEIGHT + GAP) - GAP;
   const toX = across(view);
-  const labels = ticks(0, 1e3 * view.end, 7).map((time) =>
+  const [from, to] = view.span;
+  const labels = ticks(1e3 * from, 1e3 * to, 7).map((time) =>
     label(toX(time / 1e3), bottom + 15, tickText(time), "middle"),
   );
   return [
@@ -38,17 +39,23 @@ export function figureSvg(view: View, title: string): string {
   ].join("\n");
 }
 
-function across(view: View): (time: number) => number {
-  return (time) => LEFT + (time / view.end) * (WIDTH - LEFT - RIGHT);
+function across({ span: [from, to] }: View): (time: number) => number {
+  return (time) => LEFT + ((time - from) / (to - from)) * (WIDTH - LEFT - RIGHT);
 }
 
 function panel(view: View, name: QuantityName, symbol: string, top: number): string {
   const quantity = SERIES.get(name)!;
   const scale = quantity.displayScale;
   const toX = across(view);
+  const [from, to] = view.span;
+  const within = (time: number): boolean => time >= from && time <= to;
   const lines = view.lines.flatMap((line) => {
     const curves = curvesOf(line);
-    return curves?.columns[name] ? [{ line, curves, values: curves.columns[name] }] : [];
+    const column = curves?.columns[name];
+    if (!column) return [];
+    return [
+      { line, times: curves.times.filter(within), values: column.filter((_, i) => within(curves.times[i]!)) },
+    ];
   });
   let [min, max] = [0, 0];
   for (const { values } of lines) {
@@ -61,7 +68,9 @@ function panel(view: View, name: QuantityName, symbol: string, top: number): str
   const { palette } = TABLES;
   const parts = [`<g data-quantity="${name}">`];
   for (const { kind, begin, end } of current?.phases ?? []) {
-    const [x, width] = [toX(begin), Math.max(toX(end) - toX(begin), 0.5)];
+    if (end < from || begin > to) continue;
+    const x = toX(Math.max(begin, from));
+    const width = Math.max(toX(Math.min(end, to)) - x, 0.5);
     parts.push(
       `<rect x="${fixed(x)}" y="${top}" width="${fixed(width)}" height="${HEIGHT}" fill="${palette[kind]}" opacity="0.25"/>`,
     );
@@ -79,20 +88,20 @@ function panel(view: View, name: QuantityName, symbol: string, top: number): str
   parts.push(
     `<text transform="translate(14 ${top + HEIGHT / 2}) rotate(-90)" text-anchor="middle">${symbol}, ${unitOf(quantity)}</text>`,
   );
-  for (const { line, curves, values } of [...lines].reverse()) {
+  for (const { line, times, values } of [...lines].reverse()) {
     const own = TABLES.curves[line.index % TABLES.curves.length]!;
     const [color, width] = line.kind === "ghost" ? ["#aaa", 2.4] : [own.color, 1.3];
     const dash = line.kind === "other" && own.dash.length ? ` stroke-dasharray="${own.dash.join(" ")}"` : "";
     let path = "";
     values.forEach((value, i) => {
-      if (!Number.isNaN(value))
-        path += `${path ? "L" : "M"}${fixed(toX(curves.times[i]!))} ${fixed(toY(value))}`;
+      if (!Number.isNaN(value)) path += `${path ? "L" : "M"}${fixed(toX(times[i]!))} ${fixed(toY(value))}`;
     });
     parts.push(
       `<path d="${path}" fill="none" stroke="${color}" stroke-width="${width}"${dash} data-line="${escaped(line.name)}"/>`,
     );
   }
-  for (const { kind, contact, time } of current?.events.slice(0, 200) ?? []) {
+  for (const { kind, contact, time } of current?.events.filter(({ time }) => within(time)).slice(0, 200) ??
+    []) {
     const points = eventPath(kind, toX(time), toY(columnAt(current!, name, time)), 3);
     const color = palette[kind]!;
     parts.push(

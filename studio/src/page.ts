@@ -28,6 +28,7 @@ import { Newest, type Program, Stopped, Thread } from "./thread";
 import { currentCurves, type Line, type Overlay, type View } from "./view";
 import type { Answer, MotionsFound, Task } from "./work";
 import { deviceFile, eventsCsv, samplesCsv } from "./write";
+import { Zoom } from "./zoom";
 
 const LONG = 300; // ms after which a simulation is said to take long
 const STOPPED = "Stopped. A change of a value simulates again.";
@@ -41,6 +42,7 @@ export class Page {
   private linkTimer = 0;
   private readonly charts: Charts;
   private readonly phase: PhasePlane;
+  private readonly zoom = new Zoom(() => this.ask());
   private readonly animation: Animation;
   private readonly sketch: Sketch;
   private readonly player: Player;
@@ -78,10 +80,13 @@ export class Page {
     state: State,
   ) {
     this.history = new History(state);
-    this.view = { state, lines: [], end: 1e-3, overlay: null };
+    this.view = { state, lines: [], end: 1e-3, span: [0, 1e-3], overlay: null };
     this.thread = new Thread(program);
     this.motions = new Newest(this.thread, "motions");
-    this.charts = new Charts(this.look, { cursor: (time) => this.setCursor(time, true) });
+    this.charts = new Charts(this.look, {
+      cursor: (time) => this.setCursor(time, true),
+      zoom: (span) => this.zoom.show(span),
+    });
     this.phase = new PhasePlane(this.look);
     this.sketch = new Sketch(this.look);
     this.animation = new Animation(this.look, (position) =>
@@ -131,6 +136,7 @@ export class Page {
           this.words,
           this.busy,
           this.player.element,
+          this.zoom.element,
           this.charts.element,
           legend(this.signs),
         ),
@@ -202,6 +208,7 @@ export class Page {
   setCursor(time: number, fromCharts = false): void {
     const cursor = Math.min(Math.max(time, 0), this.view.end);
     this.history.replace({ ...this.state, cursor });
+    this.zoom.update(this.view.end, cursor);
     this.view = { ...this.view, state: this.state };
     if (!fromCharts) this.charts.setCursor(cursor);
     this.phase.update(this.view);
@@ -353,7 +360,7 @@ export class Page {
     const designs = shown.map((line) => line.values);
     if (!this.motions.busy) this.showBusy();
     this.motions.ask(
-      () => ({ designs, number: state.number }),
+      () => ({ designs, number: state.number, span: this.zoom.span }),
       (found) => this.draw(shown, found),
       (error) => {
         const words = error instanceof Stopped ? STOPPED : error.message;
@@ -372,7 +379,8 @@ export class Page {
     if (!this.motions.waits) this.hideBusy();
     const lines = shown.map((line, i) => ({ ...line, result: found[i]! }));
     this.history.replace({ ...this.state, cursor: Math.min(this.state.cursor, end) });
-    this.view = { state: this.state, lines, end, overlay: this.overlay };
+    const span = this.zoom.update(end, this.state.cursor);
+    this.view = { state: this.state, lines, end, span, overlay: this.overlay };
     this.charts.update(this.view);
     this.phase.update(this.view);
     this.animation.update(this.view);

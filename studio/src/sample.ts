@@ -47,6 +47,9 @@ export interface Curves {
 /** A motion that exists, or why it does not. */
 export type Simulated = { readonly curves: Curves } | { readonly problem: string };
 
+/** Times from and to, s. */
+export type Span = readonly [number, number];
+
 export const SAMPLES = 801;
 const ROUNDS = 2000; // rounds of a cycle with drawn phases
 const BINS = 1500; // parts of the window in which the curves keep their extremes
@@ -59,11 +62,11 @@ interface Made {
   readonly events: readonly ContactEvent[];
 }
 
-/** Motions of several designs over one window: the longest of their windows, unless given. */
+/** Motions of several designs over the longest of their durations, with more samples in a span, s. */
 export function simulateAll(
   core: Core,
   designs: readonly Values[],
-  windowEnd: number | null,
+  span: Span | null,
   samples = SAMPLES,
 ): { end: number; found: Simulated[] } {
   const made = designs.map((values): Made | string => {
@@ -76,8 +79,9 @@ export function simulateAll(
   });
   const good = made.filter((one): one is Made => typeof one !== "string");
   try {
-    const end = windowEnd ?? good.reduce((most, { duration }) => Math.max(most, duration), 1e-3);
-    const grid = commonTimes(good, end, samples);
+    const end = good.reduce((most, { duration }) => Math.max(most, duration), 1e-3);
+    const spans: Span[] = [[0, end], ...(span ? [[span[0], Math.min(span[1], end)] as const] : [])];
+    const grid = commonTimes(good, spans, samples);
     const found = made.map(
       (one): Simulated => (typeof one === "string" ? { problem: one } : { curves: sampled(one, grid, end) }),
     );
@@ -133,13 +137,18 @@ interface Grid {
 }
 
 /** Even times, both sides of the events, and the turns of position and velocity: curves follow the motion. */
-function commonTimes(made: readonly Made[], end: number, samples: number): Grid {
+function commonTimes(made: readonly Made[], spans: readonly Span[], samples: number): Grid {
   const events = made.flatMap(({ events }) => events.map(({ time }) => time));
-  const jumps = sortedOf(events.filter((time) => time > 0 && time < end)).slice(0, JUMPS);
-  const even = Array.from({ length: samples }, (_, i) => (end * i) / (samples - 1));
-  even[samples - 1] = end;
+  const jumps = spans.flatMap(([from, to]) =>
+    sortedOf(events.filter((time) => time > from && time < to)).slice(0, JUMPS),
+  );
+  const even = spans.flatMap(([from, to]) =>
+    Array.from({ length: samples }, (_, i) =>
+      i === samples - 1 ? to : from + ((to - from) * i) / (samples - 1),
+    ),
+  );
   const turns = made.flatMap(({ motion }) =>
-    (["position", "velocity"] as const).flatMap((quantity) => extremesOf(motion, quantity, end)),
+    (["position", "velocity"] as const).flatMap((quantity) => extremesOf(motion, quantity, spans)),
   );
   const sides = new Set(jumps);
   const times: number[] = [];
@@ -158,21 +167,25 @@ function sortedOf(times: readonly number[]): number[] {
   return [...new Set(times)].sort((a, b) => a - b);
 }
 
-/** Times of the least and the largest value in each part of the window. */
-function extremesOf(motion: Motion, quantity: QuantityName, end: number): number[] {
-  const until = Math.min(end, motion.outcome.knownUntil);
-  const { times, values } = motion.extrema(quantity, until);
-  const found: number[] = [];
-  for (let i = 0; i < times.length; ) {
-    const bin = Math.floor((times[i]! / end) * BINS);
-    let [least, most] = [i, i];
-    for (; i < times.length && Math.floor((times[i]! / end) * BINS) === bin; ++i) {
-      if (values[i]! < values[least]!) least = i;
-      if (values[i]! > values[most]!) most = i;
+/** Times of the least and the largest value in each part of each span. */
+function extremesOf(motion: Motion, quantity: QuantityName, spans: readonly Span[]): number[] {
+  const [, end] = spans[0]!;
+  const { times, values } = motion.extrema(quantity, Math.min(end, motion.outcome.knownUntil));
+  return spans.flatMap(([from, to]) => {
+    const found: number[] = [];
+    const binOf = (time: number): number => Math.floor(((time - from) / (to - from)) * BINS);
+    let i = times.findIndex((time) => time >= from);
+    while (i >= 0 && i < times.length && times[i]! < to) {
+      const bin = binOf(times[i]!);
+      let [least, most] = [i, i];
+      for (; i < times.length && binOf(times[i]!) === bin; ++i) {
+        if (values[i]! < values[least]!) least = i;
+        if (values[i]! > values[most]!) most = i;
+      }
+      found.push(times[least]!, times[most]!);
     }
-    found.push(times[least]!, times[most]!);
-  }
-  return found.filter((time) => time < end);
+    return found.filter((time) => time < to);
+  });
 }
 
 function sampled({ motion, values, duration, events }: Made, grid: Grid, end: number): Curves {

@@ -1,7 +1,7 @@
 // View of the page: its state and the computed results.
 import type { Values } from "./friction";
 import type { Recording } from "./recording";
-import type { ContactName, Curves, EventKind, Simulated } from "./sample";
+import type { ContactName, Curves, EventKind, Simulated, Span } from "./sample";
 import { currentDesign, type State } from "./state";
 
 /** Curve of the plots: the current design first, the ghost, then all other shown designs. */
@@ -22,8 +22,10 @@ export interface Overlay {
 export interface View {
   readonly state: State;
   readonly lines: readonly Line[];
-  /** The end of the window, s. */
+  /** The end of the motions, s. */
   readonly end: number;
+  /** Shown span of the time axis, s. */
+  readonly span: Span;
   readonly overlay: Overlay | null;
 }
 

@@ -6,12 +6,14 @@ import type { Values } from "./friction";
 import { computeMap, type MapResult, type MapTask } from "./mapgrid";
 import { Engine, type Answer as Reading, type Task as ReadTask } from "./read/engine";
 import type { Recording } from "./recording";
-import { type Simulated, simulateAll } from "./sample";
+import { type Simulated, type Span, simulateAll } from "./sample";
 
 /** Motions of several designs, and the derivatives of a number of the first. */
 export interface Motions {
   readonly designs: readonly Values[];
   readonly number: string;
+  /** Span of more samples, s; null: none. */
+  readonly span: Span | null;
 }
 export interface MotionsFound {
   readonly end: number;
@@ -52,8 +54,8 @@ export function answersOf(core: Core): Answers {
   };
 }
 
-function motions(core: Core, { designs, number }: Motions): MotionsFound {
-  const { end, found } = simulateAll(core, designs, null);
+function motions(core: Core, { designs, number, span }: Motions): MotionsFound {
+  const { end, found } = simulateAll(core, designs, span);
   const first = found[0]!;
   const changes = "curves" in first ? effects(core, designs[0]!, number, first.curves.duration) : [];
   return { end, found, effects: changes };

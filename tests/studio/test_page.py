@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import xml.etree.ElementTree as ET
 from collections.abc import Callable
 from pathlib import Path
@@ -313,6 +314,47 @@ def test_help_explains_the_view_and_closes(page: Any) -> None:
     assert "Space" in words and pd.__version__ in words
     page.keyboard.press("Escape")
     assert page.get_by_role("dialog").count() == 0
+
+
+def test_the_time_axis_zooms_and_pans(page: Any, tmp_path: Path) -> None:
+    """Closer, the curves have as many samples in the shown span as before in all."""
+    span = "pindrive.page.view.span"
+    samples = (
+        "(() => { const {view: {span: [from, to], lines}} = pindrive.page;"
+        " return lines[0].result.curves.times.filter(t => t >= from && t <= to).length; })()"
+    )
+    axis = page.get_by_role("group", name="time axis")
+
+    def click(name: str) -> None:
+        axis.get_by_role("button", name=name, exact=True).click()
+        settled(page)
+
+    begin, end = page.evaluate(span)
+    assert begin == 0
+    page.evaluate("pindrive.page.setCursor(0.05)")
+    for _ in range(7):
+        click("+")
+    left, right = page.evaluate(span)
+    assert right - left == pytest.approx(end / 128) and left < 0.05 < right
+    assert page.evaluate(samples) > 800
+    click("›")
+    assert page.evaluate(span) == pytest.approx([left + 0.5 * (right - left)] * 2, abs=right - left)
+    assert page.evaluate(span)[0] > left
+    svg = saved(page, "svg", tmp_path).read_text("utf-8")
+    times = [float(x) for x in re.findall(r'text-anchor="middle">([\d.]+)</text>', svg)]
+    assert min(times) >= 1e3 * left and max(times) <= 1e3 * (right + 0.5 * (right - left)) + 1e-9
+    click("All")
+    assert page.evaluate(span) == [0, end]
+    box = page.locator(".chart .u-over").first.bounding_box()
+    page.mouse.move(box["x"] + 0.25 * box["width"], box["y"] + 20)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 20, steps=5)
+    page.mouse.up()
+    settled(page)
+    assert page.evaluate(span) == pytest.approx([0.25 * end, 0.5 * end], rel=0.02)
+    page.mouse.dblclick(box["x"] + 0.3 * box["width"], box["y"] + 20)
+    settled(page)
+    assert page.evaluate(span) == [0, end]
 
 
 def test_a_long_motion_leaves_the_page_free_and_is_stopped(page: Any, tmp_path: Path) -> None:
