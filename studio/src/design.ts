@@ -31,6 +31,12 @@ export function designOf(core: Core, { text, file, rows }: Given): Design {
   return { ...readDevice(core, text, file, rows), shown: true };
 }
 
+/** Damping over critical damping. */
+export function dampingRatio(values: Values): number {
+  const [mass, stiffness] = [values["drive.mass"] as number, values["drive.stiffness"] as number];
+  return dampingOf(values) / (2 * Math.sqrt(mass * stiffness));
+}
+
 /** Damping, given or by its ratio, N*s/m. */
 function dampingOf(values: Values): number {
   const damping = values["drive.damping"];

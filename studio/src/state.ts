@@ -94,6 +94,8 @@ export class History {
   }
 }
 
+const UNPACKED = 1 << 26; // bytes that a link or a file may grow to
+
 // ---- links ---------------------------------------------------------------------------------------
 
 /** The state as the part of a link after "#". */
@@ -130,5 +132,13 @@ export async function piped(
   through: CompressionStream | DecompressionStream,
 ): Promise<Uint8Array> {
   const stream = new Blob([bytes as BlobPart]).stream().pipeThrough(through);
-  return new Uint8Array(await new Response(stream).arrayBuffer());
+  const parts: Uint8Array[] = [];
+  let size = 0;
+  for (const reader = stream.getReader(); ; ) {
+    const { done, value } = await reader.read();
+    if (done) return new Uint8Array(await new Blob(parts as BlobPart[]).arrayBuffer());
+    parts.push(value);
+    size += value.length;
+    if (size > UNPACKED) throw new Error(`is larger than ${UNPACKED >> 20} MB`);
+  }
 }

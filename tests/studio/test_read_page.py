@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -149,6 +150,67 @@ def test_two_lines_merge_under_a_fast_hand(read: Any) -> None:
         if "became one" in task.inner_text():
             break
     assert "became one. The device's own limit: 250 mm/s" in task.inner_text()
+
+
+def test_the_task_of_figure_4_tells_the_swing(read: Any) -> None:
+    task = read.get_by_role("button", name="The paper's Figure 4")
+    task.click()
+    for _ in range(4):
+        stroke(read, 2.0)
+        read.wait_for_timeout(900)
+        if "past its rest" in task.inner_text():
+            break
+        read.mouse.move(5, 5)
+    told = task.inner_text()
+    assert re.search(r"Let go at 0\.\d\d mm|Let go at 1\.\d\d mm", told), told
+    assert "% past its rest at damping ratio 0." in told
+
+
+def dropped(read: Any, path: Path) -> str:
+    """Opens a file in the view; what the view says of it."""
+    with read.expect_file_chooser() as chooser:
+        read.locator(".read").get_by_role("button", name="Open …", exact=True).click()
+    problem = "document.querySelector('.read [role=alert]').textContent"
+    read.evaluate("document.querySelector('.read [role=alert]').textContent = ''")
+    chooser.value.set_files(path)
+    until(read, problem, 20_000)
+    return str(read.evaluate(problem))
+
+
+def test_hostile_files_and_links_are_rejected_in_a_line(read: Any, tmp_path: Path) -> None:
+    vector = tmp_path / "page.svg"
+    vector.write_text(
+        "<svg xmlns='http://www.w3.org/2000/svg' width='10' height='10' onload='hacked = 1'>"
+        "<script>hacked = 1</script><rect width='10' height='10'/></svg>",
+        "utf-8",
+    )
+    huge = tmp_path / "huge.png"
+    Image.new("1", (10_000, 10_000)).save(huge)
+    broken = tmp_path / "broken.json"
+    whole = (EXAMPLES / "reading.json").read_text("utf-8")
+    named = tmp_path / "named.toml"
+    named.write_text(
+        READER.read_text("utf-8").replace('name = "', 'name = "<img src=x onerror=hacked=1>', 1)
+        + "\nx = 1\n",
+        "utf-8",
+    )
+    assert dropped(read, vector) == "page.svg: is no picture that this browser shows"
+    assert dropped(read, huge).startswith("huge.png: must have at most 40 megapixels, got 10000")
+    for text in (whole[: len(whole) // 2], "{}", "[]", whole.replace('"rows"', '"row"'), "null"):
+        broken.write_text(text, "utf-8")
+        said = dropped(read, broken)
+        assert said.startswith("broken.json: is no") and "\n" not in said, text[:40]
+    assert "named.toml" in dropped(read, named)
+    read.get_by_label("text", exact=False).first.fill("\u202eabc\u2066\u200f<b>")
+    link = read.evaluate(
+        "(async () => { await pindrive.read.save('link'); return location.hash; })()"
+    )
+    for cut in (link[: len(link) // 2], link[:10], link + "AAAA", "#read=%00"):
+        read.evaluate("hash => { location.hash = hash; }", cut)
+        read.wait_for_timeout(300)
+        assert "\n" not in read.locator(".read [role=alert]").inner_text()
+    assert read.evaluate("typeof hacked") == "undefined"
+    assert read.locator("img").count() == 0
 
 
 def test_sliders_change_the_device_and_its_limits(read: Any, tmp_path: Path) -> None:

@@ -14,6 +14,8 @@ export interface Spot {
   readonly y: number;
 }
 
+const LARGEST = 4e7; // pixels of a picture, as of a page in Python
+
 export class Paper {
   readonly canvas: OffscreenCanvas;
   /** The print in outline. */
@@ -63,7 +65,14 @@ export class Paper {
 
   /** A picture in shades of grey, as large as the page allows. */
   async picture(file: Blob, name: string): Promise<void> {
-    const picture = await createImageBitmap(file);
+    const picture = await createImageBitmap(file).catch(() => {
+      throw new Error("is no picture that this browser shows");
+    });
+    if (picture.width * picture.height > LARGEST) {
+      throw new Error(
+        `must have at most ${LARGEST / 1e6} megapixels, got ${picture.width} × ${picture.height}`,
+      );
+    }
     const { width, height } = this.canvas;
     const scale = Math.min(width / picture.width, height / picture.height);
     const [w, h] = [picture.width * scale, picture.height * scale];

@@ -37,7 +37,16 @@ export async function readingOf(text: string): Promise<SavedReading> {
     const { title, rows, columns, pixel, luminance } = given.page;
     const grey = await piped(bytesOf(luminance), new DecompressionStream("deflate-raw"));
     if (grey.length !== rows * columns) throw new Error();
-    return { device: given.device, page: { grey, rows, columns, pixel }, title, hand: given.hand };
+    const { start, rows: moves } = given.hand;
+    const numbers = [pixel, ...start, ...moves.flat()];
+    const whole = moves.every(({ length }: number[]) => length === 3) && numbers.every(Number.isFinite);
+    if (!whole || typeof given.device !== "string") throw new Error();
+    return {
+      device: given.device,
+      page: { grey, rows, columns, pixel },
+      title: String(title),
+      hand: given.hand,
+    };
   } catch {
     throw new Error("is no whole reading");
   }

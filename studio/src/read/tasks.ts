@@ -3,12 +3,18 @@
 import type { Limit } from "./dial";
 import type { Hand } from "./hand";
 import type { Line } from "./scan";
+import type { Sample } from "./session";
 
 /** Reading so far: its lines, the hand, and the limits of the device. */
 export interface Read {
   readonly lines: readonly Line[];
   readonly hand: Hand;
   readonly limits: readonly Limit[];
+  /** The last samples, and the pin that is looked at. */
+  readonly samples: readonly Sample[];
+  readonly chosen: number;
+  /** Damping ratio of the pins. */
+  readonly ratio: number;
 }
 
 export interface Task {
@@ -23,6 +29,8 @@ export interface Task {
 const PITCH = 2; // mm, of the two lines
 const ENOUGH = 24; // lines after which a word is judged
 const STRAIGHT = 6; // degrees
+const SWUNG = 0.03; // s after a release until its swing is told
+const DRAGGED = 1e-4; // m that a pin is dragged at the least
 
 /** Speed of the hand at a line, mm/s, and its angle to the drive, degrees. */
 function handAt(hand: Hand, line: Line): { speed: number; angle: number } {
@@ -66,6 +74,27 @@ function whyAskew({ lines, hand }: Read): string | null {
   return askew.length ? `${angle()}. Now straight.` : null;
 }
 
+const swings = new Map<string, string>(); // by damping ratio
+
+/** The swing of the chosen pin past its rest after its last release, for each damping that was tried. */
+function figure4({ samples, chosen, ratio }: Read): string | null {
+  const at = (i: number): number => samples[i]!.values.position[chosen]!;
+  const off = samples.findLastIndex(({ values }) => values.command[chosen]! > 0);
+  if (off < 0 || off === samples.length - 1) return null;
+  const after = samples.slice(off + 1);
+  if (after[after.length - 1]!.time - samples[off]!.time < SWUNG) return null;
+  const dragged = after.reduce((most, { values }) => {
+    const x = values.position[chosen]!;
+    return Math.abs(x) > Math.abs(most) ? x : most;
+  }, at(off));
+  const past = after.map(({ values }) => -Math.sign(dragged) * values.position[chosen]!);
+  if (Math.abs(dragged) < DRAGGED) return null;
+  const part = Math.max(0, ...past) / Math.abs(dragged);
+  const key = ratio.toFixed(2);
+  swings.set(key, `${Math.round(100 * part)} % past its rest at damping ratio ${key}`);
+  return `Let go at ${(1e3 * Math.abs(dragged)).toFixed(2)} mm, the pin swings ${[...swings.values()].join(", ")}.`;
+}
+
 export const TASKS: readonly Task[] = [
   {
     name: "Read the word",
@@ -87,5 +116,11 @@ export const TASKS: readonly Task[] = [
     what: "Cross the line straight, then slanting. How far is a pin dragged?",
     page: (width) => [[width / 2 - 0.75, 1.5]],
     verdict: whyAskew,
+  },
+  {
+    name: "The paper's Figure 4",
+    what: "Cross the line. Behind it the pin springs back, and swings: how far, at damping ratios 0.04, 0.16 and 0.32? The slider sets them; “Open its motion” shows the curve.",
+    page: (width) => [[width / 2 - 1, 2]],
+    verdict: figure4,
   },
 ];

@@ -1,6 +1,6 @@
 // The view "Read": a page, a hand that the person moves, and what the pins do under it.
 import type { Core, Row } from "../core";
-import { type Design, designOf } from "../design";
+import { type Design, dampingRatio, designOf } from "../design";
 import { DeviceError } from "../device";
 import { button, card, download, fileName, h, menu, option } from "../dom";
 import { choose } from "../files";
@@ -217,7 +217,10 @@ export class ReadView {
   private judged(lines: readonly Line[], falseLines: number): void {
     this.lines = lines;
     this.readouts.showLines(lines, falseLines);
-    const said = TASKS[this.task]?.verdict({ lines, hand: this.session.hand, limits: this.limits });
+    const { hand, samples } = this.session;
+    const { chosen, limits } = this;
+    const ratio = dampingRatio(this.design.values);
+    const said = TASKS[this.task]?.verdict({ lines, hand, limits, samples, chosen, ratio });
     if (said) this.tasks[this.task]!.querySelector("em")!.textContent = said;
   }
 
@@ -402,9 +405,7 @@ export class ReadView {
   }
 
   private async takePicture(file: File): Promise<void> {
-    await this.paper.picture(file, file.name).catch(() => {
-      throw new Error("is no picture that this browser shows");
-    });
+    await this.paper.picture(file, file.name);
     this.setPage();
   }
 
