@@ -7,8 +7,8 @@
                                       run the tests of random cases with COUNT (10) new seeds
     python3 run.py lint [STEP...]     check style, types and stubs, or only the steps named
     python3 run.py format             lay out Python and C++ as lint wants them
-    python3 run.py studio [test|bench]
-                                      build the studio, a page; test or time it in a browser
+    python3 run.py studio [test|bench|picture]
+                                      build the studio, a page; test, time or film it in a browser
     python3 run.py stubs              refresh src/pindrive/_core.pyi from the built extension
     python3 run.py docs               make the documentation site in build/docs
     python3 run.py validation         write the published cases and figures of docs/validation.md

@@ -40,6 +40,12 @@ html_title = f"pindrive {release}"
 html_copy_source = False
 # The studio, where it has been built: `_static/studio.html`, which docs/studio.md then links to.
 STUDIO = Path(str(find_spec("pindrive").origin)).with_name("studio.html")
+SHOWN = {
+    "studio": '<p><a href="_static/studio.html">Open the studio</a></p>',
+    "index": '<iframe class="studio" src="_static/studio.html#read" loading="lazy" '
+    'title="The studio: read a page with your own hand"></iframe>',
+}
+"""The studio on a page: a link to it, or itself."""
 html_static_path = ["_static", *([str(STUDIO)] if STUDIO.exists() else [])]
 html_css_files = ["site.css"]
 autodoc_typehints = "description"
@@ -53,7 +59,7 @@ def read(app: Sphinx, docname: str, source: list[str]) -> None:
     """Replace links to CONTRIBUTING.md by links to its page, and links to folders by their text.
 
     The guides of the first page have, after those that it names, all other pages of this folder;
-    that of the studio has a link to it.
+    that of the studio has a link to it, and the first page the studio itself.
     """
     text = source[0].replace("](../CONTRIBUTING.md", "](contributing.md")
     text = re.sub(r"\[([^]]+)\]\(\.\./[\w/]+\)", r"\1", text)
@@ -61,10 +67,8 @@ def read(app: Sphinx, docname: str, source: list[str]) -> None:
         listed = text.splitlines()
         pages = sorted(path.stem for path in HERE.glob("*.md") if path.stem != "index")
         text = text.replace("% other pages", "\n".join(p for p in pages if p not in listed))
-    if docname == "studio" and STUDIO.exists():
-        text = text.replace(
-            "% the page", '<p><a href="_static/studio.html">Open the studio</a></p>'
-        )
+    if docname in SHOWN and STUDIO.exists():
+        text = text.replace("% the page", SHOWN[docname])
     source[0] = text
 
 

@@ -116,9 +116,9 @@ def docs() -> int:
 
 
 def studio(arguments: list[str]) -> int:
-    """Builds the page and puts it into the package; tests or times it in a browser."""
-    if arguments[:1] not in ([], ["test"], ["bench"]):
-        stop(f"studio takes test, bench or nothing, not {' '.join(arguments)!r}")
+    """Builds the page and puts it into the package; tests, times or films it in a browser."""
+    if arguments[:1] not in ([], ["test"], ["bench"], ["picture"]):
+        stop(f"studio takes test, bench, picture or nothing, not {' '.join(arguments)!r}")
     install({"studio"})
     if status := run("python", Path("studio", "build.py")):
         return status
@@ -127,5 +127,7 @@ def studio(arguments: list[str]) -> int:
         return 0
     if arguments[0] == "bench":
         return run("python", Path("benchmarks", "studio.py"))
+    if arguments[0] == "picture":
+        return run("python", Path("studio", "picture.py"))
     os.environ["PINDRIVE_STUDIO"] = "1"
     return run("python", "-m", "pytest", Path("tests", "studio"), *arguments[1:])

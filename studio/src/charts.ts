@@ -33,7 +33,7 @@ const POINTS = 4000; // samples of a recording in one plot
 
 export interface ChartActions {
   readonly cursor: (time: number) => void;
-  /** Shows a span of the time axis, s; null: all of it. */
+  /** Shows a span of the time axis, s; null: the whole axis. */
   readonly zoom: (span: Span | null) => void;
 }
 

@@ -5,7 +5,7 @@ import type { Span } from "./sample";
 const CLOSEST = 1e-6; // part of the whole axis that is shown at the least
 
 export class Zoom {
-  /** Shown part of the axis, s; null: all of it. */
+  /** Shown part of the axis, s; null: the whole axis. */
   span: Span | null = null;
   readonly element: HTMLElement;
   private readonly all = button("All", "The whole motion (double click in the curves)", () =>

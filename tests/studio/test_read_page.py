@@ -167,7 +167,7 @@ def test_the_task_of_figure_4_tells_the_swing(read: Any) -> None:
 
 
 def dropped(read: Any, path: Path) -> str:
-    """Opens a file in the view; what the view says of it."""
+    """Open a file in the view; returns its error."""
     with read.expect_file_chooser() as chooser:
         read.locator(".read").get_by_role("button", name="Open …", exact=True).click()
     problem = "document.querySelector('.read [role=alert]').textContent"

@@ -74,7 +74,7 @@ function whyAskew({ lines, hand }: Read): string | null {
   return askew.length ? `${angle()}. Now straight.` : null;
 }
 
-const swings = new Map<string, string>(); // by damping ratio
+const swings = new Map<string, string>(); // swings in words, by damping ratio
 
 /** The swing of the chosen pin past its rest after its last release, for each damping that was tried. */
 function figure4({ samples, chosen, ratio }: Read): string | null {
