@@ -317,7 +317,7 @@ def test_help_explains_the_view_and_closes(page: Any) -> None:
 
 
 def test_the_time_axis_zooms_and_pans(page: Any, tmp_path: Path) -> None:
-    """Closer, the shown span has as many samples as the whole motion before."""
+    """A zoom samples the shown span as finely as the whole motion."""
     span = "pindrive.page.view.span"
     samples = (
         "(() => { const {view: {span: [from, to], lines}} = pindrive.page;"
