@@ -122,6 +122,12 @@ size_t pindrive_check_values(const pindrive_given* given, size_t count, int whol
   return found;
 }
 
+void pindrive_direction(double angle, double* x, double* y) {
+  const pd::device::Vector direction = pd::device::Axis(angle).direction();
+  *x = direction.x;
+  *y = direction.y;
+}
+
 pindrive_device* pindrive_device_new(void) {
   pindrive_device* device = nullptr;
   guarded([&]() -> pindrive_error {

@@ -447,6 +447,9 @@ PINDRIVE_API pindrive_error pindrive_device_set_rows(pindrive_device *device, co
                                                      const double *first, const double *second,
                                                      size_t count);
 
+/* The unit vector (x, y) at an angle (rad) from x towards y, with the bits that the core has on every machine. */
+PINDRIVE_API void pindrive_direction(double angle, double *x, double *y);
+
 /* Sets the pins, of which each looks at the spot (x[i], y[i]) from the hand, m; at first there is one, at the
  * hand. */
 PINDRIVE_API pindrive_error pindrive_device_set_pins(pindrive_device *device, const double *x,

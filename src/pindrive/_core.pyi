@@ -121,6 +121,9 @@ def elementary(which: int, a: Annotated[NDArray[numpy.float64], dict(shape=(None
     Values of one of the elementary functions: sine, cosine, exp, expm1, log, log1p of a, or the angle of the points (b, a), by the kernel of a width.
     """
 
+def direction(angle: float) -> tuple[float, float]:
+    """Unit vector at an angle, rad."""
+
 def luminance(raster: tuple[Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], float, float, float], x: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], y: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]: ...
 
 def on_page(raster: tuple[Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], float, float, float], x: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], y: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C')]: ...

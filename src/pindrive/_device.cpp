@@ -70,6 +70,13 @@ nb::tuple printed_lines(const RasterNumbers& raster, const PathNumbers& path, do
 
 void bind_device(nb::module_& m) {
   m.def(
+      "direction",
+      [](double angle) {
+        const device::Vector found = device::Axis(angle).direction();
+        return std::pair(found.x, found.y);
+      },
+      "angle"_a, "Unit vector at an angle, rad.");
+  m.def(
       "luminance",
       [](const RasterNumbers& raster, const Column& x, const Column& y) {
         const device::Raster page = raster_of(raster);

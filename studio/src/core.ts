@@ -172,6 +172,15 @@ export class Core {
     );
   }
 
+  /** Unit vector at an angle, rad, with the bits that Python has. */
+  direction(angle: number): Row {
+    return this.borrowed(16, (at) => {
+      this.wasm.pindrive_direction!(angle, at, at + 8);
+      const [x, y] = new Float64Array(this.buffer, at, 2);
+      return [x!, y!];
+    });
+  }
+
   /** The motion of a release; to be freed. Throws CoreError on what the core cannot follow. */
   simulate(input: Input): Motion {
     return this.withInput(input, (drive, release) =>

@@ -86,7 +86,7 @@ function corners(values: Values, x: string, y: string): unknown {
 
 function ofReading(core: Core, { device, page, pixel, hand: saved, pictures }: Read["read"]): unknown {
   const design = readDevice(core, device, "the device");
-  const input = deviceInput(design);
+  const input = deviceInput(core, design);
   const grey = Uint8Array.from(Buffer.from(page.grey, "base64"));
   const hand = Hand.of(saved);
   const open = { device: input, page: { ...page, grey, pixel }, start: hand.start };
@@ -95,18 +95,26 @@ function ofReading(core: Core, { device, page, pixel, hand: saved, pictures }: R
   if (problem) return problem;
   let known = 0;
   let last: Answer = null;
+  const sampled: number[] = [];
   for (const until of pictures) {
     let count = known;
     while (count < hand.count && (count === 0 || saved.rows[count - 1]![0] / TIMES < until)) ++count;
     const rows = hand.rowsFrom(known).subarray(0, 3 * (count - known));
     last = engine.answer({ rows, until });
     known = count;
+    // Time and positions of all pins at each sample.
+    const { times, values } = last as Samples;
+    const pins = input.spots.length;
+    times.forEach((time, i) => {
+      const from = i * SAMPLED.length * pins;
+      sampled.push(time, ...values.subarray(from, from + pins));
+    });
   }
   const { values, times } = last as Samples;
   const end = values.subarray((times.length - 1) * SAMPLED.length * input.spots.length);
   const verdict = engine.answer({ judge: { ...open, rows: hand.rowsFrom(0) } }) as Verdict;
   const { x, y } = hand.at(hand.end);
-  return { end: bits(end), place: bits([x, y]), ...verdict };
+  return { end: bits(end), place: bits([x, y]), sampled: bits(sampled), ...verdict };
 }
 
 function answer(core: Core, asked: Question): unknown {

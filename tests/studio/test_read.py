@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.testing import assert_array_equal
+from numpy.testing import assert_allclose, assert_array_equal
 from typer.testing import CliRunner
 
 import pindrive as pd
@@ -106,7 +106,7 @@ def test_a_hand_has_the_bits_of_a_scan_at_any_rate_of_pictures(
     requested = [asked(hand, device, pictures(end, rate, i)) for i, rate in enumerate(rates)]
     found = node(requested)
     for other in found[1:]:
-        assert other == found[0]
+        assert {**other, "sampled": None} == {**found[0], "sampled": None}
     reading = load_reading(saved(hand, device, tmp_path / "reading.json"))
     done = pd.scan(reading.device, reading.page, reading.hand)
     pins = len(done.pins)
@@ -124,6 +124,51 @@ def test_a_hand_has_the_bits_of_a_scan_at_any_rate_of_pictures(
         lag = None if np.isnan(expected.begin.lag) else expected.begin.lag
         assert line["lag"] == lag
     assert found[0]["falseLines"] == len(evaluation.false_lines)
+
+
+def random_hand(node: Ask, seed: int) -> dict[str, Any]:
+    """A hand that wanders over the page, at any slowness, freely or along a ruler."""
+    random = np.random.default_rng([46, seed])
+    slowness = int(random.choice([40, 10, 1]))
+    count = {40: 700, 10: 260, 1: 40}[slowness]
+    x = 0.006 + np.cumsum(random.uniform(0.2, 1.8, count) * 0.03 / count)
+    y = 0.00625 + np.cumsum(random.normal(0.0, 1e-4, count)) * random.uniform(0.0, 0.5)
+    x += random.normal(0.0, 3e-5, count)
+    aims = [{"x": a, "y": b} for a, b in zip(x.tolist(), y.tolist(), strict=True)]
+    straight = bool(random.random() < 0.3)
+    (hand,) = node([{"follow": {"slowness": slowness, "straight": straight, "aims": aims}}])
+    return dict(hand)
+
+
+@pytest.mark.parametrize("begin", range(0, 200, 25))
+def test_200_hands_move_the_pins_as_in_python(node: Ask, tmp_path: Path, begin: int) -> None:
+    """No rate of pictures changes a bit; lines have the bits of Python, positions its digits."""
+    few = READER.replace("columns = 4", "columns = 2").replace("rows = 4", "rows = 1")
+    devices = (few, few.replace('stiffness = "300 N/m"\n', ""))
+    compared = lines = 0
+    for seed in range(begin, begin + 25):
+        random = np.random.default_rng([47, seed])
+        axis = f'spot_scale = 0.5\naxis = "{random.uniform(-30.0, 30.0):.3f} deg"\n'
+        device = devices[seed % 2].replace("spot_scale = 0.5\n", axis)
+        hand = random_hand(node, seed)
+        end = hand["rows"][-1][0] / 5000
+        rates = random.uniform(15, 300, 2).tolist()
+        found, other = node([asked(hand, device, pictures(end, rate, seed)) for rate in rates])
+        assert (found["end"], found["lines"]) == (other["end"], other["lines"]), f"hand {seed}"
+        reading = load_reading(saved(hand, device, tmp_path / "reading.json"))
+        done = pd.scan(reading.device, reading.page, reading.hand)
+        sampled = np.reshape(doubles(found["sampled"]), (-1, 1 + len(done.pins)))
+        for number, pin in enumerate(done.pins):
+            expected = pin.motion.position(sampled[:, 0])
+            # A series is summed in another order where a scan pauses than where it is read later.
+            assert_allclose(sampled[:, 1 + number], expected, 1e-13, 1e-17, err_msg=f"hand {seed}")
+            compared += len(expected)
+        for line, judged in zip(found["lines"], done.evaluate().lines, strict=True):
+            lag = None if np.isnan(judged.begin.lag) else judged.begin.lag
+            assert (line["pin"], line["outcome"], line["lag"]) == (judged.pin, judged.fate, lag)
+            lines += 1
+    assert compared > 5000
+    assert lines > 25
 
 
 def pin_luminance(done: pd.Scan, pin: int, t: float) -> float:

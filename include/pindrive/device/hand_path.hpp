@@ -54,6 +54,7 @@ class Axis {
   /// Direction from x towards y, rad.
   explicit Axis(double angle) : direction_{detail::cos(angle), detail::sin(angle)} {}
 
+  Vector direction() const { return direction_; }
   double along(Vector v) const { return v.x * direction_.x + v.y * direction_.y; }
   double across(Vector v) const { return v.y * direction_.x - v.x * direction_.y; }
 

@@ -6,11 +6,12 @@ from bisect import bisect_left, bisect_right
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from math import cos, sin, sqrt
+from math import sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pindrive import _core
 from pindrive.quantities.contradictions import refuse
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.table import check, default
@@ -143,7 +144,7 @@ class PinArray:
     @property
     def direction(self) -> tuple[float, float]:
         """The drive axis on the page, a unit vector."""
-        return cos(self.axis), sin(self.axis)
+        return _core.direction(self.axis)
 
     @property
     def travel(self) -> float | None:

@@ -1,5 +1,5 @@
 // The device of a design as the core takes it: the values of its keys, and the spots of its pins.
-import type { Row, Rows } from "../core";
+import type { Core, Row, Rows } from "../core";
 import type { Design } from "../design";
 import { settingsOf } from "../device";
 import type { Value } from "../friction";
@@ -15,12 +15,11 @@ export function valuesOf(design: Pick<Design, "values" | "around">): Readonly<Re
 }
 
 /** Spots of the pins from the hand on the page, m, in the order of the array. */
-export function spotsOf(values: Readonly<Record<string, Value>>): Row[] {
+export function spotsOf(core: Core, values: Readonly<Record<string, Value>>): Row[] {
   const number = (name: string, otherwise: number): number =>
     (values[`array.${name}`] as number | undefined) ?? otherwise;
   const scale = number("spot_scale", 1);
-  const axis = number("axis", 0);
-  const [ax, ay] = [Math.cos(axis), Math.sin(axis)];
+  const [ax, ay] = core.direction(number("axis", 0));
   const places = (values["array.places"] as Rows | undefined) ?? gridOf(number);
   return places.map(([x, y]) => {
     const [along, across] = [x * scale, y * scale];
@@ -36,7 +35,7 @@ function gridOf(number: (name: string, otherwise: number) => number): Row[] {
   ]);
 }
 
-export function deviceInput(design: Pick<Design, "values" | "around">): DeviceInput {
+export function deviceInput(core: Core, design: Pick<Design, "values" | "around">): DeviceInput {
   const values = valuesOf(design);
   const numbers: Record<string, number> = {};
   const rows: Record<string, Rows> = {};
@@ -46,5 +45,5 @@ export function deviceInput(design: Pick<Design, "values" | "around">): DeviceIn
     if (typeof value === "number") numbers[key] = value;
     else rows[key] = value as Rows;
   }
-  return { numbers, rows, spots: spotsOf(values) };
+  return { numbers, rows, spots: spotsOf(core, values) };
 }

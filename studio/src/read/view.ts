@@ -86,7 +86,7 @@ export class ReadView {
     private readonly showRelease: (design: Design) => void,
   ) {
     this.paper.text("Hello");
-    this.input = deviceInput(design);
+    this.input = deviceInput(this.core, design);
     this.chosen = middleOf(this.input.spots);
     this.felt = new Felt(this.paper.width, this.input.spots);
     this.skin = new Skin(this.input.spots.length);
@@ -250,7 +250,7 @@ export class ReadView {
     this.drawings.draw({
       look,
       picture: picture && { ...picture, chosen: this.chosen },
-      places: spotsOf(places),
+      places: spotsOf(this.core, places),
       samples: this.session.samples,
       threshold: this.input.numbers["control.threshold"] ?? 0.5,
       demonstration: this.hand.demonstration !== null,
@@ -266,7 +266,7 @@ export class ReadView {
   private setDesign(design: Design): void {
     const pins = this.input.spots.length;
     this.design = design;
-    this.input = deviceInput(design);
+    this.input = deviceInput(this.core, design);
     this.session.setDevice(this.input);
     this.felt.setSpots(this.input.spots);
     if (this.input.spots.length !== pins) {
