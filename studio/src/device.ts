@@ -3,7 +3,7 @@
 import type { Core, Row, Rows } from "./core";
 import type { Value, Values } from "./friction";
 import { nearest, unknownInFile } from "./names";
-import { floatRepr, general, quoted } from "./python";
+import { floatRepr, general, quoted } from "./numbertext";
 import { columnsOf, DRIVE, INPUTS, type Quantity, required, TABLES } from "./table";
 import { isTable, parseToml, TomlError, type TomlTable, type TomlValue } from "./toml";
 import { toSi, UnitError } from "./units";

@@ -1,5 +1,5 @@
 // Keys that a user types: which are near an unknown one, as src/pindrive/quantities/names.py has it.
-import { quoted } from "./python";
+import { quoted } from "./numbertext";
 import { TABLES } from "./table";
 
 const NEAR = 0.6;

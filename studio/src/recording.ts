@@ -1,5 +1,5 @@
 // A recording of a release: a CSV whose header names columns with their units, in SI.
-import { quoted, repr } from "./python";
+import { floatRepr, quoted } from "./numbertext";
 import { SERIES, type Series, TABLES } from "./table";
 import { expected, toSi, UnitError } from "./units";
 
@@ -101,7 +101,7 @@ export function readRecording(text: string, file: string): Recording {
 }
 
 function short(value: number): string {
-  return repr(Number(value.toPrecision(6))).replace(/\.0$/, "");
+  return floatRepr(Number(value.toPrecision(6))).replace(/\.0$/, "");
 }
 
 function unquoted(cell: string): string {

@@ -1,5 +1,5 @@
 // Text with a unit to an SI number, "12 g" to 0.012 kg, with the rounding of one decimal product.
-import { quoted } from "./python";
+import { quoted } from "./numbertext";
 import { TABLES } from "./table";
 
 /** Text that is not a number with a unit of the expected kind; says what is expected. */

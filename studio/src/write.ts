@@ -2,7 +2,7 @@
 
 import type { QuantityName } from "./core";
 import { type Design, isRows } from "./design";
-import { floatRepr, general } from "./python";
+import { floatRepr, general } from "./numbertext";
 import type { Curves } from "./sample";
 import { columnsOf, DRIVE, type Quantity, SERIES, TABLES } from "./table";
 import { TomlDate, type TomlTable, type TomlValue } from "./toml";

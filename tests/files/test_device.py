@@ -227,7 +227,7 @@ def test_numbers_keep_every_bit(value: float) -> None:
         (
             '"10 g"',
             "true",
-            'FILE: drive.mass must be a number with its unit, like "10 g", got True',
+            'FILE: drive.mass must be a number with its unit, like "10 g", got true',
         ),
         ('"10 g"', '"0 g"', 'FILE: drive.mass must be finite and greater than 0 kg, got "0 g"'),
         ('"10 g"', '"-1 g"', 'FILE: drive.mass must be finite and greater than 0 kg, got "-1 g"'),

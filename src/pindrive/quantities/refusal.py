@@ -31,8 +31,9 @@ class Refusal(str):
 
 
 def quoted(value: object) -> str:
-    """`value` as one short piece of a message: text in quotes, all on one line."""
-    text = json.dumps(value, ensure_ascii=False) if isinstance(value, str) else repr(value)
+    """`value` as one short piece of a message, as a TOML file has it, all on one line."""
+    plain = isinstance(value, (str, bool, list, dict))
+    text = json.dumps(value, ensure_ascii=False, default=str) if plain else repr(value)
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
