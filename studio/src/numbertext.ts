@@ -27,7 +27,7 @@ export function general(value: number, count = 6): string {
   return String(Number(value.toExponential(count - 1)));
 }
 
-/** What a TOML file may hold, as it stands there: a bigint is an integer, a number a float. */
+/** Text of a TOML value: a bigint is an integer, a number a float. */
 function written(value: unknown): string {
   if (typeof value === "number") return floatRepr(value);
   if (typeof value === "string") return JSON.stringify(value);

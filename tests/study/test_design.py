@@ -276,17 +276,17 @@ REFUSED = {
     '[axes]\nmass = { lin = ["1 g", "2 g"], count = 1 }': "axes.drive.mass.count must be a whole "
     "number from 2 to 524288000000, got 1",
     '[axes]\nmass = { lin = ["2 g", "2 g"], count = 3 }': "axes.drive.mass.lin must be two "
-    "different values, got ['2 g', '2 g']",
+    'different values, got ["2 g", "2 g"]',
     '[axes]\nmass = { lin = ["2 g"], count = 3 }': "axes.drive.mass.lin must be two values, "
-    "[first, last], got ['2 g']",
+    '[first, last], got ["2 g"]',
     '[axes]\nvelocity = { log = ["-1 mm/s", "1 mm/s"], count = 3 }': "axes.motion.velocity.log "
-    "must be two values greater than 0, got ['-1 mm/s', '1 mm/s']",
+    'must be two values greater than 0, got ["-1 mm/s", "1 mm/s"]',
     '[axes]\nmass = { lin = ["2 g", "3 g"], count = 3, step = 1 }': "unknown key "
     "axes.drive.mass.step; there is lin and count",
     '[axes]\nmass = "2 g"': "axes.drive.mass must be a list of values, or a table like "
     '{ lin = ["5 g", "20 g"], count = 10 }, got "2 g"',
     '[axes]\nmass = { uniform = ["3 g", "2 g"] }\n[sample]\ncount = 9': "axes.drive.mass.uniform "
-    "must be a lowest and a highest value, got ['3 g', '2 g']",
+    'must be a lowest and a highest value, got ["3 g", "2 g"]',
     '[axes]\nmass = { normal = ["3 g", "0 g"] }\n[sample]\ncount = 9': "axes.drive.mass.normal[1] "
     'must be a deviation greater than 0, got "0 g"',
     '[axes]\nmass = { lognormal = ["3 g", 0.9] }\n[sample]\ncount = 9': "axes.drive.mass."
