@@ -317,7 +317,7 @@ REFUSED = {
     "axis of a list or of even steps",
     'zip = [["mass", "mass"]]\n[axes]\nmass = ["1 g"]': "zip: drive.mass is named twice",
     'zip = [["mass"]]\n[axes]\nmass = ["1 g"]': "zip: a group must be two keys or more, got "
-    "['mass']",
+    '["mass"]',
     'outputs = ["swinge"]': "outputs: unknown number swinge; did you mean swing?",
     'outputs = ["peak_force"]': "outputs: peak_force may be plate_peak_force or finger_peak_force; "
     "give it in full",
@@ -332,7 +332,7 @@ REFUSED = {
     '[tolerances]\nplate.kinetic = "120 %"': "tolerances.plate.kinetic must be finite and at "
     'least 0 N, got "120 %", which reaches -4 mN',
     '[tolerances]\nplate.kinetic = ["1 mN"]': "tolerances.plate.kinetic must be a tolerance like "
-    '"20 %" or { uniform = ["10 mN", "40 mN"] }, got [\'1 mN\']',
+    '"20 %" or { uniform = ["10 mN", "40 mN"] }, got ["1 mN"]',
 }
 
 
