@@ -317,7 +317,7 @@ def test_a_pin_opens_its_motion_in_the_other_view(read: Any, tmp_path: Path) -> 
     read.wait_for_timeout(700)
     reading = load_reading(saved(read, "file", tmp_path))
     read.get_by_label("pin from the side", exact=True).select_option("6")
-    read.get_by_role("button", name="Open its motion").click()
+    read.get_by_role("button", name="Open its motion", exact=True).click()
     until(read, "window.pindrive.page?.state.designs.length === 2")
     settled(read)
     times, shown = read.evaluate(
