@@ -293,7 +293,7 @@ def test_reduced_motion_has_no_demonstration(page: Any) -> None:
 def test_axe_finds_no_violation_and_nothing_is_cut_off(read: Any, scheme: str) -> None:
     read.emulate_media(color_scheme=scheme)
     read.evaluate(AXE.read_text("utf-8"))
-    for width, height in ((320, 640), (390, 844), (1440, 900), (2560, 1440)):
+    for width, height in ((320, 640), (390, 844), (1440, 900), (2560, 1440), (3840, 2160)):
         read.set_viewport_size({"width": width, "height": height})
         read.wait_for_timeout(300)
         assert read.evaluate("document.documentElement.scrollWidth") <= width, width
