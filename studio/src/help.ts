@@ -12,17 +12,17 @@ const HELP: Readonly<Record<"release" | "read", readonly Line[]>> = {
     ["Space", "plays the motion"],
     ["Ctrl+Z, Ctrl+Shift+Z", "undo and redo"],
     ["Keep ghost", "leaves the present curve in grey, to compare with"],
-    ["Click the map", "sets both of its parameters; dots mark where the limits are kept"],
+    ["Drag the dot of the map", "sets both of its parameters; stripes mark where limits are exceeded"],
     ["Drop a file", "opens a device file (TOML), or lays a recording (CSV) over the curves"],
   ],
   read: [
     ["Move over the page", "moves the device; on a touch screen a finger drags it like a mouse"],
     ["Arrow keys on the page", "move the hand at a set speed"],
-    ["Type, draw, or drop a picture", "makes another page"],
+    ["Type, draw, drop a picture", "makes another page"],
     ["Click a pin", "shows it from the side; its motion opens in the other view"],
     ["10× slower", "time runs slower than your hand: a release lasts some milliseconds"],
     ["Sliders", "change the device under the hand; the reading begins anew"],
-    ["Repeat", "replays the reading to the bit, at any speed"],
+    ["Replay", "repeats the reading four times slower; its slider moves through it"],
   ],
 };
 
