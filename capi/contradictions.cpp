@@ -442,9 +442,10 @@ class Search {
                  {"field", coil.field(), 1e-12, 1e12, "T"},
                  {"power", coil.power(), 1e-15, 1e15, "W"}};
     for (const auto& part : parts) {
-      if (!(part.value < part.lower || part.value > part.upper)) continue;
+      const device::Bounds bounds = device::ranges::between(part.lower, part.upper);
+      if (std::isnan(part.value) || bounds.contains(part.value)) continue;
       Text required;
-      add_bounds(required, device::ranges::between(part.lower, part.upper), part.unit);
+      add_bounds(required, bounds, part.unit);
       add(made, {}, "such that the %s of the coil is %s|values that make it %v %s", part.name,
           required.get(), part.value, part.unit);
       return false;

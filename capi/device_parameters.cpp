@@ -181,6 +181,7 @@ std::unique_ptr<const device::Electromagnet> DeviceParameters::magnet() const {
   found.pulse_frequency = of("magnet.pwm_frequency", 1).value;
   std::vector<device::VoltageStep> steps;
   const auto times = list("magnet.voltage.time"), volts = list("magnet.voltage.value");
+  steps.reserve(times.size());
   for (std::size_t i = 0; i < times.size(); ++i)
     steps.push_back({times[i].value, volts[i].value / number("magnet.supply_voltage")});
   return std::make_unique<const device::Electromagnet>(found, std::move(steps));
