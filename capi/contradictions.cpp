@@ -391,14 +391,7 @@ class Search {
     constexpr const char *voltage = "magnet.voltage", *residual = "magnet.residual";
     if (!made && has(voltage))
       add(voltage, {}, "given with a coil, by turns, gap, wire_diameter and the like|it alone");
-    const device::CoilConstruction coil{number("magnet.turns"),
-                                        number("magnet.pole_area"),
-                                        number("magnet.gap"),
-                                        number("magnet.wire_diameter"),
-                                        number("magnet.turn_length"),
-                                        number("magnet.supply_voltage"),
-                                        number("magnet.release_resistance"),
-                                        number("magnet.saturation_field")};
+    const auto coil = device::CoilConstruction::of([&](const char* key) { return number(key); });
     if (made && !check_coil(coil, made)) return;
     device::MagnetParameters magnet = made ? coil.magnet(0) : device::MagnetParameters{};
     if (!made) magnet.hold_force = number("magnet.hold_force");

@@ -153,15 +153,9 @@ std::unique_ptr<const device::Electromagnet> DeviceParameters::magnet() const {
   const double deviation = number("magnet.deviation");
   device::MagnetParameters found{};
   if (made) {
-    const device::CoilConstruction coil{number("magnet.turns"),
-                                        number("magnet.pole_area"),
-                                        number("magnet.gap"),
-                                        number("magnet.wire_diameter"),
-                                        number("magnet.turn_length"),
-                                        number("magnet.supply_voltage"),
-                                        number("magnet.release_resistance"),
-                                        number("magnet.saturation_field")};
-    found = coil.magnet(deviation);
+    found = device::CoilConstruction::of([&](const char* key) {
+              return number(key);
+            }).magnet(deviation);
     found.thermal_resistance = number("magnet.thermal_resistance");
     found.heat_capacity = of("magnet.heat_capacity").value;
   } else {

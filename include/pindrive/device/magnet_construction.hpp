@@ -17,6 +17,19 @@ struct CoilConstruction {
   double release_resistance;  ///< of the decay path beside the winding, ohm
   double saturation_field;    ///< T
 
+  /// Construction by the keys of a device file; `number` returns the value of a key.
+  template <class Number>
+  static CoilConstruction of(Number&& number) {
+    return {number("magnet.turns"),
+            number("magnet.pole_area"),
+            number("magnet.gap"),
+            number("magnet.wire_diameter"),
+            number("magnet.turn_length"),
+            number("magnet.supply_voltage"),
+            number("magnet.release_resistance"),
+            number("magnet.saturation_field")};
+  }
+
   static constexpr double pi = 0x1.921fb54442d18p+1;
   static constexpr double magnetic_constant = 1.25663706127e-6;  ///< N/A², CODATA 2022
   static constexpr double copper = 1 / 58e6;  ///< resistivity at 20 °C, ohm m (IEC 60028)

@@ -442,13 +442,6 @@ _PARTS: Final = (
         "friction coefficient in a friction curve",
         bounds=NON_NEGATIVE,
     ),
-    Quantity(
-        "curve.coefficient_slope",
-        "dμ/d|u|",
-        "s/m",
-        "slope of a curve of friction coefficients between rows",
-        bounds=FINITE,
-    ),
     Quantity("coefficient", "μ", "1", "friction force over normal force", bounds=NON_NEGATIVE),
     Quantity(
         "static_coefficient",
@@ -463,13 +456,6 @@ _PARTS: Final = (
         "N",
         "normal force of a contact: weight, preload and pull, or the touch force",
         bounds=NON_NEGATIVE,
-    ),
-    Quantity(
-        "curve.slope",
-        "dF/d|u|",
-        "N*s/m",
-        "slope of a friction curve between rows",
-        bounds=FINITE,
     ),
     Quantity("profile.time", "t", "s", "time of a profile's row", bounds=FINITE),
     Quantity("profile.value", "y", "1", "value of a profile's row", bounds=FINITE),
