@@ -13,10 +13,13 @@ export interface Axes {
   readonly y: Range;
 }
 
+/** Ranges of the axes; a quantity of both signs keeps the sign of its value. */
 export function axesOf(values: Values, x: string, y: string): Axes {
   const of = (key: string): Range => {
-    const range = rangeOf(DRIVE.get(key)!, values[key] as number);
-    return { ...range, zero: false };
+    const value = values[key] as number;
+    const range = { ...rangeOf(DRIVE.get(key)!, value), zero: false };
+    if (range.logarithmic || value === 0) return range;
+    return value > 0 ? { ...range, lower: 0 } : { ...range, upper: 0 };
   };
   return { x: of(x), y: of(y) };
 }

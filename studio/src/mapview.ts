@@ -225,7 +225,11 @@ function symbolOf(key: string): string {
 
 /** Plain values along an axis: of a logarithmic one the powers of ten and a few between. */
 function axisTicks(range: Range): number[] {
-  if (!range.logarithmic) return [-0.8, -0.4, 0, 0.4, 0.8].map((part) => part * range.upper);
+  if (!range.logarithmic) {
+    const reach = Math.max(-range.lower, range.upper);
+    const ticks = [-0.8, -0.4, 0, 0.4, 0.8].map((part) => part * reach);
+    return ticks.filter((value) => value >= range.lower && value <= range.upper);
+  }
   const found: number[] = [];
   for (let power = Math.floor(Math.log10(range.lower)); 10 ** power <= range.upper; ++power) {
     for (const m of [1, 2, 5]) {

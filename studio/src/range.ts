@@ -37,7 +37,7 @@ export function rangeOf(quantity: Quantity, value: number): Range {
 export function valueAt(range: Range, part: number): number {
   if (!range.logarithmic) {
     // In thousandths of the reach: a slider stops at plain numbers, 0 among them.
-    const step = range.upper / 1000;
+    const step = Math.max(-range.lower, range.upper) / 1000;
     const count = Math.round((range.lower + part * (range.upper - range.lower)) / step);
     return Number((count * step).toPrecision(6)) + 0; // no negative zero
   }

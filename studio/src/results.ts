@@ -175,7 +175,8 @@ export class Bars {
 
   update(found: readonly Effect[], number: Quantity, value: number): void {
     const largest = Math.max(...found.map(({ change }) => Math.abs(change) || 0), Number.MIN_VALUE);
-    const sorted = [...found].sort((a, b) => (Math.abs(b.change) || 0) - (Math.abs(a.change) || 0));
+    const defined = Number.isNaN(value) ? [] : [...found];
+    const sorted = defined.sort((a, b) => (Math.abs(b.change) || 0) - (Math.abs(a.change) || 0));
     const rows = sorted.map(({ key, change }) => {
       const part = Math.abs(change) / largest || 0;
       const bar = h("span", { class: change < 0 ? "bar down" : "bar up" });
@@ -201,7 +202,11 @@ export class Bars {
             ),
             h("tbody", {}, ...rows),
           )
-        : h("p", { class: "note" }, "No parameter differs from 0."),
+        : h(
+            "p",
+            { class: "note" },
+            found.length ? `This motion has no ${label(number)}.` : "No parameter differs from 0.",
+          ),
     ]);
   }
 }

@@ -192,6 +192,11 @@ def test_derivatives_are_those_of_python(page: Any) -> None:
         expected = (more - base) / step * 0.01 * 1e3
         shown = float(bars[name].split(" ")[0].replace("−", "-").replace("+", ""))
         assert shown == pytest.approx(expected, rel=5e-3), name
+    page.get_by_label("duration", exact=False).first.check()
+    page.fill("#motion-duration", "5")  # ms, in which it does not settle
+    page.keyboard.press("Enter")
+    settled(page)
+    assert page.locator(".bars").inner_text() == "This motion has no settling time."
 
 
 def test_every_file_goes_out_and_in_again(
@@ -444,6 +449,7 @@ def test_the_map_holds_the_numbers_of_python_and_its_dot_moves(page: Any) -> Non
         " met: [...r.last.met],"
         " x: [...r.task.varied.mouse_velocity.x], y: [...r.task.varied['plate.kinetic'].y]}; })()"
     )
+    assert min(found["x"]) > 0.0  # the hand moves as it does in the design
     device = pd.load_device(EXAMPLE)
     for i, j in ((0, 0), (63, 5), (31, 40), (50, 63)):
         given = {"motion.mouse_velocity": found["x"][i], "plate.kinetic": found["y"][j]}
@@ -470,7 +476,7 @@ def test_the_map_holds_the_numbers_of_python_and_its_dot_moves(page: Any) -> Non
     page.mouse.move(box["x"] + 110, box["y"] + 80)
     page.mouse.up()
     settled(page)
-    assert value(page, "motion.mouse_velocity") < 0
+    assert value(page, "motion.mouse_velocity") < 0.06
     assert value(page, "plate.kinetic") > 0.022
 
 

@@ -222,6 +222,10 @@ def test_sliders_change_the_device_and_its_limits(read: Any, tmp_path: Path) -> 
     path = saved(read, "device", tmp_path)
     fall = pd.load_device(path, whole=True).values()["magnet.fall_time"]
     assert fall == pytest.approx(5e-3 * 8**0.8, rel=1e-2)
+    told = read.locator(".speed-card").inner_text()
+    slower, first = map(int, re.findall(r"up to (\d+) mm/s", told))
+    assert "Two lines 1 mm apart are felt as two" in told and "with the device before" in told
+    assert slower < first
 
 
 def test_devices_pictures_and_readings_are_opened(read: Any, tmp_path: Path) -> None:

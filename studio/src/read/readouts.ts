@@ -16,8 +16,9 @@ export class Readouts {
   readonly spoken = h("p", { class: "visually-hidden", role: "status" });
   readonly problem = h("p", { class: "problem", role: "alert", hidden: true });
   private readonly speed = h("output", { class: "speed" }, "0");
-  private readonly yours = h("span", { class: "note" });
+  private readonly yours = h("span", { class: "note yours" });
   private readonly merging = h("p", { class: "note merging" });
+  private readonly finest = h("p", { class: "note" });
   private readonly counts: Readonly<Record<Count, HTMLElement>>;
   private spokenAt = 0;
 
@@ -37,6 +38,7 @@ export class Readouts {
       "Speed of the hand",
       h("div", { class: "speeds" }, speed, dial),
       this.merging,
+      this.finest,
       h("dl", { class: "counts" }, ...cells),
     );
   }
@@ -70,6 +72,15 @@ export class Readouts {
         ? `closer than ${pitch.toFixed(1)} mm`
         : widest && `closer than ${widest.pitch} mm, and some wider ones,`;
     this.merging.textContent = speed < STANDS || !merged ? "" : `now lines ${merged} become one`;
+  }
+
+  /** Speeds up to which the closest lines stay distinct, with this device and with the one before. */
+  showLimits([closest]: readonly Limit[], [before]: readonly Limit[]): void {
+    if (!closest) return;
+    const fastest = ({ speed }: Limit): string =>
+      speed > 0 ? `up to ${Math.round(speed)} mm/s` : "at no speed";
+    const other = before ? `; with the device before, ${fastest(before)}` : "";
+    this.finest.textContent = `Two lines ${closest.pitch} mm apart are felt as two ${fastest(closest)}${other}.`;
   }
 
   showLines(lines: readonly Line[], falseLines: number): void {

@@ -238,7 +238,9 @@ export class ReadView {
       void this.judge.ask("read", task).then((answer) => {
         if (number !== this.limitsAsked || !answer || !("limits" in answer)) return;
         const { limits } = answer as Limits;
+        const before = this.limits;
         this.limits = limits.map(({ to }, i) => ({ pitch: PITCHES[i]!, speed: 1e3 * to }));
+        this.readouts.showLimits(this.limits, before);
         this.draw();
       });
     }, SETTLED);
