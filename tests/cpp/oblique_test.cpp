@@ -20,16 +20,22 @@ namespace {
 
 constexpr double inf = std::numeric_limits<double>::infinity();
 const pd::Branch<double> branch{0.01, 0.5, 0.03, -0.02, 0};
+const pd::Branch<double> falling{0, inf, 0.03, 0.02, 0, {pd::FallingShape::gaussian, 0.01, 0.2}};
 
-/// −λ (F + S ρ) u/ρ, F at no speed.
-long double force(const ObliqueSlip<double>& slip, const Line& load, long double t) {
+/// −λ (F + S ρ) u/ρ, F at no speed, or with a part that falls.
+long double force(const pd::Branch<double>& of, const ObliqueSlip<double>& slip, const Line& load,
+                  long double t) {
   const long double u = slip.u.value + slip.u.rate * t, w = slip.w.value + slip.w.rate * t;
   const long double r = std::sqrt(u * u + w * w);
-  const long double friction = branch.force + branch.slope * (r - branch.from);
+  long double friction = of.force + of.slope * (r - of.from);
+  if (!of.linear()) {
+    const long double s = r / of.falling.velocity;
+    friction -= of.falling.excess * (1 - std::exp(-s * s));
+  }
   return -(load.value + load.rate * t) * friction * u / r;
 }
 
-void changes() {
+void changes(const pd::Branch<double>& of) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> draw(-0.1, 0.1);
   bool rates = true, bends = true, steep = true, speeds = true;
@@ -37,19 +43,22 @@ void changes() {
     const ObliqueSlip<double> slip{{draw(random), draw(random)}, {draw(random), draw(random)}};
     const Line load{1 + draw(random), 10 * draw(random)};
     const double speed = std::hypot(slip.u.value, slip.w.value);
+    const pd::Branch<double> tangent = of.tangent(speed);
+    const double curvature = of.linear() ? 0 : of.falling.curvature(speed);
     const long double h = 1e-4L * speed;  // of third order beside the speed's rates of change
-    const auto at = [&](int k) { return force(slip, load, k * h); };
+    const auto at = [&](int k) { return force(of, slip, load, k * h); };
     const long double rate = (8 * (at(1) - at(-1)) - (at(2) - at(-2))) / (12 * h);
     const long double bend = (16 * (at(1) + at(-1)) - (at(2) + at(-2)) - 30 * at(0)) / (12 * h * h);
     const double size = 0.04 * (1 + 1 / speed);
-    rates = rates && std::abs(slip.force_rate(branch, load) - rate) < 1e-10 * size;
-    bends = bends && std::abs(slip.force_second_rate(branch, load) - bend) < 1e-6 * size / speed;
+    rates = rates && std::abs(slip.force_rate(tangent, load) - rate) < 1e-10 * size;
+    const double second = slip.force_second_rate(tangent, curvature, load);
+    bends = bends && std::abs(second - bend) < 1e-6 * size / speed;
     ObliqueSlip<double> faster = slip, slower = slip;
     faster.u.value += 1e-6 * speed;
     slower.u.value -= 1e-6 * speed;
-    const long double fall = force(slower, load, 0) - force(faster, load, 0);
+    const long double fall = force(of, slower, load, 0) - force(of, faster, load, 0);
     const auto steepness = static_cast<double>(fall / (2e-6L * speed));
-    steep = steep && near(slip.steepness(branch, load) / steepness, 1, 1e-5);
+    steep = steep && near(slip.steepness(tangent, load) / steepness, 1, 1e-5);
     const auto square = [&](long double t) {
       const long double u = slip.u.value + slip.u.rate * t, w = slip.w.value + slip.w.rate * t;
       return (u * u + w * w) / 2;
@@ -147,7 +156,8 @@ void departures() {
 
 int main() {
   departures();
-  changes();
+  changes(branch);
+  changes(falling);
   asks();
   sets_out_and_lands();
   return check::status();

@@ -1,6 +1,8 @@
 // Quantities along a step as polynomials: their arithmetic, what encloses them, and their zeros with certainty.
 #include "pindrive/flow/polynomial.hpp"
 
+#include <array>
+#include <cmath>
 #include <random>
 #include <vector>
 
@@ -110,6 +112,29 @@ void derivative_of_zero() {
          "a zero moves with the coefficients");
 }
 
+/// A geometric series: sums of its coefficients, and of the terms of its square beyond the last order.
+void series_products() {
+  constexpr int N = pd::detail::series_order;
+  std::array<double, N + 2> c{};
+  for (int n = 0; n <= N; ++n) c[n] = std::pow(0.5, n);
+  const auto sums = pd::detail::sums_of(c);
+  expect(near(sums[0], 2, 1e-7) && sums[N] == std::pow(0.5, N),
+         "the sizes of the coefficients are summed from each on");
+  double beyond = 0;
+  for (int i = 0; i <= N; ++i)
+    for (int j = 0; j <= N; ++j)
+      if (i + j > N) beyond += c[i] * c[j];
+  expect(near(pd::detail::beyond(sums, sums) / beyond, 1, 1e-12),
+         "a product comes to what its terms beyond the order add up to");
+  P p;
+  p.degree = N;
+  p.span = 2;
+  for (int n = 0; n <= N; ++n) p.c[n] = c[n];
+  P part = p;
+  part.rescale(0.25);
+  expect(part.span == 0.5 && near(part.at(0.3), p.at(0.3), 1e-15), "a part of a step is a step");
+}
+
 }  // namespace
 
 int main() {
@@ -117,5 +142,6 @@ int main() {
   encloses();
   zeros();
   derivative_of_zero();
+  series_products();
   return check::status();
 }

@@ -21,7 +21,7 @@ struct Geometric : pd::detail::SeriesStep<double> {
     for (int n = 0; n <= N; ++n) position.c[n + 1] = length * velocity.c[n] / (n + 1);
   }
   using SeriesStep<double>::suggested_part, SeriesStep<double>::rescale, SeriesStep<double>::trim;
-  using SeriesStep<double>::sums_of, SeriesStep<double>::beyond, SeriesStep<double>::N;
+  using SeriesStep<double>::N;
 };
 
 void lengths() {
@@ -54,24 +54,10 @@ void shortens() {
   expect(step.skin_bound == 0 && step.speed_bound == 0, "what is zero loses nothing");
 }
 
-void products() {
-  Geometric one(0.5);
-  const auto sums = Geometric::sums_of(one.velocity.c);
-  expect(near(sums[0], 2, 1e-7) && sums[Geometric::N] == std::pow(0.5, Geometric::N),
-         "the sizes of the coefficients are summed from each on");
-  double beyond = 0;  // of the square: the orders N + 1 … 2N
-  for (int i = 0; i <= Geometric::N; ++i)
-    for (int j = 0; j <= Geometric::N; ++j)
-      if (i + j > Geometric::N) beyond += one.velocity.c[i] * one.velocity.c[j];
-  expect(near(Geometric::beyond(sums, sums) / beyond, 1, 1e-12),
-         "a product comes to what its terms beyond the order add up to");
-}
-
 }  // namespace
 
 int main() {
   lengths();
   shortens();
-  products();
   return check::status();
 }

@@ -101,11 +101,13 @@ class Evolution {
     return event;
   }
 
-  /// Time to the next turning point of a pin over a plate that slides across, under constant
-  /// inputs; infinite elsewhere. Such a pin may oscillate for ever without an event, and a cycle is
+  /// Time to the next turning point of a pin over a plate that slides across, or under a friction
+  /// law that is not linear, with constant inputs; infinite elsewhere. Such a pin may oscillate for ever without an event, and a cycle is
   /// closed at its turning points.
   T turning_point() const {
-    return series.used() && pin.plate.oblique() && !pin.held() && !(next_breakpoint < never)
+    const bool turns =
+        pin.plate.oblique() || !pin.drive.plate.linear() || !pin.drive.finger.linear();
+    return series.used() && turns && !pin.held() && !(next_breakpoint < never)
                ? series.turning_point()
                : never;
   }

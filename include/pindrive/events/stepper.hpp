@@ -298,7 +298,7 @@ class Stepper {
   T horizon_{never};  ///< time at which the inputs are set next at the latest, s
   Mode before_{};     ///< mode until the last event
   State last_;        ///< state at the last event, before the mode was selected
-  Segment<T> segment_;
+  Segment<T> segment_{};
   T tau_;  ///< duration of the segment if the inputs continue, s
   Event event_{};
   Status status_{Status::ok};

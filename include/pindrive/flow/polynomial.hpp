@@ -46,6 +46,16 @@ struct Polynomial {
     return rate;
   }
 
+  /// Takes a part of the step as the step.
+  void rescale(Real part) {
+    span *= part;
+    Real factor{1};
+    for (T& each : c) {
+      each *= factor;
+      factor *= part;
+    }
+  }
+
   Polynomial& operator+=(const Polynomial& other) {
     degree = std::max(degree, other.degree);
     for (int n = 0; n <= other.degree; ++n) c[n] += other.c[n];
@@ -70,6 +80,23 @@ struct Polynomial {
     return p;
   }
 };
+
+/// Tail sums of the absolute coefficients of a series: of all orders from n on.
+template <class Real>
+using Sums = std::array<Real, series_order + 2>;
+template <class T>
+Sums<Real<T>> sums_of(const std::array<T, series_order + 2>& c) {
+  Sums<Real<T>> sums{};
+  for (int n = series_order; n >= 0; --n) sums[n] = sums[n + 1] + std::abs(plain(c[n]));
+  return sums;
+}
+/// Bound of the terms of a product of two series beyond the last order.
+template <class Real>
+Real beyond(const Sums<Real>& p, const Sums<Real>& q) {
+  Real sum{0};
+  for (int i = 1; i <= series_order; ++i) sum += (p[i] - p[i + 1]) * q[series_order + 1 - i];
+  return sum;
+}
 
 /// Bernstein coefficients on [0, 1] of a polynomial in powers. The values lie between the smallest
 /// and the largest coefficient; the first and the last are the values at the ends.

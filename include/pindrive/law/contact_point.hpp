@@ -39,6 +39,16 @@ struct ContactPoint {
   bool elastic() const { return mode.state == ContactState::elastic_stick; }
   bool oblique() const { return mode.state == ContactState::slip_oblique; }
   Branch<T> branch() const { return contact.branch(mode.branch); }
+  /// Friction near the sliding speed of a rigid contact, linear.
+  Branch<T> linear_branch(T v) const {
+    const Branch<T> range = branch();
+    return range.linear() ? range : range.tangent(sliding_speed(v));
+  }
+  /// Curvature of friction over the sliding speed, N s²/m².
+  T curvature(T v) const {
+    const Branch<T> range = branch();
+    return range.linear() ? T(0) : range.falling.curvature(sliding_speed(v));
+  }
   T stick_limit() const { return contact.static_limit * load.value; }  ///< largest stick force, N
 
   /// Takes a candidate as the mode.
@@ -177,16 +187,17 @@ struct ContactPoint {
     if (elastic()) return {-stretching, abs(stretching), -contact.stiffness * acceleration};
     if (!sliding()) return {};
     if (has_slider_state()) return slip_force_rate(v, acceleration);
-    const Branch<T> range = branch();
-    const T relative = acceleration - surface.rate;
+    const Branch<T> range = linear_branch(v);
+    const T relative = acceleration - surface.rate, bend = curvature(v);
     T rate{}, second{};
     if (oblique()) {
       const ObliqueSlip<T> speed = oblique_slip(v, acceleration);
       rate = speed.force_rate(range, load);
-      second = speed.force_second_rate(range, load);
+      second = speed.force_second_rate(range, bend, load);
     } else {
       rate = -range.slope * load.value * relative - mode.slip_sign * start.friction * load.rate;
       second = -2 * range.slope * load.rate * relative;
+      if (bend != 0) second -= mode.slip_sign * bend * load.value * relative * relative;
     }
     const T slope_error = range.rounding * load.value * abs(relative);
     return {rate, abs(rate) + slope_error / rounding<T>, second};
@@ -195,12 +206,12 @@ struct ContactPoint {
   /// across.
   T force_error(T v) const {
     if (!oblique() || v == 0) return T(0);
-    return rounding<T> * abs(v * oblique_slip(v, surface.rate).steepness(branch(), load));
+    return rounding<T> * abs(v * oblique_slip(v, surface.rate).steepness(linear_branch(v), load));
   }
   /// Magnitude of the terms that the contact adds to a sum of forces, N.
   T force_scale(T v) const {
     if (contact.branches == 0 || !sliding()) return stick_limit();
-    const T rounded = abs(branch().slope) * speed_scale(v);
+    const T rounded = abs(linear_branch(v).slope) * speed_scale(v);
     return (contact.static_limit + rounded) * load.value + start.friction * load.value;
   }
 
@@ -215,7 +226,7 @@ struct ContactPoint {
       return {{axial * load.value, axial * load.rate}};
     }
     if (!sliding()) return {};
-    const Branch<T> range = branch();
+    const Branch<T> range = linear_branch(s.v);
     const T force = -mode.slip_sign * range.force;
     Force<T> law{{force * load.value, force * load.rate}};
     if (vanishes(range.slope)) return law;
@@ -269,6 +280,11 @@ struct ContactPoint {
   }
 
  private:
+  /// Sliding speed of a rigid contact, m/s.
+  T sliding_speed(T v) const {
+    const T u = v - surface.value;
+    return oblique() ? hypot(u, across.value) : mode.slip_sign * u;
+  }
   /// Skin tension in elastic stick, N.
   T skin_tension(const State<T>& s) const {
     return start.shortens_skin ? (s.skin < 0 ? T(-1) : T(1)) * start.friction * load.value : s.skin;

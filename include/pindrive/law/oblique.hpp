@@ -37,7 +37,8 @@ T departure_acceleration(T mass, T friction, T across_rate, T pull) {
   return t * w;
 }
 
-/// Axial and transverse sliding velocity u and w, linear from this instant on.
+/// Axial and transverse sliding velocity u and w, linear from this instant on. A branch is linear;
+/// its curvature (N s²/m²) counts where a second derivative is asked for.
 ///
 /// On the branch F + S ρ with ρ = √(u² + w²) the axial force is −λ (F d + S u) with d = u/ρ, and u'
 /// w − u w' is constant.
@@ -55,22 +56,24 @@ struct ObliqueSlip {
   /// Decrease of the force with the axial velocity, N s/m.
   T steepness(const Branch<T>& branch, const Line<T>& load) const {
     const T r = speed(), across = r > 0 ? w.value / r : T(0);
-    return load.value * ((r > 0 ? at_rest(branch) * across * across / r : T(0)) + branch.slope);
+    return load.value * ((r > 0 ? branch.intercept() * across * across / r : T(0)) + branch.slope);
   }
   T force_rate(const Branch<T>& branch, const Line<T>& load) const {
-    const T strength = at_rest(branch);
+    const T strength = branch.intercept();
     return -load.rate * (strength * along() + branch.slope * u.value) -
            load.value * (strength * turning() + branch.slope * u.rate);
   }
-  T force_second_rate(const Branch<T>& branch, const Line<T>& load) const {
-    const T strength = at_rest(branch);
+  T force_second_rate(const Branch<T>& branch, T curvature, const Line<T>& load) const {
+    const T strength = branch.intercept();
+    const T bend = curvature == 0 ? T(0) : curvature * faster() * faster() * along() * load.value;
     return -2 * load.rate * (strength * turning() + branch.slope * u.rate) -
-           load.value * strength * turning_rate();
+           load.value * strength * turning_rate() - bend;
   }
 
  private:
-  static T at_rest(const Branch<T>& branch) { return branch.force - branch.slope * branch.from; }
   T speed() const { return hypot(u.value, w.value); }
+  /// Rate of the sliding speed ρ.
+  T faster() const { return speed() > 0 ? closing() / speed() : hypot(u.rate, w.rate); }
   T along() const { return speed() > 0 ? u.value / speed() : u.rate / hypot(u.rate, w.rate); }
   T turn() const { return u.rate * w.value - u.value * w.rate; }
   /// First derivative of d; zero at zero speed.

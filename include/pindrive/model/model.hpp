@@ -14,15 +14,67 @@ namespace pindrive {
 /// Default band of the settling time, as a fraction of |x(0) − x_end|.
 inline constexpr double settling_band = 0.05;
 
-/// Kinetic friction in one range of sliding speed: force + slope·(|u| − from) for from <= |u| < to.
+/// Shape of friction that falls with the sliding speed: with s = |u|/velocity, e^(−s), e^(−s²) or
+/// 1/(1 + s²).
+enum class FallingShape : signed char { none, exponential, gaussian, rational };
+
+/// Part of kinetic friction that falls from its excess at rest to zero (MODEL, section 11).
+template <class T>
+struct FallingFriction {
+  FallingShape shape{FallingShape::none};
+  T excess{0};    ///< at rest, N; >= 0
+  T velocity{1};  ///< Stribeck velocity, m/s; > 0
+
+  bool present() const { return shape != FallingShape::none; }
+  T at(T speed) const { return present() ? excess * fraction(speed / velocity) : T(0); }
+  /// First derivative by the speed, N s/m.
+  T slope(T speed) const {
+    const T s = speed / velocity, g = fraction(s);
+    if (shape == FallingShape::exponential) return -excess * g / velocity;
+    return -2 * s * g * (shape == FallingShape::gaussian ? T(1) : g) * excess / velocity;
+  }
+  /// Second derivative by the speed, N s²/m².
+  T curvature(T speed) const {
+    const T s = speed / velocity, g = fraction(s);
+    const T bend = shape == FallingShape::exponential ? g
+                   : shape == FallingShape::gaussian  ? (4 * s * s - 2) * g
+                                                      : (8 * s * s * g - 2) * g * g;
+    return bend * excess / (velocity * velocity);
+  }
+
+ private:
+  T fraction(T s) const {
+    using detail::exp;
+    if (shape == FallingShape::exponential) return exp(-s);
+    return shape == FallingShape::gaussian ? exp(-s * s) : 1 / (1 + s * s);
+  }
+};
+
+/// Kinetic friction in one range of sliding speed: force + slope·(|u| − from) for from <= |u| < to. A
+/// law with a part that falls has one branch, from zero speed on.
 template <class T>
 struct Branch {
   T from, to;  ///< m/s
   T force;     ///< at `from`, N
   T slope;     ///< N s/m; negative where friction falls with speed
   T rounding;  ///< error of the slope from rounded points, N s/m
+  FallingFriction<T> falling{};
 
-  T at(T speed) const { return force + slope * (speed - from); }
+  bool linear() const { return !falling.present(); }
+  T at(T speed) const {
+    const T straight = force + slope * (speed - from);
+    return linear() ? straight : straight - (falling.excess - falling.at(speed));
+  }
+  /// Linear part extrapolated to zero speed, N.
+  T intercept() const {
+    const T straight = force - slope * from;
+    return linear() ? straight : straight - falling.excess;
+  }
+  /// Linear branch of the same friction and slope at a speed.
+  Branch tangent(T speed) const {
+    if (linear()) return *this;
+    return {speed, to, at(speed), slope + falling.slope(speed), rounding};
+  }
 };
 
 /// Computes the branches between the points (speed, force) of a friction curve, at most count + 1;
@@ -60,6 +112,15 @@ int branches_of(const T* speeds, const T* forces, int count, Branch<T>* branches
   return made;
 }
 
+/// Adds a viscous part (N s/m) to the branches of a curve.
+template <class T>
+void add_viscous(Branch<T>* branches, int count, T viscous) {
+  for (int i = 0; i < count; ++i) {
+    branches[i].force += viscous * branches[i].from;
+    branches[i].slope += viscous;
+  }
+}
+
 /// Dry friction at one surface. A contact without friction is absent.
 template <class T>
 struct Contact {
@@ -71,6 +132,8 @@ struct Contact {
   const Branch<T>* curve{nullptr};
   int branches{0};
 
+  /// True if friction is linear on each branch.
+  bool linear() const { return branches == 0 || curve[0].linear(); }
   bool rigid() const { return !(stiffness < std::numeric_limits<T>::infinity()); }
   /// True if skin stretches between surface and pin.
   bool compliant() const { return present() && !rigid(); }

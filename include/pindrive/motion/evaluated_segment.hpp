@@ -32,8 +32,7 @@ template <class T>
 T kinetic_friction(const Contact<T>& contact, T speed) {
   T force = contact.kinetic;
   for (int i = 0; i < contact.branches; ++i)
-    if (speed >= contact.curve[i].from)
-      force = contact.curve[i].force + contact.curve[i].slope * (speed - contact.curve[i].from);
+    if (speed >= contact.curve[i].from) force = contact.curve[i].at(speed);
   return force;
 }
 
@@ -168,7 +167,7 @@ class EvaluatedSegment {
     if (!is_slip(mode().finger)) return T(0);
     const int last = std::max(drive.finger.branches - 1, 0);
     const Branch<T> branch = drive.finger.branch(std::clamp(mode().finger_branch, 0, last));
-    return abs(branch.force - branch.slope * branch.from);
+    return abs(branch.intercept());
   }
 };
 

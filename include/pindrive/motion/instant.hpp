@@ -26,7 +26,9 @@ class Instant {
     const Line<T> surface = at_stop ? Line<T>{} : e.surface;
     velocity_ = e.held ? surface.value : state.v;
     const T skin = e.skin_factor.value * (has_slider_state ? state.slider_velocity : state.skin);
-    const T pull = e.force.value - e.damping * velocity_ - e.stiffness * position_ - skin;
+    T pull = e.force.value - e.damping * velocity_ - e.stiffness * position_ - skin;
+    if (e.finger_falling.present())
+      pull -= e.finger_side * e.finger_load.value * e.finger_falling.at(e.finger_side * velocity_);
     const T plate = is_slip(mode.plate) ? plate_slip(e, pull) : T(0);
     acceleration_ = e.held ? surface.rate : (pull + plate) / e.mass;
     const T carried = e.mass * acceleration_ - pull - plate;  // force of the holding contact
@@ -46,9 +48,11 @@ class Instant {
     } else if (is_slip(mode.finger)) {
       const Branch<T> branch = drive.finger.branch(mode.finger_branch);
       const T speed = has_slider_state ? state.slider_velocity : velocity_;
-      const T at_load_1 =
-          along(mode.finger, branch.force - branch.slope * branch.from) + branch.slope * speed;
+      const T at_load_1 = along(mode.finger, branch.intercept()) + branch.slope * speed;
       friction_.finger = -at_load_1 * inputs.finger_load.value;
+      if (!branch.linear())
+        friction_.finger -= along(mode.finger, branch.falling.at(along(mode.finger, speed))) *
+                            inputs.finger_load.value;
       if (has_slider_state)
         stretch_rate_ = velocity_ - state.slider_velocity;
       else
@@ -70,17 +74,19 @@ class Instant {
   T plate_slip(const detail::SeriesEquation<T>& e, T pull) const {
     using detail::hypot;
     const T u = velocity_ - e.plate_velocity.value, w = e.across.value;
-    T along = T(e.side);
+    T along = T(e.side), force = e.plate_force;
+    if (e.plate_falling.present())
+      force += e.plate_falling.at(e.side != 0 ? T(e.side) * u : hypot(u, w));
     if (e.side == 0 && u == 0 && w == 0) {
       const T rest = pull - e.mass * e.plate_velocity.rate;
       const T p = e.held ? e.surface.rate - e.plate_velocity.rate
-                         : detail::departure_acceleration(e.mass, e.load.value * e.plate_force,
+                         : detail::departure_acceleration(e.mass, e.load.value * force,
                                                           e.across.rate, rest);
       along = p / hypot(p, e.across.rate);
     } else if (e.side == 0) {
       along = u / hypot(u, w);
     }
-    return -e.load.value * (e.plate_force * along + e.plate_slope * u);
+    return -e.load.value * (force * along + e.plate_slope * u);
   }
 
   T position_{}, velocity_{}, acceleration_{}, stretch_{0}, stretch_rate_{0};

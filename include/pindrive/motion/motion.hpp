@@ -116,9 +116,12 @@ class Motion {
   /// result of visit.
   template <class Visitor>
   auto along(const Segment<T>& segment, Visitor&& visit) const {
-    const bool bilinear = (drive_.plate.branches > 0 && !inputs_.plate_load.constant()) ||
-                          (drive_.finger.branches > 0 && !inputs_.finger_load.constant());
-    if (!bilinear && !drive_.finger.may_lag() && segment.mode.plate != ContactState::slip_oblique)
+    const auto needs_series = [](const Contact<T>& contact, const Profile<T>& load) {
+      return contact.branches > 0 && !(contact.linear() && load.constant());
+    };
+    if (!needs_series(drive_.plate, inputs_.plate_load) &&
+        !needs_series(drive_.finger, inputs_.finger_load) && !drive_.finger.may_lag() &&
+        segment.mode.plate != ContactState::slip_oblique)
       return visit(detail::ClosedForm<T>(segment));
     return visit_trajectory(drive_, segment, InputLines<T>::of(drive_, inputs_, segment), visit);
   }

@@ -179,8 +179,11 @@ class BySeries {
     const bool has_slider_state = SeriesMode<T>(drive, mode, {}).has_slider_state();
     Polynomial<T> force = Line<T>{-branch.slope * load.value, -branch.slope * load.rate} *
                           (has_slider_state ? step_.skin : step_.velocity);
-    const T at_rest = -along(mode.finger, branch.force - branch.slope * branch.from);
+    const T at_rest = -along(mode.finger, branch.intercept());
     force += Line<T>{at_rest * load.value, at_rest * load.rate};
+    if (!branch.linear())
+      force += Line<T>{-along(mode.finger, load.value), -along(mode.finger, load.rate)} *
+               step_.falling_finger.friction();
     return force;
   }
 

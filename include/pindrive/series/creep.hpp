@@ -93,7 +93,7 @@ class CreepFlow : public SeriesStep<T> {
   bool is_valid() const { return holds_; }
 
  private:
-  using SeriesStep<T>::N, SeriesStep<T>::beyond, SeriesStep<T>::sums_of;
+  using SeriesStep<T>::N, SeriesStep<T>::falling_plate, SeriesStep<T>::falling_finger;
   using typename SeriesStep<T>::Sums;
 
   Polynomial<T>& inner(int i) { return this->inner_[i]; }  // t, √(1 + t²), t/√(1 + t²)
@@ -107,8 +107,20 @@ class CreepFlow : public SeriesStep<T> {
     const T linear = (e.plate_slope + e.damping / e.load.value) * e.across.value;
     T t = t_;
     for (int tries = 0; tries < 60; ++tries) {
-      const T root = sqrt(1 + t * t), direct = e.plate_force * t / root;
-      const T slope = e.plate_force / (root * root * root) + linear;
+      const T root = sqrt(1 + t * t), along = t / root;
+      T friction = e.plate_force, falls{0}, others{0};
+      if (e.plate_falling.present()) {
+        friction += e.plate_falling.at(e.across.value * root);
+        falls = e.plate_falling.slope(e.across.value * root) * e.across.value * along * along;
+      }
+      if (e.finger_falling.present()) {
+        const T side = T(e.finger_side), pressed = e.finger_load.value / e.load.value;
+        const T v = side * (e.plate_velocity.value + e.across.value * t);
+        others = side * pressed * e.finger_falling.at(v);
+        falls += pressed * e.finger_falling.slope(v) * e.across.value;
+      }
+      const T direct = friction * along + others;
+      const T slope = friction / (root * root * root) + falls + linear;
       const T missing = needed - direct - linear * t, move = missing / slope;
       const bool balanced =
           abs(missing) <= rounding<Real> * (abs(needed) + abs(direct) + abs(linear * t));
@@ -148,6 +160,19 @@ class CreepFlow : public SeriesStep<T> {
       return n == 0 ? given.value : n == 1 ? given.rate * step : T(0);
     };
     const T w = e.across.value, w_rate = e.across.rate * step, load_rate = e.load.rate * step;
+    const bool falls = e.plate_falling.present(), finger_falls = e.finger_falling.present();
+    // Falling friction at the plate, along the axis, and at the finger, whose speed is given.
+    const auto at_plate = [&](int n) {
+      speed.c[n] = w * s[n] + (n > 0 ? w_rate * s[n - 1] : T(0));
+      falling_plate.extend(e.plate_falling, speed.c, T(1), n);
+      return order_of_product(falling_plate.friction().c, d, n);
+    };
+    const auto at_finger = [&](int n) {
+      const T side = T(e.finger_side),
+              friction = falling_finger.extend(e.finger_falling, v, side, n);
+      const T preceding = n > 0 ? falling_finger.friction().c[n - 1] : T(0);
+      return side * (e.finger_load.value * friction + e.finger_load.rate * step * preceding);
+    };
     x[0] = start.x;
     y[0] = start.skin;
     T before{0};  // F d + S u of the preceding order
@@ -169,16 +194,28 @@ class CreepFlow : public SeriesStep<T> {
       if (n > 0) others += step * (e.damping_rate * v[n - 1] + e.skin_factor.rate * y[n - 1]);
       if (n > 0 && n < N) {
         const T free = (1 - d[0] * d[0]) / s[0];
-        const T slope = e.plate_force * free + e.plate_slope * w;
-        const T missing =
-            e.load.value * friction + load_rate * before + e.damping * (v_p + u) + others;
-        t[n] = -missing / (e.load.value * slope + e.damping * w);
+        T slope = e.plate_force * free + e.plate_slope * w, damping = e.damping, fallen{0};
+        if (falls) {
+          fallen = at_plate(n);
+          const T r = speed.c[0];
+          slope += e.plate_falling.at(r) * free + e.plate_falling.slope(r) * w * d[0] * d[0];
+        }
+        if (finger_falls) {
+          v[n] = v_p + u;
+          others += at_finger(n);
+          damping += e.finger_load.value * e.finger_falling.slope(T(e.finger_side) * v[0]);
+        }
+        const T missing = e.load.value * (friction + fallen) + load_rate * before +
+                          e.damping * (v_p + u) + others;
+        t[n] = -missing / (e.load.value * slope + damping * w);
         s[n] += d[0] * t[n];
         d[n] += free * t[n];
         u += w * t[n];
-        friction += slope * t[n];
+        friction += (e.plate_force * free + e.plate_slope * w) * t[n];
       }
+      if (falls) friction += at_plate(n);
       v[n] = v_p + u;
+      if (finger_falls) at_finger(n);
       speed.c[n] = w * s[n] + (n > 0 ? w_rate * s[n - 1] : T(0));
       plate_force.c[n] = -(e.load.value * friction + load_rate * before);
       before = friction;
@@ -191,6 +228,14 @@ class CreepFlow : public SeriesStep<T> {
       changes_[n] = std::abs(plain(a - acceleration_[n]));
       acceleration_[n] = a;
     }
+  }
+
+  /// Order n of a product of two series.
+  template <class Coefficients>
+  static T order_of_product(const Coefficients& p, const Coefficients& q, int n) {
+    T sum{0};
+    for (int i = 0; i <= n; ++i) sum += p[i] * q[n - i];
+    return sum;
   }
 
   /// Change of a in the last iteration, over a part of the step.
@@ -224,12 +269,31 @@ class CreepFlow : public SeriesStep<T> {
               max(abs(f), abs(f + f_change)) * last(skin, N) + abs(f_change) * last(skin, N - 1) +
               most_load * (abs(S) * v[N] + F * (d[N] + direction)) +
               abs(load_change) * (abs(S) * v[N - 1] + F * (d[N - 1] - d[N]));
+    Real falls{0};  // slopes of falling friction, N s/m
+    if (e.plate_falling.present()) {
+      const auto& phi = falling_plate.friction().c;
+      const auto& along = inner(2).c;
+      const Sums r = sums_of(speed.c), parts = sums_of(phi);
+      const Real error = falling_plate.error(e.plate_falling, r, most_w * root);
+      missed += most_load * (abs(plain(order_of_product(phi, along, N))) + beyond(parts, d) +
+                             d[0] * error + parts[0] * direction) +
+                abs(load_change) * abs(plain(order_of_product(phi, along, N - 1)));
+      falls += most_load * falling_plate.steepest(e.plate_falling, r);
+    }
+    if (e.finger_falling.present()) {
+      const Real pressed = plain(e.finger_load.value), change = plain(e.finger_load.rate) * h;
+      const Sums parts = sums_of(falling_finger.friction().c);
+      const Real error = falling_finger.error(e.finger_falling, v, Real(0));
+      const Real most = max(pressed, pressed + change);
+      missed += most * (parts[N] + error) + abs(change) * (parts[N - 1] - parts[N]);
+      falls += most * falling_finger.steepest(e.finger_falling, v);
+    }
     const Real missed_skin =
         K * last(velocity, N) + (abs(decay) + (N + 1) * abs(f_change) / h) * last(skin, N);
     const Real steep = sqrt(1 + t[0] * t[0]);
     const Real gamma = std::min(b, b + b_change) +
                        least_load * F / (most_w * steep * steep * steep) +
-                       std::min(S * load, S * (load + load_change));
+                       std::min(S * load, S * (load + load_change)) - falls;
     const Real grown = exp(max(Real(0), f < 0 ? -decay / f : Real(0)) * h) * h;
     const Real left = gamma - k * h - K * grown;
     if (!(left > 0)) return false;

@@ -24,13 +24,14 @@ class SeriesFlow : public SeriesStep<T> {
   using SeriesStep<T>::position, SeriesStep<T>::velocity, SeriesStep<T>::skin, SeriesStep<T>::speed;
   using SeriesStep<T>::plate_force, SeriesStep<T>::stick_force, SeriesStep<T>::span;
   using SeriesStep<T>::x_bound, SeriesStep<T>::v_bound, SeriesStep<T>::skin_bound;
-  using SeriesStep<T>::speed_bound;
+  using SeriesStep<T>::speed_bound, SeriesStep<T>::falling_plate, SeriesStep<T>::falling_finger;
 
   /// Expands the mode at a state, up to a limit (s; may be infinite); `within_step`: the limit is
   /// known to lie within one step.
   SeriesFlow(const SeriesEquation<T>& equation, const SeriesState<T>& start, T limit,
              bool within_step = false) {
-    const Real farthest = plain(limit), rate = linear_rate(equation);
+    const Real farthest = plain(limit);
+    const Real rate = linear_rate(equation) + falling_rate(equation, start);
     Real step = std::min(1 / (rate + turning_rate(equation, start)), farthest);
     expand(equation, start, step);
     if (within_step) {
@@ -50,13 +51,13 @@ class SeriesFlow : public SeriesStep<T> {
   }
 
  protected:
-  using SeriesStep<T>::N, SeriesStep<T>::beyond, SeriesStep<T>::sums_of;
+  using SeriesStep<T>::N;
   using typename SeriesStep<T>::Sums;
 
  private:
   int begins_{0};  // the order at which u and w begin
 
-  Polynomial<T>& inner(int i) { return this->inner_[i]; }  // d, u
+  Polynomial<T>& inner(int i) { return this->inner_[i]; }  // d, u, φ d
 
   /// Coefficient sums of p/σ, where p begins at 0.
   Sums from_rest(std::array<T, N + 2> c) const {
@@ -70,6 +71,18 @@ class SeriesFlow : public SeriesStep<T> {
     return (abs(plain(e.damping)) + abs(plain(e.load.value) * plain(e.plate_slope))) / m +
            (f != 0 ? abs(plain(e.skin_decay) / f) : Real(0)) +
            sqrt((plain(e.stiffness) + plain(e.skin_stiffness)) / m);
+  }
+  /// Part of the rate by the falling parts of friction, 1/s.
+  static Real falling_rate(const SeriesEquation<T>& e, const SeriesState<T>& s) {
+    const T v = e.held ? e.surface.value : s.v, u = v - e.plate_velocity.value;
+    Real slopes{0};
+    if (e.plate_falling.present()) {
+      const T speed = e.side != 0 ? T(e.side) * u : hypot(u, e.across.value);
+      slopes += abs(plain(e.load.value * e.plate_falling.slope(speed)));
+    }
+    if (e.finger_falling.present())
+      slopes += abs(plain(e.finger_load.value * e.finger_falling.slope(T(e.finger_side) * v)));
+    return slopes / plain(e.mass);
   }
   /// Rate at which the skin factor has grown from zero, 1/s. All solutions but one are singular
   /// there, so a longer step would amplify rounding of the start.
@@ -109,8 +122,9 @@ class SeriesFlow : public SeriesStep<T> {
   struct Turning {
     bool known{true};
     Real root{0}, direction{0}, missed{0};
+    Real falling{0};  ///< error of the falling part of friction, N
   };
-  Turning bound_turning(const SeriesEquation<T>& e) const {
+  Turning bound_turning(const SeriesEquation<T>& e) {
     using std::max;
     const Real h = span(), F = abs(plain(e.plate_force)), load = abs(plain(e.load.value));
     const Real load_end = abs(plain(e.load.value) + plain(e.load.rate) * h);
@@ -130,6 +144,21 @@ class SeriesFlow : public SeriesStep<T> {
     }
     found.missed = F * (max(load, load_end) * (d[N] + found.direction) +
                         abs(plain(e.load.rate)) * h * (d[N - 1] - d[N]));
+    if (e.plate_falling.present()) {
+      const Sums r = sums_of(speed.c), phi = sums_of(falling_plate.friction().c);
+      const Sums directed = sums_of(inner(2).c);
+      found.falling = falling_plate.error(e.plate_falling, r, found.root);
+      const Real cut = e.side == 0 ? beyond(phi, d) : Real(0);
+      found.missed += max(load, load_end) *
+                          (directed[N] + cut + d[0] * found.falling + phi[0] * found.direction) +
+                      abs(plain(e.load.rate)) * h * (directed[N - 1] - directed[N]);
+    }
+    if (e.finger_falling.present()) {
+      const Real pressed = plain(e.finger_load.value), change = abs(plain(e.finger_load.rate)) * h;
+      const Sums phi = sums_of(falling_finger.friction().c);
+      const Real error = falling_finger.error(e.finger_falling, sums_of(velocity.c), Real(0));
+      found.missed += (pressed + change) * (phi[N] + error) + change * (phi[N - 1] - phi[N]);
+    }
     return found;
   }
 
@@ -147,6 +176,7 @@ class SeriesFlow : public SeriesStep<T> {
     const std::array<T, 2> w{e.across.value, e.across.rate * step};
     const std::array<T, 3> w_squared{w[0] * w[0], 2 * w[0] * w[1], w[1] * w[1]};
     const T load_rate = e.load.rate * step;
+    const bool falls = e.plate_falling.present();
     T before{0};  // F d + S u of the preceding order
     for (int n = 0;; ++n) {
       e.follow(y, v, n, T(step));
@@ -162,7 +192,8 @@ class SeriesFlow : public SeriesStep<T> {
         for (int i = 1; i <= n; ++i) product -= r[i] * d[n - i];
         d[n] = product / r[0];
       }
-      const T friction = e.plate_force * d[n] + e.plate_slope * u;
+      T friction = e.plate_force * d[n] + e.plate_slope * u;
+      if (falls) friction += directed_falling(e, n, n);
       plate_force.c[n] = -(e.load.value * friction + load_rate * before);
       before = friction;
       const T part = T(step) / T(n + 1);
@@ -170,11 +201,41 @@ class SeriesFlow : public SeriesStep<T> {
       T forces = plate_force.c[n] - e.damping * v[n] - e.stiffness * x[n] -
                  e.skin_factor.value * y[n] + (n < 2 ? force[n] : T(0));
       if (n > 0) forces -= step * (e.damping_rate * v[n - 1] + e.skin_factor.rate * y[n - 1]);
+      if (e.finger_falling.present()) forces -= falling_at_finger(e, n, step);
       if (e.held) stick_force.c[n] = (n == 0 ? e.mass * e.surface.rate : T(0)) - forces;
       if (n == N) return;
       v[n + 1] = !e.held ? part * forces / e.mass : n == 0 ? e.surface.rate * step : T(0);
       if (n == 0 && !e.held && !isnan(start.acceleration)) v[1] = start.acceleration * step;
     }
+  }
+
+  /// Bounds of the slopes of the falling parts of friction over the step, N s/m: at a load factor of
+  /// 1, and of a rigid finger.
+  Real steepest_fall(const SeriesEquation<T>& e) const {
+    if (!e.plate_falling.present()) return Real(0);
+    return falling_plate.steepest(e.plate_falling, sums_of(speed.c));
+  }
+  Real steepest_fall_at_finger(const SeriesEquation<T>& e) const {
+    if (!e.finger_falling.present()) return Real(0);
+    const Real pressed = plain(e.finger_load.value), change = plain(e.finger_load.rate) * span();
+    return std::max(pressed, pressed + change) *
+           falling_finger.steepest(e.finger_falling, sums_of(velocity.c));
+  }
+
+  /// Computes order n of φ and returns that of φ d, from the orders of d up to `known`.
+  T directed_falling(const SeriesEquation<T>& e, int n, int known) {
+    const auto &d = inner(0).c, &phi = falling_plate.friction().c;
+    falling_plate.extend(e.plate_falling, speed.c, T(1), n);
+    T sum{0};
+    for (int i = n - known; i <= n; ++i) sum += phi[i] * d[n - i];
+    return inner(2).c[n] = sum;
+  }
+  /// Order n of the falling friction of a rigid finger, in the direction of x', N.
+  T falling_at_finger(const SeriesEquation<T>& e, int n, Real step) {
+    const T side = T(e.finger_side),
+            friction = falling_finger.extend(e.finger_falling, velocity.c, side, n);
+    const T before = n > 0 ? falling_finger.friction().c[n - 1] : T(0);
+    return side * (e.finger_load.value * friction + e.finger_load.rate * step * before);
   }
 
  private:
@@ -189,7 +250,9 @@ class SeriesFlow : public SeriesStep<T> {
     v[0] = e.plate_velocity.value;
     y[0] = start.skin;
     const T w = e.across.rate * step, load_rate = e.load.rate * step;
-    const T strength = e.load.value * e.plate_force;
+    const bool falls = e.plate_falling.present();
+    const T at_rest = falls ? e.plate_force + e.plate_falling.excess : e.plate_force;
+    const T strength = e.load.value * at_rest;
     T slope{0}, before{0};  // ∂d/∂(u/σ); F d + S u of the preceding order
     for (int n = 0;; ++n) {
       const T part = T(step) / T(n + 1);
@@ -201,13 +264,15 @@ class SeriesFlow : public SeriesStep<T> {
                   : n == 1 ? e.force.rate * step
                            : T(0));
       if (n > 0) others -= step * (e.damping_rate * v[n - 1] + e.skin_factor.rate * y[n - 1]);
+      if (e.finger_falling.present()) others -= falling_at_finger(e, n, step);
       T product{0}, square{0};  // d and ρ of this order without u of the next
       for (int i = 1; i < n; ++i) {
         product -= r[i + 1] * d[n - i];
         square -= r[i + 1] * r[n - i + 1];
       }
       for (int i = 1; i < n; ++i) square += u[i + 1] * u[n - i + 1];
-      const T known = e.plate_slope * u[n];
+      T known = e.plate_slope * u[n];
+      if (falls && n > 0) known += directed_falling(e, n, n - 1);  // without its part of order 0
       if (n == 0) {
         const T rest = others - e.mass * e.plate_velocity.rate;
         const T out = e.held ? e.surface.rate - e.plate_velocity.rate
@@ -221,7 +286,7 @@ class SeriesFlow : public SeriesStep<T> {
         // d is linear in û: first with û = 0, then its contribution.
         r[n + 1] = square / (2 * r[1]);
         d[n] = (product - r[n + 1] * d[0]) / r[1];
-        const T friction = e.plate_force * d[n] + known;
+        const T friction = at_rest * d[n] + known;
         const T forces = others - e.load.value * friction - load_rate * before;
         if (!e.held && n < N) {
           u[n + 1] = forces / (e.mass / part + strength * slope);
@@ -230,7 +295,9 @@ class SeriesFlow : public SeriesStep<T> {
           v[n + 1] = u[n + 1];
         }
       }
-      const T friction = e.plate_force * d[n] + known;
+      if (falls && n == 0) directed_falling(e, 0, 0);
+      const T friction = at_rest * d[n] + known;
+      if (falls && n > 0) inner(2).c[n] += e.plate_falling.excess * d[n];
       plate_force.c[n] = -(e.load.value * friction + load_rate * before);
       before = friction;
       if (e.held)
@@ -266,8 +333,9 @@ class SeriesFlow : public SeriesStep<T> {
                                      abs(load_change) * abs(S) * (u[N - 1] - u[N]) + turning.missed;
     const Real missed_skin =
         K * last(velocity, N) + (abs(decay) + (N + 1) * abs(f_change) / h) * last(skin, N);
-    const Real falls =
-        std::min(b, b + b_change) + std::min({Real(0), S * load, S * (load + load_change)});
+    const Real falls = std::min(b, b + b_change) +
+                       std::min({Real(0), S * load, S * (load + load_change)}) -
+                       most_load * steepest_fall(e) - steepest_fall_at_finger(e);
     const Real growth = exp(max({Real(0), -falls / m, f < 0 ? -decay / f : Real(0)}) * h);
     const Real error =
         h * growth * (missed / sqrt(m) + (K > 0 ? missed_skin / sqrt(K) : Real(0)));  // sqrt(2 E²)
@@ -282,7 +350,8 @@ class SeriesFlow : public SeriesStep<T> {
     return v_bound <= rounding_of(sums_of(velocity.c)) + step_error<Real> * forces * h / m &&
            (K == 0 || skin_bound <= rounding_of(sums_of(skin.c))) &&
            speed_bound <= rounding_of(from_rest(speed.c)) + rounding_of(sums_of(velocity.c)) &&
-           !(e.held && turning.direction > direction_error<Real>);
+           !(e.held && turning.direction > direction_error<Real>) &&
+           !(e.held && turning.falling > direction_error<Real> * plain(e.plate_falling.excess));
   }
 };
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "pindrive/flow/polynomial.hpp"
+#include "pindrive/model/model.hpp"
 
 namespace pindrive::detail {
 
@@ -24,7 +25,7 @@ struct SeriesState {
 ///
 ///     m x'' + b x' + k x = force + R − f y,   R = −λ (F d + S u),   u = x' − v_p,   (f y)' = K x' − D y − E,
 ///
-/// where d is the sign of u or, with a transverse velocity w, u / √(u² + w²); u and w are then
+/// where F also has a part that falls with the sliding speed, d is the sign of u or, with a transverse velocity w, u / √(u² + w²); u and w are then
 /// never both 0, and b, λ and f are linear in time. y is the state of a compliant finger of
 /// stiffness K. In elastic stick, y is the tension (f = 1, D = E = 0). In slip under a load λ_f on
 /// a branch F_c + S_c |y|, y is the slider velocity (f = S_c λ_f, D = K, E = ±F_c λ_f'), and its
@@ -32,20 +33,24 @@ struct SeriesState {
 /// that is held moves with the surface that holds the pin, and a stick force balances the equation.
 template <class T>
 struct SeriesEquation {
-  T mass, damping, stiffness;          ///< the damping may be negative
-  T damping_rate{0};                   ///< N s/m per s
-  Line<T> force{T(0), T(0)};           ///< inertial and given forces, N
-  Line<T> plate_velocity{T(0), T(0)};  ///< v_p, m/s
-  Line<T> load{T(1), T(0)};            ///< λ >= 0
-  T plate_force{0};                    ///< F: friction of the branch extrapolated to zero speed, N
-  T plate_slope{0};                    ///< S, N s/m
-  int side{0};                         ///< sign of u; 0: oblique slip
-  Line<T> across{T(0), T(0)};          ///< w, m/s
-  Line<T> skin_factor{T(0), T(0)};     ///< f: 1, or N s/m
-  T skin_stiffness{0}, skin_decay{0};  ///< K and D, N/m
-  T skin_drift{0};                     ///< E, N/s
-  const T* stretching{nullptr};        ///< Taylor coefficients of (f y)' if known, N/s
-  bool held{false};                    ///< true if a surface of this velocity holds the pin, m/s
+  T mass, damping, stiffness;           ///< the damping may be negative
+  T damping_rate{0};                    ///< N s/m per s
+  Line<T> force{T(0), T(0)};            ///< inertial and given forces, N
+  Line<T> plate_velocity{T(0), T(0)};   ///< v_p, m/s
+  Line<T> load{T(1), T(0)};             ///< λ >= 0
+  T plate_force{0};                     ///< F: friction of the branch extrapolated to zero speed, N
+  T plate_slope{0};                     ///< S, N s/m
+  FallingFriction<T> plate_falling{};   ///< part of F
+  int side{0};                          ///< sign of u; 0: oblique slip
+  Line<T> across{T(0), T(0)};           ///< w, m/s
+  Line<T> skin_factor{T(0), T(0)};      ///< f: 1, or N s/m
+  T skin_stiffness{0}, skin_decay{0};   ///< K and D, N/m
+  T skin_drift{0};                      ///< E, N/s
+  FallingFriction<T> finger_falling{};  ///< of a rigid finger, beside `force` and `damping`
+  int finger_side{0};                   ///< sign of x' at that finger
+  Line<T> finger_load{T(1), T(0)};      ///< its load factor
+  const T* stretching{nullptr};         ///< Taylor coefficients of (f y)' if known, N/s
+  bool held{false};                     ///< true if a surface of this velocity holds the pin, m/s
   Line<T> surface{T(0), T(0)};
 
   /// Equation with time counted from τ on.
@@ -54,7 +59,8 @@ struct SeriesEquation {
     later.damping += damping_rate * tau;
     for (Line<T> SeriesEquation::* line :
          {&SeriesEquation::force, &SeriesEquation::plate_velocity, &SeriesEquation::load,
-          &SeriesEquation::across, &SeriesEquation::skin_factor, &SeriesEquation::surface})
+          &SeriesEquation::across, &SeriesEquation::skin_factor, &SeriesEquation::surface,
+          &SeriesEquation::finger_load})
       (later.*line).value = (this->*line).at(tau);
     return later;
   }

@@ -28,9 +28,16 @@ class SeriesMode {
                              const Line<T>& load) {
       return is_slip(state) && load.rate != 0 && contact.branch(branch).slope != 0;
     };
+    const auto curved = [](ContactState state, const Contact<T>& contact, const Line<T>& load,
+                           bool still) {
+      return is_slip(state) && !contact.linear() && !(still && load.rate == 0);
+    };
     const bool across = is_slip(mode.plate) && inputs.oblique();
-    const bool steady = across && held(drive, mode) && inputs.plate_velocity.rate == 0 &&
-                        inputs.across_velocity.rate == 0;
+    const bool still = held(drive, mode) && inputs.plate_velocity.rate == 0;
+    const bool steady = across && still && inputs.across_velocity.rate == 0;
+    if (curved(mode.plate, drive.plate, inputs.plate_load, across ? steady : still) ||
+        curved(mode.finger, drive.finger, inputs.finger_load, still))
+      return false;
     return (steady || (!across &&
                        !bilinear(mode.plate, drive.plate, mode.plate_branch, inputs.plate_load))) &&
            !bilinear(mode.finger, drive.finger, mode.finger_branch, inputs.finger_load) &&
@@ -49,8 +56,9 @@ class SeriesMode {
     e.plate_velocity = inputs_.plate_velocity;
     e.load = inputs_.plate_load;
     if (is_slip(mode_.plate)) {
-      e.plate_force = at_rest(plate());
+      e.plate_force = plate().intercept();
       e.plate_slope = plate().slope;
+      e.plate_falling = plate().falling;
     }
     e.side = sign(mode_.plate) < 0 ? -1 : 1;
     if (is_slip(mode_.plate) && inputs_.oblique()) {
@@ -58,7 +66,7 @@ class SeriesMode {
       e.across = inputs_.across_velocity;
     }
     if (is_slip(mode_.finger)) {
-      const T friction = along(mode_.finger, at_rest(finger()));
+      const T friction = along(mode_.finger, finger().intercept());
       e.force.value -= friction * inputs_.finger_load.value;
       e.force.rate -= friction * inputs_.finger_load.rate;
     }
@@ -66,13 +74,16 @@ class SeriesMode {
     if (has_slider_state()) {
       e.skin_factor = {finger().slope * load.value, finger().slope * load.rate};
       e.skin_stiffness = e.skin_decay = drive_.finger.stiffness;
-      e.skin_drift = along(mode_.finger, at_rest(finger())) * load.rate;
+      e.skin_drift = along(mode_.finger, finger().intercept()) * load.rate;
     } else if (mode_.finger == ContactState::elastic_stick) {
       e.skin_factor.value = T(1);
       e.skin_stiffness = drive_.finger.stiffness;
     } else if (is_slip(mode_.finger)) {
       e.damping += finger().slope * load.value;
       e.damping_rate = finger().slope * load.rate;
+      e.finger_falling = finger().falling;
+      e.finger_side = sign(mode_.finger);
+      e.finger_load = load;
     }
     e.held = held(drive_, mode_);
     if (in_contact(mode_.stop) && !drive_.stops.rigid()) {
@@ -88,7 +99,7 @@ class SeriesMode {
   T skin_force(T skin) const {
     if (drive_.finger.rigid()) return T(0);
     if (!is_slip(mode_.finger)) return skin;
-    const T friction = has_slider_state() ? at_rest(finger()) : finger().force;
+    const T friction = has_slider_state() ? finger().intercept() : finger().force;
     return inputs_.finger_load.value *
            (along(mode_.finger, friction) + (has_slider_state() ? finger().slope * skin : T(0)));
   }
@@ -195,7 +206,6 @@ class SeriesMode {
   T follows(T friction) const {
     return inputs_.finger_load.rate * friction / drive_.finger.stiffness;
   }
-  static T at_rest(const Branch<T>& branch) { return branch.force - branch.slope * branch.from; }
 
   /// Sign of the first coefficient that is not zero.
   static int begins_with(const Polynomial<T>& series) {

@@ -10,6 +10,7 @@
 #include "pindrive/flow/polynomial.hpp"
 #include "pindrive/model/model.hpp"
 #include "pindrive/numbers/limits.hpp"
+#include "pindrive/series/falling_series.hpp"
 #include "pindrive/series/series_equation.hpp"
 
 namespace pindrive::detail {
@@ -27,6 +28,8 @@ class SeriesStep {
   /// Truncation errors: bounds of the errors of position, velocity, skin state and sliding speed
   /// over the step.
   Real x_bound{0}, v_bound{0}, skin_bound{0}, speed_bound{0};
+  /// Falling parts of the friction at a load factor of 1, without their direction.
+  FallingSeries<T> falling_plate, falling_finger;
   EliminatedPart eliminated{EliminatedPart::none};  ///< eliminated fast transient
 
   Real span() const { return velocity.span; }
@@ -42,6 +45,8 @@ class SeriesStep {
       p.degree = N;
     });
     position.degree = N + 1;
+    falling_plate.begin(step, N);
+    falling_finger.begin(step, N);
   }
 
   /// Part of the step at which the last terms are within the rounding of the first terms.
@@ -58,33 +63,16 @@ class SeriesStep {
   }
 
   void rescale(Real part) {
-    each([&](Polynomial<T>& p) {
-      p.span *= part;
-      Real factor{1};
-      for (T& c : p.c) {
-        c *= factor;
-        factor *= part;
-      }
-    });
+    each([&](Polynomial<T>& p) { p.rescale(part); });
+    falling_plate.rescale(part);
+    falling_finger.rescale(part);
   }
 
-  /// Tail sums of the absolute coefficients.
-  using Sums = std::array<Real, N + 2>;
-  static Sums sums_of(const std::array<T, N + 2>& c) {
-    Sums sums{};
-    for (int n = N; n >= 0; --n) sums[n] = sums[n + 1] + std::abs(plain(c[n]));
-    return sums;
-  }
+  using Sums = detail::Sums<Real>;
   /// Sum of the absolute coefficients over a part of the step.
   static Real size_of(const Polynomial<T>& p, Real part) {
     Real sum{0}, power{1};
     for (int n = 0; n <= N; ++n, power *= part) sum += std::abs(plain(p.c[n])) * power;
-    return sum;
-  }
-  /// Bound of the terms of a product of two series beyond order N.
-  static Real beyond(const Sums& p, const Sums& q) {
-    Real sum{0};
-    for (int i = 1; i <= N; ++i) sum += (p[i] - p[i + 1]) * q[N + 1 - i];
     return sum;
   }
 

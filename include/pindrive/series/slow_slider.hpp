@@ -74,7 +74,7 @@ class SlowSliderFlow : public SeriesFlow<T> {
   bool is_valid() const { return holds_; }
 
  private:
-  using SeriesStep<T>::N, SeriesStep<T>::sums_of;
+  using SeriesStep<T>::N;
   using typename SeriesStep<T>::Sums;
 
   /// Estimate of the fastest rate of the slow motion, 1/s; the skin acts as a damper φ.
@@ -126,7 +126,8 @@ class SlowSliderFlow : public SeriesFlow<T> {
                   k * (last(position, N) + last(position, N + 1)) + most_f * last(skin, N) +
                   abs(f_change) * last(skin, N - 1) + turning.missed;
     const Real stays = plain(e.skin_decay) + plain(e.skin_factor.rate);
-    const Real falls = min(b, b + b_change) + min({Real(0), S * load, S * (load + load_change)});
+    const Real falls = min(b, b + b_change) + min({Real(0), S * load, S * (load + load_change)}) -
+                       max(load, load + load_change) * this->steepest_fall(e);
     const Real grown = h / m * (k * h + most_f * K / stays + max(Real(0), -falls));
     // May end with its load, within the time resolution.
     const Real ends =

@@ -1,0 +1,83 @@
+/// Taylor series of the part of friction that falls with the sliding speed.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "pindrive/flow/polynomial.hpp"
+#include "pindrive/model/model.hpp"
+
+namespace pindrive::detail {
+
+/// Falling part φ = excess·g(s) along a step, for a speed r and s = r/velocity, in the time
+/// σ = τ/span. With q = s²:
+///
+///     φ' = −s' φ (exponential),   φ' = −q' φ (gaussian),   (1 + q) φ = excess (rational).
+template <class T>
+class FallingSeries {
+ public:
+  using Real = detail::Real<T>;
+
+  const Polynomial<T>& friction() const { return friction_; }  ///< φ, N
+
+  void begin(Real step, int order) {
+    for (Polynomial<T>* p : {&friction_, &square_}) {
+      p->span = step;
+      p->degree = order;
+    }
+  }
+  void rescale(Real part) {
+    friction_.rescale(part);
+    square_.rescale(part);
+  }
+
+  /// Computes order n, from the orders of the speed up to n, and returns it, N.
+  template <class Coefficients>
+  T extend(const FallingFriction<T>& law, const Coefficients& speed, T sign, int n) {
+    auto &phi = friction_.c, &q = square_.c;
+    const T scale = sign / law.velocity;
+    if (law.shape != FallingShape::exponential) {
+      q[n] = T(0);
+      for (int i = 0; i <= n; ++i) q[n] += speed[i] * speed[n - i];
+      q[n] *= scale * scale;
+    }
+    if (n == 0) return phi[0] = law.at(sign * speed[0]);
+    T sum{0};
+    if (law.shape == FallingShape::rational) {
+      for (int i = 1; i <= n; ++i) sum += q[i] * phi[n - i];
+      return phi[n] = -sum / (1 + q[0]);
+    }
+    if (law.shape == FallingShape::gaussian) {
+      for (int i = 1; i <= n; ++i) sum += T(i) * q[i] * phi[n - i];
+      return phi[n] = -sum / T(n);
+    }
+    for (int i = 1; i <= n; ++i) sum += T(i) * speed[i] * phi[n - i];
+    return phi[n] = -scale * sum / T(n);
+  }
+
+  /// Bound of the error of φ over the step, N: from the residual of its equation, whose terms are
+  /// those beyond the last order, and from the error of the speed (m/s).
+  Real error(const FallingFriction<T>& law, const Sums<Real>& speed, Real of_speed) const {
+    const Sums<Real> phi = sums_of(friction_.c);
+    const Real by_speed = steepest(law, speed) * of_speed, v = plain(law.velocity);
+    if (law.shape == FallingShape::exponential)
+      return beyond(speed, phi) / v * exp(speed[1] / v) + by_speed;
+    const Sums<Real> q = sums_of(square_.c);
+    const Real cut = beyond(speed, speed) / (v * v), residual = beyond(q, phi) + phi[0] * cut;
+    return (law.shape == FallingShape::gaussian ? residual * exp(q[1] + cut) : residual) + by_speed;
+  }
+
+  /// Bound of |dφ/dr| over the step, N s/m.
+  Real steepest(const FallingFriction<T>& law, const Sums<Real>& speed) const {
+    const Real v = plain(law.velocity), excess = plain(law.excess), s = speed[0] / v;
+    const Real phi = std::min(sums_of(friction_.c)[0], excess);
+    if (law.shape == FallingShape::exponential) return phi / v;
+    const Real flat = law.shape == FallingShape::gaussian ? Real(1) : phi / excess;
+    return std::min(2 * s * phi * flat, excess) / v;  // |g'| < 1
+  }
+
+ private:
+  Polynomial<T> friction_, square_;  // φ, q
+};
+
+}  // namespace pindrive::detail
