@@ -58,7 +58,11 @@ std::array<double, Block::inputs> arguments(const pd::Numbers& at, double band) 
 }
 bool constant(const pd::Numbers& at) {
   const auto none_of = [](const pd::Rows& rows) { return rows.size() == 1 && rows[0].second == 0; };
-  return at.plate.curve.empty() && at.finger.curve.empty() && at.mouse_velocity.size() == 1 &&
+  const auto coulomb = [](const pd::ContactNumbers& contact) {
+    return contact.curve.empty() && contact.law.shape() == pd::FallingShape::none &&
+           contact.law.viscous == 0;
+  };
+  return coulomb(at.plate) && coulomb(at.finger) && at.mouse_velocity.size() == 1 &&
          at.plate_load.size() == 1 && std::isnan(at.skin_stretch) && none_of(at.force) &&
          none_of(at.across_velocity) && at.finger_load.size() == 1 && !at.stops.present();
 }

@@ -75,17 +75,24 @@ RowKind kind_of(const char* key) {
 
 /// Friction of a contact as given: forces, or coefficients of a normal force.
 struct Friction {
-  const char *kinetic_key, *limit_key, *curve_key, *noun, *unit;
+  const char *kinetic_key, *limit_key, *curve_key, *rest_key, *viscous_key, *noun, *unit;
   double kinetic, limit;
   RowView curve;
+  double rest;          ///< at rest
   double normal_force;  ///< 1 of forces
 };
 
-constexpr const char* friction_keys[2][2][3] = {
-    {{"plate.kinetic", "plate.static", "plate.curve"},
-     {"plate.coefficient", "plate.static_coefficient", "plate.coefficient_curve"}},
-    {{"finger.kinetic", "finger.static", "finger.curve"},
-     {"finger.coefficient", "finger.static_coefficient", "finger.coefficient_curve"}}};
+constexpr const char* friction_keys[2][2][5] = {
+    {{"plate.kinetic", "plate.static", "plate.curve", "plate.breakaway", "plate.viscous"},
+     {"plate.coefficient", "plate.static_coefficient", "plate.coefficient_curve",
+      "plate.breakaway_coefficient", "plate.viscous_coefficient"}},
+    {{"finger.kinetic", "finger.static", "finger.curve", "finger.breakaway", "finger.viscous"},
+     {"finger.coefficient", "finger.static_coefficient", "finger.coefficient_curve",
+      "finger.breakaway_coefficient", "finger.viscous_coefficient"}}};
+/// Friction law of a contact, its velocity and its exponent.
+constexpr const char* law_keys[2][3] = {
+    {"plate.law", "plate.stribeck_velocity", "plate.exponent"},
+    {"finger.law", "finger.stribeck_velocity", "finger.exponent"}};
 constexpr int at_plate = 0, at_finger = 1;
 
 constexpr const char* magnet_by_times[] = {"magnet.hold_force", "magnet.rise_time",
@@ -272,18 +279,23 @@ class Search {
 
   Friction friction(int contact) const {
     const bool coefficients = by_coefficient(contact);
-    const auto& [kinetic, limit, curve] = friction_keys[contact][coefficients ? 1 : 0];
+    const auto& [kinetic, limit, curve, rest, viscous] =
+        friction_keys[contact][coefficients ? 1 : 0];
     Friction found{kinetic,
                    limit,
                    curve,
+                   rest,
+                   viscous,
                    coefficients ? "friction coefficient" : "friction",
                    coefficients ? "" : " N",
                    number(kinetic),
                    number(limit),
                    rows(curve),
+                   number(rest),
                    coefficients ? normal_force(contact) : 1};
     if (!has(kinetic) && found.curve.count > 0) found.kinetic = found.curve.y(0);
-    if (!has(limit)) found.limit = found.kinetic;
+    if (!has(rest)) found.rest = found.kinetic;
+    if (!has(limit)) found.limit = found.rest;
     return found;
   }
 
@@ -301,9 +313,11 @@ class Search {
     else if (first < f.kinetic || first > f.kinetic)
       add(f.curve_key, {f.kinetic_key}, "the kinetic %s, %v%s|%v%s|[0] %s", f.noun, f.kinetic,
           f.unit, first, f.unit, kind_of(f.curve_key).second);
-    if (f.limit < f.kinetic)
-      reject(f.limit_key, {f.kinetic_key, f.curve_key}, "at least the kinetic %s, %v%s", f.noun,
-             f.kinetic, f.unit);
+    check_law(contact, f);
+    if (f.limit < f.rest)
+      reject(f.limit_key, {f.kinetic_key, f.curve_key, f.rest_key},
+             "at least the kinetic %s%s, %v%s", f.noun, f.rest > f.kinetic ? " at rest" : "",
+             f.rest, f.unit);
     if (contact == at_plate) return;
     constexpr const char* touch = "finger.touch_force";
     if (coefficient && !has(touch))
@@ -311,6 +325,35 @@ class Search {
     if (force && has(touch))
       reject(touch, {force}, "left out where the finger's friction is given as a force");
   }
+
+  /// The law of a contact and its parameters.
+  void check_law(int contact, const Friction& f) {
+    const auto& [law, velocity, exponent] = law_keys[contact];
+    const double chosen = has(law) ? number(law) : f.curve.count > 0 ? 3 : 0;
+    const bool falls = chosen == 1 || chosen == 2;
+    if (chosen != std::floor(chosen)) return reject(law, {}, "0, 1, 2 or 3");
+    if (falls && f.curve.count > 0)
+      return add(f.curve_key, {law}, "left out under law %s|both", name_of_law(chosen));
+    if (has(law) && chosen == 0 && f.curve.count > 1)
+      return add(f.curve_key, {law}, "left out under law %s|both", name_of_law(chosen));
+    if (chosen == 3 && f.curve.count == 0 && !has(f.curve_key))
+      return add(f.curve_key, {law}, "given under law %s|none", name_of_law(chosen));
+    for (const char* const key : {f.rest_key, velocity}) {
+      if (falls && !has(key)) add(key, {law}, "given under law %s|none", name_of_law(chosen));
+      if (!falls && has(key)) reject(key, {law}, "left out under law %s", name_of_law(chosen));
+    }
+    if (has(exponent) && chosen != 1)
+      reject(exponent, {law}, "left out under law %s", name_of_law(chosen));
+    else if (number(exponent) > 1 && number(exponent) < 2)
+      reject(exponent, {}, "1 or 2");
+    if (falls && f.rest < f.kinetic)
+      reject(f.rest_key, {f.kinetic_key}, "at least the kinetic %s, %v%s", f.noun, f.kinetic,
+             f.unit);
+    if (falls && contact == at_finger && has("finger.stiffness"))
+      add(law, {"finger.stiffness"}, "coulomb or table on skin that stretches|%s",
+          name_of_law(chosen));
+  }
+  static const char* name_of_law(double law) { return device::law_names[static_cast<int>(law)]; }
 
   // ---- drive and release ------------------------------------------------------------------------
 
@@ -356,7 +399,16 @@ class Search {
     }
     for (const int contact : {at_plate, at_finger}) {
       const Friction f = friction(contact);
+      const double falls = (f.rest - f.kinetic) / number(law_keys[contact][1]);
       const double steepest = std::abs(f.curve.steepest()) * f.normal_force;
+      if (falls * f.normal_force > ratios.upper * critical)
+        add(law_keys[contact][1], {"drive.mass", "drive.stiffness", f.rest_key},
+            "such that friction falls at most with %b times critical damping|%g N*s/m",
+            ratios.upper, falls * f.normal_force);
+      if (number(f.viscous_key) * f.normal_force > ratios.upper * critical)
+        add(f.viscous_key, {"drive.mass", "drive.stiffness"},
+            "at most %b times critical damping|%g N*s/m", ratios.upper,
+            number(f.viscous_key) * f.normal_force);
       if (steepest > ratios.upper * critical)  // acts as damping
         add(f.curve_key, {"drive.mass", "drive.stiffness"},
             "at most %b times critical damping|%g N*s/m| slope", ratios.upper, steepest);

@@ -36,11 +36,16 @@ struct Key {
 
 /// Setters of a contact: each force, or the coefficient of a force.
 struct Friction {
-  const char *kinetic, *limit, *speeds, *values;
+  const char *kinetic, *limit, *speeds, *values, *breakaway, *viscous;
 };
-constexpr Friction by_force = {"kinetic", "static", "curve.speed", "curve.force"};
-constexpr Friction by_coefficient = {"coefficient", "static_coefficient", "coefficient_curve.speed",
-                                     "coefficient_curve.coefficient"};
+constexpr Friction by_force = {"kinetic",     "static",    "curve.speed",
+                               "curve.force", "breakaway", "viscous"};
+constexpr Friction by_coefficient = {"coefficient",
+                                     "static_coefficient",
+                                     "coefficient_curve.speed",
+                                     "coefficient_curve.coefficient",
+                                     "breakaway_coefficient",
+                                     "viscous_coefficient"};
 
 }  // namespace
 
@@ -93,11 +98,18 @@ pindrive_error DeviceParameters::fill_friction(pindrive_drive* drive, const char
       speeds.empty()
           ? pindrive_drive_set(drive, Key(contact, "kinetic").text, kinetic.*part)
           : pindrive_drive_set_curve(drive, contact, speeds.data(), values.data(), speeds.size());
-  const Key limit(contact, names.limit), stiffness(contact, "stiffness");
-  if (!error && has(limit.text))
-    error = pindrive_drive_set(drive, Key(contact, "static").text, (of(limit.text) * factor).*part);
-  if (!error && has(stiffness.text))
-    error = pindrive_drive_set(drive, stiffness.text, of(stiffness.text).*part);
+  const auto set = [&](const char* name, const char* as, Number times) {
+    const Key key(contact, name);
+    if (!error && has(key.text))
+      error = pindrive_drive_set(drive, Key(contact, as).text, (of(key.text) * times).*part);
+  };
+  set("law", "law", 1);
+  set(names.breakaway, "breakaway", factor);
+  set("stribeck_velocity", "stribeck_velocity", 1);
+  set("exponent", "exponent", 1);
+  set(names.viscous, "viscous", factor);
+  set(names.limit, "static", factor);
+  set("stiffness", "stiffness", 1);
   return error;
 }
 

@@ -3,6 +3,7 @@
 #include <cstdarg>
 #include <cstdio>
 #include <cstring>
+#include <initializer_list>
 #include <new>
 #include <utility>
 
@@ -44,32 +45,54 @@ pindrive_error null_pointer(const char* what) {
 
 namespace {
 
-/// The number of that name, or null; kinetic friction is two numbers.
-double* find(pindrive_drive& drive, const char* name) {
-  const std::pair<const char*, double*> numbers[] = {{"mass", &drive.mass},
-                                                     {"stiffness", &drive.stiffness},
-                                                     {"damping", &drive.damping},
-                                                     {"plate.kinetic", &drive.plate.kinetic},
-                                                     {"plate.static", &drive.plate.static_limit},
-                                                     {"finger.kinetic", &drive.finger.kinetic},
-                                                     {"finger.static", &drive.finger.static_limit},
-                                                     {"finger.stiffness", &drive.finger.stiffness},
-                                                     {"travel", &drive.stops.travel},
-                                                     {"stop_stiffness", &drive.stops.stiffness},
-                                                     {"stop_damping", &drive.stops.damping}};
+using NamedNumbers = std::initializer_list<std::pair<const char*, double*>>;
+
+/// The number of that name, or null.
+double* find(NamedNumbers numbers, const char* name) {
   for (const auto& [known, number] : numbers)
     if (std::strcmp(known, name) == 0) return number;
+  return nullptr;
+}
+
+/// The contact of a name like "plate.kinetic", or null; `name` becomes "kinetic".
+pd::ContactNumbers* contact_of(pindrive_drive& drive, const char*& name) {
+  for (const auto& [table, contact] :
+       {std::pair{"plate.", &drive.plate}, std::pair{"finger.", &drive.finger}})
+    if (const std::size_t length = std::strlen(table); std::strncmp(name, table, length) == 0) {
+      name += length;
+      return contact;
+    }
   return nullptr;
 }
 
 }  // namespace
 
 bool pindrive_c::set(pindrive_drive& drive, const char* name, double value) {
-  double* number = find(drive, name);
+  double* number = nullptr;
+  if (pd::ContactNumbers* const contact = contact_of(drive, name)) {
+    pd::LawNumbers& law = contact->law;
+    number = find({{"kinetic", &contact->kinetic},
+                   {"static", &contact->static_limit},
+                   {"law", &law.law},
+                   {"breakaway", &law.breakaway},
+                   {"stribeck_velocity", &law.velocity},
+                   {"exponent", &law.exponent},
+                   {"viscous", &law.viscous}},
+                  name);
+    if (contact == &drive.finger && std::strcmp(name, "stiffness") == 0)
+      number = &contact->stiffness;
+    if (number == &contact->kinetic || number == &law.breakaway) contact->static_limit = value;
+  } else {
+    number = find({{"mass", &drive.mass},
+                   {"stiffness", &drive.stiffness},
+                   {"damping", &drive.damping},
+                   {"travel", &drive.stops.travel},
+                   {"stop_stiffness", &drive.stops.stiffness},
+                   {"stop_damping", &drive.stops.damping}},
+                  name);
+  }
   if (!number) return false;
   *number = value;
-  for (pd::ContactNumbers* contact : {&drive.plate, &drive.finger})
-    if (number == &contact->kinetic) contact->static_limit = value;
   return true;
 }
 
@@ -173,12 +196,33 @@ pindrive_error check_contact(const char* name, const pd::ContactNumbers& contact
   // The bounds of both contacts are alike.
   static constexpr auto force = input("plate.kinetic");
   static constexpr auto stiffness = input("finger.stiffness");
+  static constexpr auto law = input("plate.law");
+  static constexpr auto velocity = input("plate.stribeck_velocity");
+  static constexpr auto viscous = input("plate.viscous");
   const double kinetic = contact.kinetic, at_rest = contact.static_limit;
   pindrive_error error = check(named("kinetic"), force, kinetic);
   if (!error) error = check(named("static"), force, at_rest);
+  if (!error) error = check(named("law"), law, contact.law.law);
+  if (!error) error = check(named("viscous"), viscous, contact.law.viscous);
+  const bool falls = !error && contact.law.shape() != pd::FallingShape::none;
+  const double breakaway = falls ? contact.law.breakaway : kinetic;
+  if (falls) {
+    error = check(named("stribeck_velocity"), velocity, contact.law.velocity);
+    const double exponent = contact.law.exponent;
+    if (!error)
+      error = check(named("exponent"), exponent, exponent == 1 || exponent == 2, "1 or 2");
+    if (!error) error = check(named("breakaway"), force, breakaway);
+    if (!error)
+      error = check(named("breakaway"), breakaway, breakaway >= kinetic,
+                    "at least the kinetic friction", kinetic, "N");
+    if (!error && !contact.curve.empty())
+      return fail(PINDRIVE_BAD_VALUE, "%s.curve must be empty under a law of its own", name);
+    if (!error && contact.stiffness != infinity)
+      return fail(PINDRIVE_UNSUPPORTED, "%s.law must be coulomb or table on compliant skin", name);
+  }
   if (!error)
-    error = check(named("static"), at_rest, at_rest >= kinetic, "at least the kinetic friction",
-                  kinetic, "N");
+    error = check(named("static"), at_rest, at_rest >= breakaway, "at least the kinetic friction",
+                  breakaway, "N");
   if (!error && contact.stiffness != infinity)
     error = check(named("stiffness"), stiffness, contact.stiffness);
   if (!error && !contact.curve.empty()) {
@@ -360,14 +404,15 @@ pindrive_error pindrive_release_set_profile(pindrive_release* release, const cha
 }
 
 pindrive_drive* pindrive_drive_rate_new(const pindrive_drive* drive) {
+  constexpr pd::LawNumbers no_rates{0, 0, 0, 0, 0};
   pindrive_drive* rate = nullptr;
   if (drive)
     guarded([&]() -> pindrive_error {
       rate = new pindrive_drive{0,
                                 0,
                                 0,
-                                pd::ContactNumbers{0, 0, 0, {}},
-                                pd::ContactNumbers{0, 0, 0, {}},
+                                pd::ContactNumbers{0, 0, 0, {}, no_rates},
+                                pd::ContactNumbers{0, 0, 0, {}, no_rates},
                                 pd::StopNumbers{0, 0, 0}};
       rate->plate.curve.resize(drive->plate.curve.size());
       rate->finger.curve.resize(drive->finger.curve.size());

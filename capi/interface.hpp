@@ -20,8 +20,7 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 struct pindrive_drive {
   double mass{pindrive_c::none}, stiffness{pindrive_c::none}, damping{0};
-  pindrive::ContactNumbers plate{0, 0, pindrive_c::infinity, {}},
-      finger{0, 0, pindrive_c::infinity, {}};
+  pindrive::ContactNumbers plate{0, 0, pindrive_c::infinity}, finger{0, 0, pindrive_c::infinity};
   pindrive::StopNumbers stops{};
 };
 
@@ -91,8 +90,8 @@ class Attended {
 bool set(pindrive_drive& drive, const char* name, double value);
 bool set(pindrive_release& release, const char* name, double value);
 constexpr const char* drive_names =
-    "mass, stiffness, damping, plate.kinetic, plate.static, finger.kinetic, finger.static, "
-    "finger.stiffness, travel, stop_stiffness, stop_damping";
+    "mass, stiffness, damping, travel, stop_stiffness, stop_damping, finger.stiffness, and, of "
+    "plate and finger, kinetic, static, law, breakaway, stribeck_velocity, exponent, viscous";
 constexpr const char* release_names =
     "mouse_velocity, plate_load, force, across_velocity, finger_load, displacement, velocity, "
     "skin_stretch, duration";

@@ -17,9 +17,26 @@ namespace pindrive {
 /// (speed, force) of a friction curve, or (time, value) of an input: one row for a constant.
 using Rows = std::vector<std::pair<double, double>>;
 
+/// Friction laws by their numbers in the interfaces.
+enum class Law : signed char { coulomb, stribeck, hess_soom, table };
+
+/// Friction law of a contact beside its kinetic friction: its number (`Law`), the friction at rest from
+/// which it falls, the velocity and the exponent with which it falls, and a viscous part.
+struct LawNumbers {
+  double law{0}, breakaway{0}, velocity{1}, exponent{1}, viscous{0};
+
+  /// Shape of the part that falls.
+  FallingShape shape() const {
+    if (law == static_cast<double>(Law::hess_soom)) return FallingShape::rational;
+    if (law != static_cast<double>(Law::stribeck)) return FallingShape::none;
+    return exponent > 1 ? FallingShape::gaussian : FallingShape::exponential;
+  }
+};
+
 struct ContactNumbers {
   double kinetic, static_limit, stiffness;
-  Rows curve;
+  Rows curve{};
+  LawNumbers law{};
 };
 
 /// The end stops of a drive: infinite travel is none, infinite stiffness rigid.
@@ -100,13 +117,30 @@ struct OwnedContact {
       : contact{number<T>(at.kinetic, along.kinetic),
                 number<T>(at.static_limit, along.static_limit),
                 number<T>(at.stiffness, along.stiffness)} {
-    const OwnedRows<T> rows(at.curve, along.curve);
-    if (rows.first.empty()) return;
-    branches.resize(rows.first.size() + 1);
-    contact.branches = branches_of(rows.first.data(), rows.second.data(),
-                                   static_cast<int>(rows.first.size()), branches.data());
+    using detail::vanishes;
+    const T viscous = number<T>(at.law.viscous, along.law.viscous);
+    if (at.law.shape() != FallingShape::none) {
+      const T rest = number<T>(at.law.breakaway, along.law.breakaway);
+      FallingFriction<T> falling{at.law.shape(), rest - contact.kinetic,
+                                 number<T>(at.law.velocity, along.law.velocity)};
+      if (vanishes(falling.excess)) falling = {};
+      contact.kinetic = rest;
+      branches = {{T(0), unlimited, rest, viscous, T(0), falling}};
+      contact.branches = 1;
+    } else if (const OwnedRows<T> rows(at.curve, along.curve); !rows.first.empty()) {
+      branches.resize(rows.first.size() + 1);
+      contact.branches = branches_of(rows.first.data(), rows.second.data(),
+                                     static_cast<int>(rows.first.size()), branches.data());
+      if (!vanishes(viscous)) add_viscous(branches.data(), contact.branches, viscous);
+    } else if (!vanishes(viscous)) {
+      branches = {{T(0), unlimited, contact.kinetic, viscous, T(0)}};
+      contact.branches = 1;
+    }
     contact.curve = branches.data();
   }
+
+ private:
+  static constexpr T unlimited = std::numeric_limits<T>::infinity();
 };
 
 /// Inputs of a motion with the arrays to which they refer.

@@ -76,6 +76,15 @@ PINDRIVE_API const char *pindrive_last_error(void);
 
 /* ---- drives and releases --------------------------------------------------------------------- */
 
+/* Friction laws over the sliding speed |u|: F_c, F_c + (F_b - F_c) exp(-(|u| / v_s)^exponent),
+ * F_c + (F_b - F_c) / (1 + (|u| / v_s)^2), or a curve; each with a viscous part. */
+enum {
+  PINDRIVE_LAW_COULOMB = 0,
+  PINDRIVE_LAW_STRIBECK = 1,
+  PINDRIVE_LAW_HESS_SOOM = 2,
+  PINDRIVE_LAW_TABLE = 3
+};
+
 typedef struct pindrive_drive pindrive_drive;
 typedef struct pindrive_release pindrive_release;
 
@@ -89,7 +98,12 @@ PINDRIVE_API void pindrive_drive_free(pindrive_drive *drive);
  *   damping           N s/m  >= 0
  *   plate.kinetic     N      >= 0: kinetic friction; sets plate.static too, which may follow
  *   plate.static      N      >= plate.kinetic
- *   finger.kinetic, finger.static: the same at the finger
+ *   plate.law         number of a law, at first that of Coulomb; a curve needs none
+ *   plate.breakaway   N      >= plate.kinetic: at rest, where friction falls; sets plate.static too
+ *   plate.stribeck_velocity  m/s > 0: over which it falls
+ *   plate.exponent    1 or 2, of Stribeck's law; 1 at first
+ *   plate.viscous     N s/m  >= 0: friction per sliding speed, beside each law; 0 at first
+ *   finger.kinetic, finger.static and so on: the same at the finger, which is rigid where friction falls
  *   finger.stiffness  N/m    > 0: tangential; infinite: a rigid finger, as it is at first
  *   travel            m      > 0: of the pin to its end stops, either way; infinite: none, as at first
  *   stop_stiffness    N/m    > 0: of the stops; infinite: rigid, as they are at first

@@ -6,11 +6,21 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from math import inf, isinf, nan
-from typing import Any
+from typing import Any, Final
 
 from pindrive import Contact, Drive, Profile, Release, _core
 
 Rows = list[tuple[float, float]]
+
+
+NO_LAW: Final = {
+    "law": 0.0,
+    "breakaway": 0.0,
+    "stribeck_velocity": 1.0,
+    "exponent": 1.0,
+    "viscous": 0.0,
+}
+"""Numbers of a Coulomb contact beside its friction, in the order of the extension."""
 
 
 @dataclass
@@ -23,8 +33,10 @@ class Case:
             "stiffness": 100.0,
             "damping": 0.40,
             "plate.kinetic": 0.020,
+            **{f"plate.{name}": value for name, value in NO_LAW.items()},
             "plate.static": 0.020,
             "finger.kinetic": 0.005,
+            **{f"finger.{name}": value for name, value in NO_LAW.items()},
             "finger.static": 0.005,
             "finger.stiffness": inf,
             "travel": inf,
@@ -51,9 +63,10 @@ class Case:
         """In the order of the extension."""
         n = self.numbers
 
-        def contact(name: str, stiffness: float) -> tuple[float, float, float, Rows]:
+        def contact(name: str, stiffness: float) -> tuple[Any, ...]:
             kinetic, at_rest = n[f"{name}.kinetic"], n[f"{name}.static"]
-            return kinetic, at_rest, stiffness, self.curves[name]
+            law = tuple(n.get(f"{name}.{part}", absent) for part, absent in NO_LAW.items())
+            return kinetic, at_rest, stiffness, self.curves[name], law
 
         return (
             *(n["mass"], n["stiffness"], n["damping"]),
@@ -65,6 +78,17 @@ class Case:
             (n["travel"], n["stop_stiffness"], n["stop_damping"]),
             n["duration"],
         )
+
+    def law_of(self, name: str) -> dict[str, Any]:
+        """The law of a contact as its arguments in Python."""
+        law = {part: self.numbers.get(f"{name}.{part}", absent) for part, absent in NO_LAW.items()}
+        number = int(law["law"])
+        kept = {"viscous": law["viscous"]}
+        if number:
+            kept |= {part: law[part] for part in ("breakaway", "stribeck_velocity")}
+        if number == 1:
+            kept["exponent"] = law["exponent"]
+        return {"law": _core.friction_laws[number], **kept}
 
     def core(self) -> _core.Motion:
         return _core.simulate(*self.as_core())
@@ -87,7 +111,8 @@ class Case:
             at_rest, curve = n[f"{name}.static"], self.curves[name]
             if curve:
                 return Contact(curve=tuple(curve), static=at_rest, stiffness=stiffness)
-            return Contact(n[f"{name}.kinetic"], at_rest, stiffness=stiffness)
+            kinetic = n[f"{name}.kinetic"]
+            return Contact(kinetic, at_rest, stiffness=stiffness, **self.law_of(name))
 
         def given(rows: Rows) -> float | Profile:
             return rows[0][1] if len(rows) == 1 else Profile(*zip(*rows, strict=True))

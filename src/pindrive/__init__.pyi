@@ -14,6 +14,8 @@ from .fitting.recording import Recording as Recording
 from .fitting.recording import read_recording as read_recording
 from .motion.batch import simulate_batch as simulate_batch
 from .motion.drive import Contact as Contact
+from .motion.drive import HessSoom as HessSoom
+from .motion.drive import Stribeck as Stribeck
 from .motion.drive import Drive as Drive
 from .motion.profile import Profile as Profile
 from .motion.motion import Motion as Motion

@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "_contact.hpp"
 #include "arrays.hpp"
 #include "interrupt.hpp"
 #include "owned_motion.hpp"
@@ -40,8 +41,6 @@ using pd::result, pd::Rows;
 template <class T>
 using CoreMotion = pd::StoredMotion<T>;
 using Dual = pd::Dual<double>;
-/// A contact: kinetic, static, stiffness, and the rows (speed, force) of its curve.
-using ContactNumbers = std::tuple<double, double, double, Rows>;
 /// Travel, stiffness, damping of the end stops.
 using StopNumbers = std::tuple<double, double, double>;
 /// Mass, stiffness, damping; plate, finger; rows (time, value) of mouse velocity and plate load, one
@@ -65,8 +64,8 @@ pd::Numbers numbers(double mass, double stiffness, double damping, ContactNumber
   return {mass,
           stiffness,
           damping,
-          as<pd::ContactNumbers>(std::move(plate)),
-          as<pd::ContactNumbers>(std::move(finger)),
+          contact_of(std::move(plate)),
+          contact_of(std::move(finger)),
           std::move(mouse_velocity),
           std::move(plate_load),
           displacement,
@@ -393,7 +392,8 @@ NB_MODULE(_core, m) {
       "plate_load"_a, "displacement"_a, "velocity"_a, "skin_stretch"_a, "force"_a,
       "across_velocity"_a, "finger_load"_a, "stops"_a, "duration"_a,
       "Simulates one pin from its release until its ending is known or the duration is over. "
-      "Contacts are (kinetic, static, stiffness, rows (speed, force) of the curve), inputs rows "
+      "Contacts are (kinetic, static, stiffness, rows (speed, force) of the curve, (law, "
+      "breakaway, Stribeck velocity, exponent, viscous)), inputs rows "
       "(time, value), one row for a constant.");
   m.def("differentiate", &differentiate, "numbers"_a, "along"_a,
         "The derivatives of a motion along a direction; both as the arguments of simulate.");

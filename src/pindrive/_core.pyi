@@ -98,12 +98,12 @@ class Derivative:
 
     def ledger(self, duration: float) -> dict: ...
 
-def simulate(mass: float, stiffness: float, damping: float, plate: tuple[float, float, float, Sequence[tuple[float, float]]], finger: tuple[float, float, float, Sequence[tuple[float, float]]], mouse_velocity: Sequence[tuple[float, float]], plate_load: Sequence[tuple[float, float]], displacement: float, velocity: float, skin_stretch: float, force: Sequence[tuple[float, float]], across_velocity: Sequence[tuple[float, float]], finger_load: Sequence[tuple[float, float]], stops: tuple[float, float, float], duration: float) -> Motion:
+def simulate(mass: float, stiffness: float, damping: float, plate: tuple[float, float, float, Sequence[tuple[float, float]], tuple[float, float, float, float, float]], finger: tuple[float, float, float, Sequence[tuple[float, float]], tuple[float, float, float, float, float]], mouse_velocity: Sequence[tuple[float, float]], plate_load: Sequence[tuple[float, float]], displacement: float, velocity: float, skin_stretch: float, force: Sequence[tuple[float, float]], across_velocity: Sequence[tuple[float, float]], finger_load: Sequence[tuple[float, float]], stops: tuple[float, float, float], duration: float) -> Motion:
     """
-    Simulates one pin from its release until its ending is known or the duration is over. Contacts are (kinetic, static, stiffness, rows (speed, force) of the curve), inputs rows (time, value), one row for a constant.
+    Simulates one pin from its release until its ending is known or the duration is over. Contacts are (kinetic, static, stiffness, rows (speed, force) of the curve, (law, breakaway, Stribeck velocity, exponent, viscous)), inputs rows (time, value), one row for a constant.
     """
 
-def differentiate(numbers: tuple[float, float, float, tuple[float, float, float, Sequence[tuple[float, float]]], tuple[float, float, float, Sequence[tuple[float, float]]], Sequence[tuple[float, float]], Sequence[tuple[float, float]], float, float, float, Sequence[tuple[float, float]], Sequence[tuple[float, float]], Sequence[tuple[float, float]], tuple[float, float, float], float], along: tuple[float, float, float, tuple[float, float, float, Sequence[tuple[float, float]]], tuple[float, float, float, Sequence[tuple[float, float]]], Sequence[tuple[float, float]], Sequence[tuple[float, float]], float, float, float, Sequence[tuple[float, float]], Sequence[tuple[float, float]], Sequence[tuple[float, float]], tuple[float, float, float], float]) -> Derivative:
+def differentiate(numbers: tuple[float, float, float, tuple[float, float, float, Sequence[tuple[float, float]], tuple[float, float, float, float, float]], tuple[float, float, float, Sequence[tuple[float, float]], tuple[float, float, float, float, float]], Sequence[tuple[float, float]], Sequence[tuple[float, float]], float, float, float, Sequence[tuple[float, float]], Sequence[tuple[float, float]], Sequence[tuple[float, float]], tuple[float, float, float], float], along: tuple[float, float, float, tuple[float, float, float, Sequence[tuple[float, float]], tuple[float, float, float, float, float]], tuple[float, float, float, Sequence[tuple[float, float]], tuple[float, float, float, float, float]], Sequence[tuple[float, float]], Sequence[tuple[float, float]], float, float, float, Sequence[tuple[float, float]], Sequence[tuple[float, float]], Sequence[tuple[float, float]], tuple[float, float, float], float]) -> Derivative:
     """
     The derivatives of a motion along a direction; both as the arguments of simulate.
     """
@@ -160,7 +160,7 @@ def closest_approaches(motions: Sequence[Motion], pairs: Sequence[tuple[int, int
 class Device:
     """Device whose pins are alike."""
 
-    def __init__(self, drive: tuple[float, float, float, tuple[float, float, float, Sequence[tuple[float, float]]], tuple[float, float, float, Sequence[tuple[float, float]]], tuple[float, float, float]], normal_force: float, magnet: tuple[Sequence[float], Sequence[tuple[float, float]]], control: tuple[float, float, float, float], axis: float, spots: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> None: ...
+    def __init__(self, drive: tuple[float, float, float, tuple[float, float, float, Sequence[tuple[float, float]], tuple[float, float, float, float, float]], tuple[float, float, float, Sequence[tuple[float, float]], tuple[float, float, float, float, float]], tuple[float, float, float]], normal_force: float, magnet: tuple[Sequence[float], Sequence[tuple[float, float]]], control: tuple[float, float, float, float], axis: float, spots: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> None: ...
 
 class Scan:
     """Pins under a hand that moves over a page."""
@@ -211,6 +211,8 @@ speed_precision: float = 0.001
 def two_lines(device: Device, pitch: float, width: float, criteria: tuple[float, float, float, float, float, float], speed: float) -> tuple[float, float, float, bool, int]: ...
 
 def speed_limit(device: Device, pitch: float, width: float, criteria: tuple[float, float, float, float, float, float], tried: tuple[float, float], progress: object | None) -> tuple[list[tuple[float, float]], list[tuple[float, float]], tuple[float, float, float, bool, int] | None, int]: ...
+
+friction_laws: tuple = ('coulomb', 'stribeck', 'hess-soom', 'table')
 
 def input_quantities() -> list:
     """

@@ -63,6 +63,9 @@ std::vector<ProblemWords> problems_of(const std::vector<Given>& given, bool whol
 }  // namespace
 
 void bind_inputs(nb::module_& m) {
+  nb::list laws;
+  for (const char* const name : device::law_names) laws.append(nb::str(name));
+  m.attr("friction_laws") = nb::tuple(laws);
   m.def(
       "input_quantities",
       [] {

@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "_contact.hpp"
 #include "arrays.hpp"
 #include "bytes.hpp"
 #include "interrupt.hpp"
@@ -49,8 +50,6 @@ inline device::HandPath path_of(const PathNumbers& given) {
   return {times.data(), vx.data(), vy.data(), x.data(), y.data(), times.size()};
 }
 
-/// Kinetic and static friction, stiffness, and the rows (speed, force) of the curve.
-using ContactNumbers = std::tuple<double, double, double, pd::Rows>;
 /// Mass, stiffness, damping; plate, finger; travel, stiffness and damping of the end stops.
 using DriveNumbers = std::tuple<double, double, double, ContactNumbers, ContactNumbers,
                                 std::tuple<double, double, double>>;
@@ -119,8 +118,8 @@ class OwnedDevice {
  public:
   OwnedDevice(const DriveNumbers& drive, double normal_force, const MagnetNumbers& magnet,
               const ControlNumbers& control, double axis, const Table& spots)
-      : plate_(contact(std::get<3>(drive)), contact(std::get<3>(drive))),
-        finger_(contact(std::get<4>(drive)), contact(std::get<4>(drive))),
+      : plate_(contact_of(std::get<3>(drive)), contact_of(std::get<3>(drive))),
+        finger_(contact_of(std::get<4>(drive)), contact_of(std::get<4>(drive))),
         device_{drive_of(drive),        normal_force,       magnet_of(magnet),
                 controller_of(control), device::Axis(axis), spots_of(spots)} {}
   OwnedDevice(const OwnedDevice&) = delete;
@@ -129,10 +128,6 @@ class OwnedDevice {
   const device::Device& view() const { return device_; }
 
  private:
-  static pd::ContactNumbers contact(const ContactNumbers& given) {
-    const auto& [kinetic, fixed, stiffness, curve] = given;
-    return {kinetic, fixed, stiffness, curve};
-  }
   pd::Drive<double> drive_of(const DriveNumbers& given) const {
     const auto& [travel, stiffness, damping] = std::get<5>(given);
     return {std::get<0>(given), std::get<1>(given), std::get<2>(given),

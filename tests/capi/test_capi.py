@@ -87,8 +87,17 @@ def drawn(random: np.random.Generator) -> Case:
         n[f"{contact}.kinetic"] = kinetic
         n[f"{contact}.static"] = kinetic * random.choice([1.0, between(1, 2)])
     n["displacement"] = between(-3e-3, 3e-3)
-    kind = random.integers(4)
+    kind = random.integers(5)
     speed = between(-0.3, 0.3)
+    if kind == 4:
+        for contact in ("plate", "finger"):
+            kinetic, law = n[f"{contact}.kinetic"], int(random.integers(3))
+            rest = kinetic * between(1, 2)
+            n[f"{contact}.law"], n[f"{contact}.breakaway"] = float(law), rest if law else 0.0
+            n[f"{contact}.stribeck_velocity"] = between(5e-3, 0.1)
+            n[f"{contact}.exponent"] = random.choice([1.0, 2.0])
+            n[f"{contact}.viscous"] = random.choice([0.0, between(0, 0.1)])
+            n[f"{contact}.static"] = (rest if law else kinetic) * random.choice([1.0, 1.3])
     case.inputs["mouse_velocity"] = [(0.0, speed)]
     if kind == 1:
         n["finger.stiffness"] = n["stiffness"] * between(1, 50)
@@ -187,6 +196,7 @@ OF_THE_DEVICE = {
 OF_THE_EXTENSION = {
     "input_quantities",
     "bounds_words",
+    "friction_laws",
     "kernel_widths",
     "elementary",
     "settling_band",
@@ -486,6 +496,6 @@ def test_derivatives_have_the_bits_of_python(c: Interface) -> None:
 def rate_as_core(rate: Case) -> tuple[Any, ...]:
     """Along a direction the stiffness of the plate stays infinite."""
     numbers = list(rate.as_core())
-    kinetic, at_rest, _, rows = numbers[3]
-    numbers[3] = (kinetic, at_rest, 0.0, rows)
+    kinetic, at_rest, _, rows, law = numbers[3]
+    numbers[3] = (kinetic, at_rest, 0.0, rows, law)
     return tuple(numbers)

@@ -117,6 +117,15 @@ def test_every_commented_line_of_the_template_works(write: Write, table: str, li
         of_table = [text for text in lines[begin:end] if not text.startswith(forces)]
         of_table = [text[2:] if text.startswith(needed) else text for text in of_table]
         lines[begin:end] = [text for text in of_table if not text.startswith(f"{name} =")]
+    law = ("law", "breakaway", "stribeck_velocity", "exponent", "breakaway_coefficient")
+    if name in law:  # of friction that falls
+        begin = lines.index(f"[{table}]")
+        end = next(i for i in range(begin + 1, len(lines)) if lines[i].startswith("["))
+        rest = "breakaway_coefficient" if "coefficient" in name else "breakaway"
+        needed = tuple(f"# {n} =" for n in ("law", rest, "stribeck_velocity") if n != name)
+        lines[begin:end] = [
+            text[2:] if text.startswith(needed) else text for text in lines[begin:end]
+        ]
     lines.insert(lines.index(f"[{table}]") + 1, line)
     device = load_device(write(new="\n".join(lines)))
     if table != "device":

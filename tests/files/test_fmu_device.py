@@ -280,6 +280,8 @@ CURVE, COEFFICIENTS_CURVE = (
     '[["0 mm/s", "20 mN"], ["50 mm/s", "15 mN"]]',
     '[["0 mm/s", 0.3], ["50 mm/s", 0.2]]',
 )
+LAW = 'law = "stribeck"\nbreakaway = "30 mN"\nstribeck_velocity = "30 mm/s"\nexponent = 2'
+LAW_BY_COEFFICIENT = LAW.replace('breakaway = "30 mN"', "breakaway_coefficient = 0.5")
 FILES = (
     FORCES.format(
         plate='kinetic = "20 mN"\nstatic = "25 mN"',
@@ -292,6 +294,15 @@ FILES = (
     FORCES.format(
         plate=f"static_coefficient = 0.4\ncoefficient_curve = {COEFFICIENTS_CURVE}",
         finger=f'touch_force = "1 N"\ncoefficient_curve = {COEFFICIENTS_CURVE}',
+    ),
+    FORCES.format(
+        plate='kinetic = "20 mN"\nviscous = "20 mN*s/m"\n' + LAW,
+        finger='kinetic = "5 mN"\nviscous = "20 mN*s/m"\n' + LAW,
+    ),
+    FORCES.format(
+        plate='coefficient = 0.4\nviscous_coefficient = "0.1 s/m"\n' + LAW_BY_COEFFICIENT,
+        finger='touch_force = "1 N"\ncoefficient = 0.4\nviscous_coefficient = "0.1 s/m"\n'
+        + LAW_BY_COEFFICIENT,
     ),
     DEVICE.format(magnet=MAGNETS["times"] + '\npwm_frequency = "1 kHz"\npwm_duty = 0.5'),
     DEVICE.format(magnet=MAGNETS["closing steps"] + '\nheat_capacity = "1 J/K"'),

@@ -112,7 +112,8 @@ def test_text_with_a_unit_is_the_number_in_si() -> None:
         ),
         (
             lambda: simulate_batch(replace(DRIVE, plate=CURVED), Release(0.1)),
-            "plate must be without a friction curve; `simulate` follows one, got 2 rows",
+            "plate must be without friction that depends on speed; `simulate` follows it, got "
+            "2 rows",
         ),
         (
             lambda: simulate_batch(DRIVE, Release(0.1), masss=[1.0]),

@@ -225,6 +225,25 @@ STOPPED = DEVICE.replace(
 OPENING = 'lift = "0.05 mm"\nclosing_force = "20 mN"\n'
 
 
+LAW_KEYS = [
+    f"{table}.{name}"
+    for table in ("plate", "finger")
+    for name in ("law", "breakaway", "stribeck_velocity", "exponent", "breakaway_coefficient")
+]
+
+
+def falling(table: str, key: str) -> str:
+    """The device with friction that falls at a contact."""
+    coefficient = "coefficient" in key
+    rest = "breakaway_coefficient = 0.5" if coefficient else 'breakaway = "40 mN"'
+    lines = {"law": 'law = "stribeck"', rest.partition(" ")[0]: rest}
+    lines |= {"stribeck_velocity": 'stribeck_velocity = "30 mm/s"'}
+    device = BY_COEFFICIENT if coefficient else DEVICE
+    if table == "finger":
+        device = device.replace('stiffness = "300 N/m"\n', "")
+    return device.replace(f"[{table}]\n", f"[{table}]\n" + "\n".join(lines.values()) + "\n")
+
+
 @pytest.mark.parametrize("table", ["drive", "plate", "finger", "magnet", *AROUND])
 def test_every_number_of_the_device_file_may_be_varied(table: str) -> None:
     """At a usual value and at another there is a scan."""
@@ -232,16 +251,22 @@ def test_every_number_of_the_device_file_may_be_varied(table: str) -> None:
         if not key.startswith(f"{table}.") or not quantity.may_be_constant:
             continue
         base = quantity.default or quantity.example or 0.01
-        if key.endswith(".static"):
+        if key.endswith((".static", ".breakaway")):
             base = 0.040
-        other = base + 1.0 if key in ("array.columns", "array.rows") else 0.99 * base
+        if key.endswith("breakaway_coefficient"):
+            base = 0.60
+        other = 2.0 if quantity.choices else 0.99 * base
+        if key in ("array.columns", "array.rows") or key.endswith(".exponent"):
+            other = base + 1.0
         coiled = COILED if quantity.name in MADE_OF else ""
         if quantity.name in ("lift", "closing_force"):
             coiled += OPENING
         plan = study(
             f"[axes]\n{key} = {json.dumps([quantity.written(x) for x in (base, other)])}\n",
             device=(
-                BY_COEFFICIENT
+                falling(table, key)
+                if key in LAW_KEYS
+                else BY_COEFFICIENT
                 if "coefficient" in key or "touch" in key
                 else STOPPED
                 if key.startswith("drive.stop_")

@@ -22,7 +22,7 @@ enum class Computable : signed char { any, either_way, from_zero, above_zero, ra
 
 /// An input, in SI units. A table of its kind needs no relocations.
 struct InputQuantity {
-  char key[28];
+  char key[32];
   char unit[8];   ///< "1": dimensionless
   Bounds bounds;  ///< possible values
   Computable computable;
@@ -80,6 +80,13 @@ inline constexpr InputQuantity input_quantities[] = {
     {"plate.coefficient", "1", non_negative, from_zero, none},
     {"plate.static_coefficient", "1", non_negative, from_zero, none},
     {"plate.coefficient_curve", "1", non_negative, from_zero, none},
+    {"plate.law", "1", between(0, 3), any, none},
+    {"plate.breakaway", "N", non_negative, from_zero, none},
+    {"plate.breakaway_coefficient", "1", non_negative, from_zero, none},
+    {"plate.stribeck_velocity", "m/s", positive, above_zero, none},
+    {"plate.exponent", "1", between(1, 2), any, none},
+    {"plate.viscous", "N*s/m", non_negative, from_zero, none},
+    {"plate.viscous_coefficient", "s/m", non_negative, from_zero, none},
     {"plate.preload", "N", non_negative, from_zero, 0},
     {"finger.kinetic", "N", non_negative, from_zero, none},
     {"finger.static", "N", non_negative, from_zero, none},
@@ -87,6 +94,13 @@ inline constexpr InputQuantity input_quantities[] = {
     {"finger.coefficient", "1", non_negative, from_zero, none},
     {"finger.static_coefficient", "1", non_negative, from_zero, none},
     {"finger.coefficient_curve", "1", non_negative, from_zero, none},
+    {"finger.law", "1", between(0, 3), any, none},
+    {"finger.breakaway", "N", non_negative, from_zero, none},
+    {"finger.breakaway_coefficient", "1", non_negative, from_zero, none},
+    {"finger.stribeck_velocity", "m/s", positive, above_zero, none},
+    {"finger.exponent", "1", between(1, 2), any, none},
+    {"finger.viscous", "N*s/m", non_negative, from_zero, none},
+    {"finger.viscous_coefficient", "s/m", non_negative, from_zero, none},
     {"finger.touch_force", "N", non_negative, from_zero, none},
     {"finger.stiffness", "N/m", positive, above_zero, none},
     {"motion.mouse_velocity", "m/s", finite, either_way, none},
@@ -158,6 +172,9 @@ inline constexpr InputQuantity input_quantities[] = {
 }  // namespace ranges
 
 using ranges::input_quantities;
+
+/// Names of the friction laws, in the order of their numbers.
+inline constexpr const char* law_names[] = {"coulomb", "stribeck", "hess-soom", "table"};
 
 constexpr const Bounds& InputQuantity::computable_bounds() const {
   return ranges::computable[static_cast<int>(computable)];

@@ -55,8 +55,8 @@ class FallingSeries {
     return phi[n] = -scale * sum / T(n);
   }
 
-  /// Bound of the error of φ over the step, N: from the residual of its equation, whose terms are
-  /// those beyond the last order, and from the error of the speed (m/s).
+  /// Bound of the error of φ over the step, N: from the terms of its equation beyond the last order,
+  /// and from the error of the speed (m/s).
   Real error(const FallingFriction<T>& law, const Sums<Real>& speed, Real of_speed) const {
     const Sums<Real> phi = sums_of(friction_.c);
     const Real by_speed = steepest(law, speed) * of_speed, v = plain(law.velocity);
@@ -70,6 +70,7 @@ class FallingSeries {
   /// Bound of |dφ/dr| over the step, N s/m.
   Real steepest(const FallingFriction<T>& law, const Sums<Real>& speed) const {
     const Real v = plain(law.velocity), excess = plain(law.excess), s = speed[0] / v;
+    if (!(excess > 0)) return Real(0);
     const Real phi = std::min(sums_of(friction_.c)[0], excess);
     if (law.shape == FallingShape::exponential) return phi / v;
     const Real flat = law.shape == FallingShape::gaussian ? Real(1) : phi / excess;

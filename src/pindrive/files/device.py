@@ -43,7 +43,7 @@ from pindrive.files.schema import (
     release_of,
     table_of,
 )
-from pindrive.motion.drive import Drive
+from pindrive.motion.drive import Contact, Drive, law_values
 from pindrive.motion.friction import COEFFICIENTS
 from pindrive.motion.profile import Profile
 from pindrive.motion.release import Release
@@ -238,7 +238,8 @@ def _values_of(drive: Drive, release: Release) -> dict[str, float | Rows | None]
         if name in ("duration", "settling_band"):
             continue
         of = release if table == "motion" else contacts[table] if quantity.name == key else drive
-        value = getattr(of, name)
+        law = isinstance(of, Contact) and name == "law"
+        value = law_values(contacts[table])["law"] if law else getattr(of, name)
         found[key] = value.rows if isinstance(value, Profile) else None if value == inf else value
     return found
 

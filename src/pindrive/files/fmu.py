@@ -145,11 +145,16 @@ def _parameters(device: DeviceFile, control: bool) -> Iterator[FmuVariable]:
     elsewhere = {*ELSEWHERE} - ({"control"} if control else set())
     left_out = {*device.derived, *elsewhere, *(f"motion.{name}" for name in inputs_of(device))}
     for contact in ("plate", "finger"):
-        for kinetic, static, rows in (tuple(COEFFICIENTS), tuple(COEFFICIENTS.values())):
+        for kinetic, static, rows, breakaway, _ in (
+            tuple(COEFFICIENTS),
+            tuple(COEFFICIENTS.values()),
+        ):
             if values[f"{contact}.{rows}"] is not None:  # the first row is the kinetic friction
                 left_out.add(f"{contact}.{kinetic}")
             if values[f"{contact}.{static}"] is None:
-                values[f"{contact}.{static}"] = values[f"{contact}.{kinetic}"]
+                at_rest = values[f"{contact}.{breakaway}"]
+                kinetic_value = values[f"{contact}.{kinetic}"]
+                values[f"{contact}.{static}"] = kinetic_value if at_rest is None else at_rest
     if device.whole:
         left_out.add("motion.plate_load")
     if device.whole and device.whole.magnet().coil:

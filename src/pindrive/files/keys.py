@@ -71,6 +71,8 @@ def number(
 
     With `si`, of what Python gave, a bare number is SI whatever the unit.
     """
+    if quantity.choices:
+        return choice(value, quantity, label, place, si=si)
     bare = isinstance(value, (int, float)) and not isinstance(value, bool)
     if bare and si:
         return check(quantity.name, float(cast(float, value)), where=place, label=label)
@@ -80,6 +82,16 @@ def number(
     except UnitError as error:
         raise ValueError(refusal(label, str(error), quoted(value), place)) from None
     return check(quantity.name, found, where=place, label=label, given=quoted(value))
+
+
+def choice(value: object, quantity: Quantity, label: str, place: str, *, si: bool = False) -> float:
+    """Number of a choice from its name, or with `si` the number itself."""
+    names = quantity.choices
+    if si and value in range(len(names)):
+        return float(cast(float, value))
+    if value not in names:
+        raise ValueError(refusal(label, f"one of {', '.join(names)}", quoted(value), place))
+    return float(names.index(value))
 
 
 def is_file(key: str, value: object) -> bool:
@@ -93,6 +105,8 @@ def written(key: str, value: float | Rows) -> Any:
     if isinstance(value, tuple):
         across = QUANTITIES[COLUMNS[NUMERIC_KEYS[key].rows_of][0]]
         return [[f"{x!r} {across.unit}", written(key, y)] for x, y in value]
+    if NUMERIC_KEYS[key].choices:
+        return NUMERIC_KEYS[key].choices[int(value)]
     unit = NUMERIC_KEYS[key].unit
     return value if unit == "1" else f"{value!r} {unit}"
 
@@ -134,7 +148,7 @@ def line(quantity: Quantity) -> str:
 
 def _quoted(quantity: Quantity, value: float) -> str:
     written = quantity.written(value)
-    return written if quantity.unit == "1" else f'"{written}"'
+    return written if quantity.unit == "1" and not quantity.choices else f'"{written}"'
 
 
 def template(whole: bool = False) -> str:

@@ -23,7 +23,7 @@ from pindrive.files.keys import (
     number,
     usual_rows,
 )
-from pindrive.motion.drive import Contact, Drive
+from pindrive.motion.drive import Contact, Drive, law_name
 from pindrive.motion.friction import normal_force
 from pindrive.motion.profile import Profile
 from pindrive.motion.release import INPUTS, Release
@@ -153,6 +153,7 @@ def contact_of(values: Mapping[str, Value], table: str) -> Contact:
         if f"{table}.{name}" in QUANTITIES  # preload and touch force are the drive's
     }
     stiffness = given.pop("stiffness", None)
+    given["law"] = law_name(given.get("law"))
     contact = Contact(**given, stiffness=inf if stiffness is None else stiffness)
     if contact.coefficient is None:
         return contact

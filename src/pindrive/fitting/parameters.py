@@ -18,9 +18,10 @@ import numpy as np
 from pindrive.fitting.recording import Recording
 from pindrive.motion.core_numbers import PLACES, ROWS, CoreNumbers, entry
 from pindrive.motion.drive import Contact, Drive
+from pindrive.motion.friction import FALLING
 from pindrive.motion.profile import Profile
 from pindrive.motion.release import Release, core_numbers
-from pindrive.quantities.drive import COLUMNS
+from pindrive.quantities.drive import COLUMNS, FRICTION_LAWS
 from pindrive.quantities.names import Names
 from pindrive.quantities.quantity import DISPLAY, Bounds, Quantity, counted
 from pindrive.quantities.refusal import refusal
@@ -30,6 +31,11 @@ from pindrive.quantities.table import QUANTITIES, check
 DRIVE: Final = (
     *("mass", "stiffness", "damping", "damping_ratio", "plate.kinetic", "plate.static"),
     *("finger.kinetic", "finger.static", "finger.stiffness"),
+    *(
+        f"{contact}.{name}"
+        for contact in ("plate", "finger")
+        for name in ("breakaway", "stribeck_velocity", "viscous")
+    ),
 )
 """Parameters of the drive, which all recordings share."""
 START: Final = ("displacement", "velocity", "skin_stretch", "mouse_velocity", "plate_load")
@@ -52,6 +58,8 @@ _TABLES: Final = {
     "plate_load": "plate_load",
 }
 """The quantity of each table of rows."""
+FALLING_NUMBERS: Final = tuple(float(FRICTION_LAWS.index(law)) for law in FALLING)
+"""Numbers of the laws by which friction falls."""
 DECADE: Final = 10.0
 """A positive parameter is searched from its tenth to its tenfold unless bounds are given."""
 _STEP: Final = 1e-30
@@ -212,6 +220,12 @@ def _start(key: str, numbers: CoreNumbers, quantity: Quantity, release: Release)
     if key == "damping_ratio":
         mass, stiffness, damping = numbers[:3]
         return damping / (2.0 * sqrt(mass) * sqrt(stiffness))
+    contact, _, name = key.partition(".")
+    if name in ("breakaway", "stribeck_velocity"):
+        law = entry(numbers, PLACES[f"{contact}.breakaway"][:2])[0]
+        if law not in FALLING_NUMBERS:
+            required = f"left out without the law {' or '.join(FALLING)}"
+            raise ValueError(refusal("free", required, key))
     found = entry(numbers, PLACES[key])
     if isnan(found):
         raise ValueError(refusal("free", "one that the release was given", key))
@@ -354,11 +368,19 @@ class Assembly:
 
 
 def _made_contact(numbers: Any, given: Contact, static_free: bool) -> Contact:
-    kinetic, static, give, curve = numbers
+    kinetic, static, give, curve, (law, breakaway, velocity, _, viscous) = numbers
     rows = [(float(speed), float(force)) for speed, force in curve] or None
     known = given.static is not None or static_free
     return Contact(
-        rows[0][1] if rows else float(kinetic), float(static) if known else None, rows, float(give)
+        rows[0][1] if rows else float(kinetic),
+        float(static) if known else None,
+        rows,
+        float(give),
+        law=given.law,
+        breakaway=float(breakaway) if law else None,
+        stribeck_velocity=float(velocity) if law else None,
+        exponent=given.exponent,
+        viscous=float(viscous) if viscous else None,
     )
 
 
@@ -397,24 +419,34 @@ def _assembled(values: Mapping[str, Any], base: Any, carried: bool, duration: fl
 
 
 def _contact(values: Mapping[str, Any], name: str, contact: Any) -> Any:
-    kinetic, static, give, curve = contact
-    ratio = static / kinetic if kinetic else 1.0
+    kinetic, static, give, curve, (law, breakaway, velocity, exponent, viscous) = contact
+    falls = law in FALLING_NUMBERS
+    rest = breakaway if falls else kinetic
+    ratio = static / rest if rest else 1.0
     given = values.get(f"{name}.kinetic")
     if given is not None:
         if curve:
             factor = given / kinetic
             curve = tuple((speed, force * factor) for speed, force in curve)
+        if falls and kinetic:
+            breakaway = breakaway / kinetic * given
         kinetic = given
     curve = _table(values, f"{name}_curve", curve)
     if curve:
         kinetic = curve[0][1]
+    breakaway = values.get(f"{name}.breakaway", breakaway)
+    if falls:
+        breakaway = np.where(np.real(breakaway) > np.real(kinetic), breakaway, kinetic)[()]
+    rest = breakaway if falls else kinetic
     own = values.get(f"{name}.static")
     if own is not None:
-        static = np.where(np.real(own) > np.real(kinetic), own, kinetic)[()]
-    elif given is not None or curve:
-        static = ratio * kinetic
+        static = np.where(np.real(own) > np.real(rest), own, rest)[()]
+    elif given is not None or curve or falls:
+        static = ratio * rest
     give = values.get(f"{name}.stiffness", give)
-    return kinetic, static, give, curve
+    velocity = values.get(f"{name}.stribeck_velocity", velocity)
+    viscous = values.get(f"{name}.viscous", viscous)
+    return kinetic, static, give, curve, (law, breakaway, velocity, exponent, viscous)
 
 
 def _table(values: Mapping[str, Any], name: str, rows: Any) -> Any:

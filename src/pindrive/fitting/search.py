@@ -14,7 +14,7 @@ from pindrive.fitting.least_squares import BETTER, Optimum, Problem
 from pindrive.fitting.model import Model
 from pindrive.lazy import qmc
 from pindrive.motion.batch import simulate_batch
-from pindrive.motion.core_numbers import PLACES, ROWS, entry
+from pindrive.motion.core_numbers import LAW_PLACE, PLACES, ROWS, entry
 from pindrive.quantities.table import ImplausibleValueWarning
 
 Array = NDArray[np.float64]
@@ -28,6 +28,7 @@ COARSE: Final = 40
 _OTHER: Final = (
     *("finger.stiffness", "skin_stretch", "force", "across_velocity", "finger_load"),
     *("travel", "stop_stiffness", "stop_damping"),
+    *(name for name, place in PLACES.items() if place[1:2] == (LAW_PLACE,)),
 )
 _PLAIN: Final = tuple(name for name in PLACES if name not in _OTHER)
 """Parameters that `simulate_batch` can vary."""
@@ -241,7 +242,11 @@ def _plain(model: Model) -> bool:
     free = all(p.key in _PLAIN or p.key.endswith("_offset") for p in model.parameters)
     unbounded = all(np.isinf(n[13][0]) for n in numbers)
     constant = all(len(n[5]) == 1 and len(n[6]) == 1 for n in numbers)
-    coulomb = all(len(contact[3]) <= 1 for n in numbers for contact in n[3:5])
+    coulomb = all(
+        len(contact[3]) <= 1 and not (contact[4][0] or contact[4][4])
+        for n in numbers
+        for contact in n[3:5]
+    )
     left_alone = all(
         release.force == release.across_velocity == 0.0 and release.finger_load == 1.0
         for release in model.releases

@@ -5,6 +5,7 @@
 - `Certificate`: the largest violation of each law
 - `Coefficients`: friction forces over what presses
 - `Contact`: dry friction between the pin and a surface
+- `Stribeck`, `HessSoom`: dry friction by a law that falls with the sliding speed
 - `ContactUse`: use of one contact in it
 - `Afterwards`: use of one contact after it
 - `Crossings`: where a quantity of a motion crosses a level

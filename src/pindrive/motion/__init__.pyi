@@ -2,6 +2,8 @@
 
 from .coefficients import Coefficients as Coefficients
 from .drive import Contact as Contact
+from .drive import HessSoom as HessSoom
+from .drive import Stribeck as Stribeck
 from .drive import Drive as Drive
 from .profile import Profile as Profile
 from .motion import Motion as Motion

@@ -52,7 +52,7 @@ _ARGUMENTS: Final = {
 }
 _STOPS: Final = {name: QUANTITIES[name] for name in ("travel", "stop_stiffness", "stop_damping")}
 # Arguments in place of friction forces.
-_FORCES: Final = [name for name in COEFFICIENT_OF if not name.endswith("curve")]
+_FORCES: Final = [name for name in COEFFICIENT_OF if name.endswith(("kinetic", "static"))]
 _PRESSING: Final = [n for parts in PRESSED_BY.values() for n in parts if n not in _ARGUMENTS]
 _TAKEN: Final = (
     _ARGUMENTS
@@ -270,8 +270,9 @@ def _constants(
     plate, finger = drive.plate, drive.finger
     for name, contact in (("plate", plate), ("finger", finger)):
         if contact.curved:
-            required = "without a friction curve; `simulate` follows one"
-            raise ValueError(refusal(name, required, f"{len(contact.curve or ())} rows"))
+            required = "without friction that depends on speed; `simulate` follows it"
+            given = f"{len(contact.curve)} rows" if contact.curve else contact.law or "viscous"
+            raise ValueError(refusal(name, required, given))
     if release.skin_stretch is not None:
         given = f"{release.skin_stretch!r} m"
         raise ValueError(refusal("skin_stretch", "left out; `simulate` follows it", given))

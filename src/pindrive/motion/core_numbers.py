@@ -8,7 +8,10 @@ from typing import Any, Final
 Rows = Sequence[tuple[float, float]]
 
 
-ContactNumbers = tuple[float, float, float, Rows]
+LawNumbers = tuple[float, float, float, float, float]
+"""Number of the law, breakaway, Stribeck velocity, exponent, viscous."""
+ContactNumbers = tuple[float, float, float, Rows, LawNumbers]
+"""Kinetic and static friction, stiffness, curve, law."""
 
 
 DriveNumbers = tuple[
@@ -37,6 +40,8 @@ CoreNumbers = tuple[
 """In the order of `Numbers` in _core.cpp."""
 
 
+LAW_PLACE: Final = 4
+"""Place of the law among the numbers of a contact."""
 PLACES: Final[dict[str, tuple[int, ...]]] = {
     "mass": (0,),
     "stiffness": (1,),
@@ -46,6 +51,11 @@ PLACES: Final[dict[str, tuple[int, ...]]] = {
     "finger.kinetic": (4, 0),
     "finger.static": (4, 1),
     "finger.stiffness": (4, 2),
+    **{
+        f"{contact}.{name}": (i, LAW_PLACE, j)
+        for i, contact in ((3, "plate"), (4, "finger"))
+        for j, name in ((1, "breakaway"), (2, "stribeck_velocity"), (4, "viscous"))
+    },
     "mouse_velocity": (5,),
     "plate_load": (6,),
     "displacement": (7,),

@@ -8,14 +8,14 @@ from functools import partial
 from math import inf, isinf, nan, sqrt
 from typing import Any, Final
 
-from pindrive.motion.friction import COEFFICIENTS, normal_force
+from pindrive.motion.friction import COEFFICIENTS, FALLING, LAW, normal_force
 from pindrive.quantities.contradictions import refuse, refuse_contact
-from pindrive.quantities.drive import DRIVE_QUANTITIES, PARTS
+from pindrive.quantities.drive import DRIVE_QUANTITIES, FRICTION_LAWS, PARTS
 from pindrive.quantities.part import Part
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.value import concise
 
-__all__ = ["Contact", "Drive"]
+__all__ = ["Contact", "Drive", "HessSoom", "Stribeck"]
 
 _TABLE: Final = Part((*DRIVE_QUANTITIES, *PARTS))
 check: Final = _TABLE.check
@@ -44,11 +44,21 @@ class Contact:
             `kinetic`. None with a curve of coefficients: its first.
         static_coefficient: Coefficient at rest, in place of `static`; None: `coefficient`.
         coefficient_curve: Rows (speed in m/s, coefficient), in place of `curve`.
+        law: Law of kinetic friction over the sliding speed |u|: "coulomb", "stribeck",
+            "hess-soom" or "table"; None: "table" with a curve, else "coulomb". `Stribeck` and
+            `HessSoom` make contacts of these laws.
+        breakaway: Friction at rest from which that of the laws "stribeck" and "hess-soom" falls to
+            `kinetic`, N, from `kinetic` to 1e12; `static` is `breakaway` then if None.
+        stribeck_velocity: Sliding speed over which it falls, m/s, from 1e-12 to 1e12.
+        exponent: Exponent of the law "stribeck", 1 or 2; 1 if None.
+        viscous: Part per sliding speed under any law, N*s/m, from 0 to 1e12; none if None.
+        breakaway_coefficient: Coefficient at rest, in place of `breakaway`.
+        viscous_coefficient: Viscous part of the coefficient, s/m, in place of `viscous`.
 
     Raises:
         ValueError: A value is not a number or out of its range, static friction is below kinetic,
-            neither kinetic friction nor a curve is given, they disagree, or there are both forces
-            and coefficients.
+            neither kinetic friction nor a curve is given, they disagree, a law lacks a parameter or
+            has one that belongs to another law, or there are both forces and coefficients.
     """
 
     kinetic: float
@@ -58,6 +68,13 @@ class Contact:
     coefficient: float | None
     static_coefficient: float | None
     coefficient_curve: tuple[tuple[float, float], ...] | None
+    law: str | None
+    breakaway: float | None
+    stribeck_velocity: float | None
+    exponent: float | None
+    viscous: float | None
+    breakaway_coefficient: float | None
+    viscous_coefficient: float | None
 
     def __init__(
         self,
@@ -69,23 +86,39 @@ class Contact:
         coefficient: float | str | None = None,
         static_coefficient: float | str | None = None,
         coefficient_curve: Iterable[tuple[float | str, float | str]] | None = None,
+        law: str | None = None,
+        breakaway: float | str | None = None,
+        stribeck_velocity: float | str | None = None,
+        exponent: float | str | None = None,
+        viscous: float | str | None = None,
+        breakaway_coefficient: float | str | None = None,
+        viscous_coefficient: float | str | None = None,
     ) -> None:
         """Validate, and keep plain floats and tuples."""
-        forces = {"kinetic": kinetic, "static": static, "curve": curve}
+        forces = {
+            "kinetic": kinetic,
+            "static": static,
+            "curve": curve,
+            "breakaway": breakaway,
+            "viscous": viscous,
+        }
         coefficients = {
             "coefficient": coefficient,
             "static_coefficient": static_coefficient,
             "coefficient_curve": coefficient_curve,
+            "breakaway_coefficient": breakaway_coefficient,
+            "viscous_coefficient": viscous_coefficient,
         }
+        of_law = {"law": law, "stribeck_velocity": stribeck_velocity, "exponent": exponent}
         given = forces | coefficients
         by_coefficient = any(value is not None for value in coefficients.values())
         if by_coefficient and any(value is not None for value in forces.values()):
             refuse_contact({name: None for name in given if given[name] is not None})
         chosen = coefficients if by_coefficient else forces
-        found = dict(zip(chosen, _checked_friction(*chosen, *chosen.values()), strict=True))
+        found = _checked_friction(chosen, of_law)
         if by_coefficient:
             found["kinetic"] = nan  # the force that presses is not known yet
-        for name in given:
+        for name in (*given, *of_law):
             object.__setattr__(self, name, found.get(name))
         object.__setattr__(
             self, "stiffness", check("contact.stiffness", stiffness, label="stiffness")
@@ -97,13 +130,16 @@ class Contact:
         Raises:
             ValueError: A force is out of its range.
         """
-        mu, at_rest, rows = self.coefficient, self.static_coefficient, self.coefficient_curve
-        assert mu is not None
+        rows = self.coefficient_curve
         forces = Contact(
-            mu * normal_force,
-            None if at_rest is None else at_rest * normal_force,
-            None if rows is None else [(speed, each * normal_force) for speed, each in rows],
-            self.stiffness,
+            **{
+                force: None if (mu := getattr(self, name)) is None else mu * normal_force
+                for force, name in COEFFICIENTS.items()
+                if force != "curve"
+            },
+            curve=None if rows is None else [(speed, each * normal_force) for speed, each in rows],
+            stiffness=self.stiffness,
+            **{name: getattr(self, name) for name in LAW},
         )
         for name in COEFFICIENTS.values():
             object.__setattr__(forces, name, getattr(self, name))
@@ -112,35 +148,148 @@ class Contact:
     @property
     def static_friction(self) -> float:
         """Largest friction force without sliding, N."""
-        return self.kinetic if self.static is None else self.static
+        if self.static is None:
+            return self.kinetic if self.breakaway is None else self.breakaway
+        return self.static
+
+    @property
+    def falls(self) -> bool:
+        """True if friction falls by a law, from `breakaway` to `kinetic`."""
+        return self.law in FALLING
 
     @property
     def frictionless(self) -> bool:
         """True if the contact carries no force."""
-        return self.static_friction == 0.0 and (
-            self.curve is None or not any(force for _, force in self.curve)
-        )
+        curve = self.curve or ()
+        return not (self.static_friction or self.viscous or any(force for _, force in curve))
 
     @property
     def curved(self) -> bool:
         """True if friction depends on the sliding speed."""
-        return self.curve is not None and len(self.curve) > 1
+        rows = self.curve or ()
+        return self.falls or bool(self.viscous) or len(rows) > 1
 
     def largest(self, speed: float) -> float:
         """Largest friction force at sliding speeds up to `speed` (m/s) and without sliding, N."""
-        rows = self.curve or ()
+        rows, viscous = self.curve or (), self.viscous or 0.0
         if len(rows) < 2:
-            return self.static_friction
-        forces = [force for u, force in rows if u <= speed]
+            return max(self.static_friction, (self.breakaway or self.kinetic) + viscous * speed)
+        forces = [force + viscous * u for u, force in rows if u <= speed]
         i = min(len(forces), len(rows) - 1)
         (u0, f0), (u1, f1) = rows[i - 1 : i + 1]
-        forces.append(f0 + (f1 - f0) / (u1 - u0) * (speed - u0))
+        forces.append(f0 + (f1 - f0) / (u1 - u0) * (speed - u0) + viscous * speed)
         return max([self.static_friction, *forces])
+
+    @property
+    def law_numbers(self) -> tuple[float, float, float, float, float]:
+        """Law as the core has it: number, breakaway, Stribeck velocity, exponent, viscous part."""
+        number = float(FRICTION_LAWS.index(self.law)) if self.law else 0.0
+        falling = (self.breakaway or 0.0, self.stribeck_velocity or 1.0, self.exponent or 1.0)
+        return (number, *falling, self.viscous or 0.0)
 
     @property
     def rigid(self) -> bool:
         """True if the surface does not stretch."""
         return isinf(self.stiffness)
+
+
+def Stribeck(
+    *,
+    kinetic: float | str | None = None,
+    breakaway: float | str | None = None,
+    stribeck_velocity: float | str,
+    exponent: float | str | None = None,
+    viscous: float | str | None = None,
+    static: float | str | None = None,
+    coefficient: float | str | None = None,
+    breakaway_coefficient: float | str | None = None,
+    viscous_coefficient: float | str | None = None,
+    static_coefficient: float | str | None = None,
+) -> Contact:
+    """Return a rigid contact under Stribeck's law.
+
+    Kinetic friction is kinetic + (breakaway - kinetic) exp(-(|u|/stribeck_velocity)^exponent) +
+    viscous |u| at a sliding speed |u| (Armstrong-Helouvry, Dupont, Canudas de Wit 1994, Automatica
+    30:1083).
+
+    Args:
+        kinetic: Friction force far above the Stribeck velocity, without its viscous part, N.
+        breakaway: Friction force as sliding begins, N, at least `kinetic`.
+        stribeck_velocity: Sliding speed over which friction falls, m/s, above 0.
+        exponent: 1 or 2; 1 if None.
+        viscous: Viscous part, N*s/m; none if None.
+        static: Largest friction force without sliding, N; `breakaway` if None.
+        coefficient: Coefficient far above that velocity, in place of `kinetic`.
+        breakaway_coefficient: Coefficient as sliding begins, in place of `breakaway`.
+        viscous_coefficient: Viscous part of the coefficient, s/m, in place of `viscous`.
+        static_coefficient: Largest coefficient without sliding, in place of `static`.
+
+    Raises:
+        ValueError: A value is invalid, as for `Contact`.
+
+    Examples:
+        >>> import pindrive as pd
+        >>> pd.Stribeck(kinetic=0.020, breakaway=0.026, stribeck_velocity="30 mm/s").law
+        'stribeck'
+    """
+    return Contact(
+        kinetic,
+        static,
+        law="stribeck",
+        breakaway=breakaway,
+        stribeck_velocity=stribeck_velocity,
+        exponent=exponent,
+        viscous=viscous,
+        coefficient=coefficient,
+        breakaway_coefficient=breakaway_coefficient,
+        viscous_coefficient=viscous_coefficient,
+        static_coefficient=static_coefficient,
+    )
+
+
+def HessSoom(
+    *,
+    kinetic: float | str | None = None,
+    breakaway: float | str | None = None,
+    stribeck_velocity: float | str,
+    viscous: float | str | None = None,
+    static: float | str | None = None,
+    coefficient: float | str | None = None,
+    breakaway_coefficient: float | str | None = None,
+    viscous_coefficient: float | str | None = None,
+    static_coefficient: float | str | None = None,
+) -> Contact:
+    """Return a rigid contact under the law of Hess and Soom.
+
+    Kinetic friction is kinetic + (breakaway - kinetic) / (1 + (|u|/stribeck_velocity)^2) +
+    viscous |u| at a sliding speed |u| (Hess, Soom 1990, J. Tribology 112:147).
+
+    Args:
+        kinetic: Friction force far above the Stribeck velocity, without its viscous part, N.
+        breakaway: Friction force as sliding begins, N, at least `kinetic`.
+        stribeck_velocity: Sliding speed at which half of the difference is left, m/s, above 0.
+        viscous: Viscous part, N*s/m; none if None.
+        static: Largest friction force without sliding, N; `breakaway` if None.
+        coefficient: Coefficient far above that velocity, in place of `kinetic`.
+        breakaway_coefficient: Coefficient as sliding begins, in place of `breakaway`.
+        viscous_coefficient: Viscous part of the coefficient, s/m, in place of `viscous`.
+        static_coefficient: Largest coefficient without sliding, in place of `static`.
+
+    Raises:
+        ValueError: A value is invalid, as for `Contact`.
+    """
+    return Contact(
+        kinetic,
+        static,
+        law="hess-soom",
+        breakaway=breakaway,
+        stribeck_velocity=stribeck_velocity,
+        viscous=viscous,
+        coefficient=coefficient,
+        breakaway_coefficient=breakaway_coefficient,
+        viscous_coefficient=viscous_coefficient,
+        static_coefficient=static_coefficient,
+    )
 
 
 @concise
@@ -260,7 +409,8 @@ class Drive:
     def by_forces(self) -> Drive:
         """Return the drive with friction given by forces alone, which then remain fixed."""
         plate, finger = (
-            Contact(c.kinetic, c.static, c.curve, c.stiffness) for c in (self.plate, self.finger)
+            Contact(**{name: getattr(c, name) for name in (*COEFFICIENTS, *LAW, "stiffness")})
+            for c in (self.plate, self.finger)
         )
         return self.replace(plate=plate, finger=finger, touch_force=None)
 
@@ -300,26 +450,57 @@ def values_of(drive: Drive) -> dict[str, Any]:
     for table, contact in (("plate", drive.plate), ("finger", drive.finger)):
         names = COEFFICIENTS if contact.coefficient is None else COEFFICIENTS.values()
         values |= {f"{table}.{name}": getattr(contact, name) for name in names}
+        values |= {f"{table}.{name}": value for name, value in law_values(contact).items()}
     if not drive.finger.rigid:
         values["finger.stiffness"] = drive.finger.stiffness
     return {key: value for key, value in values.items() if value is not None}
 
 
-def _checked_friction(
-    of_kinetic: str, of_static: str, of_curve: str, kinetic: Any, static: Any, curve: Any
-) -> tuple[float, float | None, tuple[tuple[float, float], ...] | None]:
-    """Kinetic and static friction and a curve, by their names, forces or coefficients."""
+def law_name(number: float | None) -> str | None:
+    """Return the name of a friction law by its number."""
+    return None if number is None else FRICTION_LAWS[int(number)]
+
+
+def law_values(contact: Contact) -> dict[str, float | None]:
+    """What a contact has of its law by the names in a device file; the law by its number."""
+    number = None if contact.law is None else float(FRICTION_LAWS.index(contact.law))
+    return {"law": number, **{name: getattr(contact, name) for name in LAW if name != "law"}}
+
+
+def _checked_friction(friction: dict[str, Any], of_law: dict[str, Any]) -> dict[str, Any]:
+    """Friction by the names of forces or coefficients, kinetic first, and its law."""
+    of_kinetic, _, of_curve, *_ = friction
+    law, curve = of_law["law"], friction[of_curve]
+    if law is not None and law not in FRICTION_LAWS:
+        raise ValueError(refusal("law", f"one of {', '.join(FRICTION_LAWS)}", repr(law)))
     rows = None if curve is None else _checked_curve(curve, of_curve)
-    if kinetic is None and rows is None:
+    if friction[of_kinetic] is None and rows is None:
         kind = "a number in N" if of_kinetic == "kinetic" else "a plain number"
         raise ValueError(refusal(of_kinetic, f"{kind} unless a curve is given", "None"))
-    at_rest = rows[0][1] if kinetic is None and rows else check(of_kinetic, kinetic)
-    if static is not None:
-        static = check(of_static, static)
-    if rows or static is not None:
-        values = {of_kinetic: at_rest, of_static: static, of_curve: rows}
-        refuse_contact({name: value for name, value in values.items() if value is not None})
-    return at_rest, static, rows
+    given = friction | of_law
+    found: dict[str, Any] = {
+        name: None if value is None else check(_LAW_QUANTITIES.get(name, name), value, label=name)
+        for name, value in given.items()
+        if name not in (of_curve, "law")
+    }
+    found |= {of_curve: rows, "law": law}
+    if found[of_kinetic] is None and rows:
+        found[of_kinetic] = rows[0][1]
+    values = found | {"law": None if law is None else float(FRICTION_LAWS.index(law))}
+    known = {name: value for name, value in values.items() if value is not None}
+    if known.keys() != {of_kinetic}:
+        refuse_contact(known)
+    return found
+
+
+_LAW_QUANTITIES: Final = {
+    name: f"plate.{name}"
+    for name in (
+        *("breakaway", "breakaway_coefficient", "stribeck_velocity"),
+        *("exponent", "viscous", "viscous_coefficient"),
+    )
+}
+"""Quantities of a law, whose bounds are alike at both contacts."""
 
 
 def _checked_curve(

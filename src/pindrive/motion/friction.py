@@ -20,8 +20,14 @@ COEFFICIENTS: Final = {
     "kinetic": "coefficient",
     "static": "static_coefficient",
     "curve": "coefficient_curve",
+    "breakaway": "breakaway_coefficient",
+    "viscous": "viscous_coefficient",
 }
 """The coefficient by which each friction force of a contact may be given instead."""
+LAW: Final = ("law", "stribeck_velocity", "exponent")
+"""Parts of a friction law beside forces or coefficients."""
+FALLING: Final = ("stribeck", "hess-soom")
+"""Laws by which friction falls from `breakaway` to `kinetic` as the sliding speed grows."""
 COEFFICIENT_OF: Final = {
     f"{contact}.{force}": f"{contact}.{coefficient}"
     for contact in PRESSED_BY

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from pindrive import _core, lazy
 from pindrive.lazy import mpl_figure, xr
 from pindrive.motion.core_numbers import CoreNumbers
-from pindrive.motion.drive import Drive
+from pindrive.motion.drive import Drive, law_values
 from pindrive.motion.friction import COEFFICIENTS, PRESSED_BY
 from pindrive.motion.profile import Profile
 from pindrive.motion.release import INPUTS, Release, core_numbers
@@ -428,8 +428,9 @@ class Motion(lazy.NotebookHtml):
         for name, contact in (("plate", drive.plate), ("finger", drive.finger)):
             values[f"{name}.kinetic"] = contact.kinetic
             values[f"{name}.static"] = contact.static_friction
-            if contact.curve:
-                values[f"{name}.curve"] = contact.curve
+            own = {n: getattr(contact, n) for n in ("curve", "breakaway", "viscous")}
+            own |= law_values(contact)
+            values |= {f"{name}.{n}": value for n, value in own.items() if value is not None}
             if contact.coefficient is not None:
                 parts = {n: getattr(contact, n) for n in COEFFICIENTS.values()}
                 values |= {f"{name}.{n}": value for n, value in parts.items() if value is not None}

@@ -6,8 +6,8 @@ from dataclasses import dataclass, fields
 from math import inf, nan
 from typing import Any, Final
 
-from pindrive.motion.core_numbers import CoreNumbers, DriveNumbers, Rows
-from pindrive.motion.drive import Drive, values_of
+from pindrive.motion.core_numbers import ContactNumbers, CoreNumbers, DriveNumbers, Rows
+from pindrive.motion.drive import Contact, Drive, values_of
 from pindrive.motion.profile import Profile, check_continuous
 from pindrive.quantities.contradictions import refuse
 from pindrive.quantities.refusal import refusal
@@ -177,9 +177,19 @@ def drive_numbers(drive: Drive) -> DriveNumbers:
         drive.mass,
         drive.stiffness,
         drive.damping,
-        (plate.kinetic, plate.static_friction, plate.stiffness, plate.curve or ()),
-        (finger.kinetic, finger.static_friction, finger.stiffness, finger.curve or ()),
+        _contact_numbers(plate),
+        _contact_numbers(finger),
         stop_numbers(drive),
+    )
+
+
+def _contact_numbers(contact: Contact) -> ContactNumbers:
+    return (
+        contact.kinetic,
+        contact.static_friction,
+        contact.stiffness,
+        contact.curve or (),
+        contact.law_numbers,
     )
 
 

@@ -16,7 +16,7 @@ import pindrive
 from pindrive import _core, lazy
 from pindrive.lazy import mpl_figure, xr
 from pindrive.motion.core_numbers import PLACES, ROWS, CoreNumbers, Rows, entry
-from pindrive.motion.drive import Drive
+from pindrive.motion.drive import Contact, Drive
 from pindrive.motion.friction import COEFFICIENTS, PRESSED_BY, normal_force
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import counted
@@ -37,7 +37,11 @@ Place = tuple[int, ...]
 
 _PLACES: dict[str, Place] = {name.replace(".", "_"): place for name, place in PLACES.items()}
 _COEFFICIENTS = (
-    *(f"{table}_{COEFFICIENTS[part]}" for table in PRESSED_BY for part in ("kinetic", "static")),
+    *(
+        f"{table}_{COEFFICIENTS[part]}"
+        for table in PRESSED_BY
+        for part in ("kinetic", "static", "breakaway", "viscous")
+    ),
     *(name for parts in PRESSED_BY.values() for name in parts if name not in _PLACES),
 )
 """Parameters that the core knows by the forces that follow from them."""
@@ -276,8 +280,12 @@ def _direction(motion: pindrive.Motion, given: str) -> tuple[CoreNumbers, float]
         return _along_friction(motion, name)
     places = _places(numbers, given)
     size = max(abs(entry(numbers, place)) for place in places) or _natural_size(motion, places[0])
-    for contact, (kinetic, static, _, curve) in ((3, numbers[3]), (4, numbers[4])):
+    for contact, (kinetic, static, _, curve, law) in ((3, numbers[3]), (4, numbers[4])):
         first_row = [(contact, 3, 0, 1)] if curve else []
+        if law[1]:  # friction at rest is another number
+            if (contact, 4, 1) in places and static == law[1]:
+                places = [*places, (contact, 1)]
+            continue
         if not {(contact, 0), *first_row}.isdisjoint(places):
             # One number of the user: kinetic friction, the curve's force at rest, and
             # static friction that is not greater.
@@ -314,18 +322,32 @@ def _friction_slopes(drive: Drive, name: str) -> dict[Place, float]:
         if contact.coefficient is None:
             continue
         own_static, rows = contact.static_coefficient, contact.coefficient_curve or ()
-        at_rest = contact.coefficient if own_static is None else own_static
+        at_rest = own_static
+        if at_rest is None:
+            at_rest = contact.breakaway_coefficient or contact.coefficient
         pressed = PRESSED_BY[table].get(name, 0.0)
         if pressed:
             found[i, 0], found[i, 1] = contact.coefficient * pressed, at_rest * pressed
             found |= {(i, 3, j, 1): each * pressed for j, (_, each) in enumerate(rows)}
+            found |= {place: each * pressed for place, each in _law_coefficients(contact, i)}
         force = normal_force(table, partial(getattr, drive))
         if name == f"{table}_coefficient":
-            tied = [(i, 1)] if at_rest == contact.coefficient else []
+            tied = [(i, 1)] if at_rest == contact.coefficient and not contact.falls else []
             found |= dict.fromkeys([(i, 0), *([(i, 3, 0, 1)] if rows else []), *tied], force)
         elif name == f"{table}_static_coefficient":
             found[i, 1] = force
+        elif name == f"{table}_breakaway_coefficient":
+            tied = [(i, 1)] if own_static is None else []
+            found |= dict.fromkeys([(i, 4, 1), *tied], force)
+        elif name == f"{table}_viscous_coefficient":
+            found[i, 4, 4] = force
     return found
+
+
+def _law_coefficients(contact: Contact, i: int) -> list[tuple[Place, float]]:
+    """The coefficients of a contact's law with the places of their forces."""
+    coefficients = ((1, contact.breakaway_coefficient), (4, contact.viscous_coefficient))
+    return [((i, 4, j), each) for j, each in coefficients if each is not None]
 
 
 def _key_as_name(given: str) -> str:
@@ -364,6 +386,8 @@ def _places(numbers: CoreNumbers, given: str) -> list[Place]:
         known = f"one of {names}, or a row like mouse_velocity[0].value"
         raise ValueError(refusal("parameter", known, repr(given)))
     place = _PLACES[name]
+    if place[1:] in ((4, 1), (4, 2)) and not entry(numbers, (place[0], 4, 0)):
+        raise ValueError(refusal("parameter", "one that this motion was given", repr(given)))
     if name in ROWS:
         return [(*place, i, 1) for i in range(len(entry(numbers, place)))]
     if not isfinite(entry(numbers, place)):
@@ -387,9 +411,9 @@ def _natural_size(motion: pindrive.Motion, place: Place) -> float:
     displacement, velocity = map(abs, at_first)
     length = max(displacement, max(velocity, *speeds) / omega) or 1e-3
     match place:
-        case (0 | 1 | 2,) | (13, 2):
+        case (0 | 1 | 2,) | (13, 2) | (3 | 4, 4, 4):
             return drive.mass * omega
-        case (5 | 11, _, 1) | (8,) | (3 | 4, 3, _, 0):
+        case (5 | 11, _, 1) | (8,) | (3 | 4, 3, _, 0) | (3 | 4, 4, 2):
             return length * omega
         case (6 | 12, _, 1):
             return 1.0
@@ -413,7 +437,10 @@ def _in_range(numbers: CoreNumbers) -> bool:
         and give > 0.0
         and increase(curve)
         and all(f >= 0 for _, f in curve)
-        for kinetic, static, give, curve in (plate, finger)
+        and (not law[1] or static >= law[1] >= kinetic)
+        and law[2] > 0.0
+        and law[4] >= 0.0
+        for kinetic, static, give, curve, law in (plate, finger)
     )
     return (
         mass > 0.0

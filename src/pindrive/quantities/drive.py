@@ -10,6 +10,7 @@ from dataclasses import replace
 from math import inf
 from typing import Any, Final
 
+from pindrive import _core
 from pindrive.quantities.quantity import (
     FINITE,
     FINITE_OR_NOT,
@@ -128,6 +129,9 @@ _DRIVE: Final = (
     ),
 )
 
+FRICTION_LAWS: Final = tuple(_core.friction_laws)
+"""Names of the friction laws, in the order of their numbers."""
+
 Given = tuple[Any, str]
 """A value, or rows, and the source."""
 
@@ -143,6 +147,11 @@ def _friction(
     coefficient: Given,
     static_coefficient: Given,
     coefficient_curve: Given,
+    breakaway: Given,
+    velocity: Given,
+    viscous: Given,
+    breakaway_coefficient: Given,
+    viscous_coefficient: Given,
 ) -> tuple[Quantity, ...]:
     """The friction of a contact, by forces and by coefficients.
 
@@ -164,6 +173,22 @@ def _friction(
             follows=(f"{contact}.{of}",),
             seen=forces if unit == "N" else plain,
             bounds=NON_NEGATIVE,
+        )
+
+    def falling(
+        name: str, symbol: str, unit: str, what: str, given: Given, seen: Bounds
+    ) -> Quantity:
+        of = "kinetic" if unit == "N" else "coefficient"
+        return Quantity(
+            f"{contact}.{name}",
+            symbol,
+            unit,
+            f"{what} of the {contact} at rest, from which it falls to the kinetic one",
+            source=given[1],
+            example=given[0],
+            remark="needed with the laws stribeck and hess-soom",
+            follows=(f"{contact}.{of}",),
+            seen=seen,
         )
 
     return inputs(
@@ -217,6 +242,67 @@ def _friction(
             bounds=NON_NEGATIVE,
         ),
         rows("coefficient_curve", "μ", "1", "coefficient", "coefficient", coefficient_curve),
+        Quantity(
+            f"{contact}.law",
+            f"law_{letter}",
+            "1",
+            "law of kinetic friction over sliding speed |u|: stribeck, kinetic + (breakaway - "
+            "kinetic) exp(-(|u|/stribeck_velocity)^exponent); hess-soom, kinetic + (breakaway - "
+            "kinetic) / (1 + (|u|/stribeck_velocity)^2); coulomb; table, a curve",
+            source="Armstrong, Dupont, Canudas de Wit 1994, Automatica 30:1083; Hess & Soom 1990, "
+            "J. Tribology 112:147",
+            remark="coulomb unless given, or table with a curve",
+            example=1.0,
+            choices=FRICTION_LAWS,
+        ),
+        falling("breakaway", f"F_{letter},b", "N", "friction force", breakaway, forces),
+        Quantity(
+            f"{contact}.stribeck_velocity",
+            f"v_{letter},s",
+            "m/s",
+            f"Stribeck velocity of the {contact}: sliding speed over which friction falls",
+            source=velocity[1],
+            example=velocity[0],
+            remark="needed with the laws stribeck and hess-soom",
+            seen=between(1e-6, 10.0),
+        ),
+        Quantity(
+            f"{contact}.exponent",
+            f"δ_{letter}",
+            "1",
+            "exponent of the law stribeck: 1 or 2",
+            source="Tustin 1947 (1), Armstrong-Helouvry 1991 (2)",
+            remark="1 unless given",
+            example=1.0,
+        ),
+        Quantity(
+            f"{contact}.viscous",
+            f"c_{letter}",
+            "N*s/m",
+            "viscous part of friction: force per sliding speed, under any law",
+            source=viscous[1],
+            example=viscous[0],
+            remark="none unless given",
+            seen=between(0.0, 1e4),
+        ),
+        falling(
+            "breakaway_coefficient",
+            f"μ_{letter},b",
+            "1",
+            "friction coefficient",
+            breakaway_coefficient,
+            plain,
+        ),
+        Quantity(
+            f"{contact}.viscous_coefficient",
+            f"γ_{letter}",
+            "s/m",
+            "viscous part of the friction coefficient, per sliding speed",
+            source=viscous_coefficient[1],
+            example=viscous_coefficient[0],
+            remark="none unless given",
+            seen=between(0.0, 1e4),
+        ),
     )
 
 
@@ -234,6 +320,11 @@ _CONTACTS: Final = (
             ((0.0, 0.225), (0.05, 0.15)),
             "steel on steel, 0.225 falling to 0.15 (the lowest)",
         ),
+        breakaway=(0.0265, STEEL.format("0.27 (oxidised)")),
+        velocity=(0.03, "assumed: half the hand's speed"),
+        viscous=(0.02, "assumed: a force of 1.2 mN at 60 mm/s"),
+        breakaway_coefficient=(0.27, "steel on steel, oxidised, 0.27 (handbook tables)"),
+        viscous_coefficient=(0.2, "assumed: 0.012 at 60 mm/s"),
     ),
     *inputs(
         "plate",
@@ -261,6 +352,11 @@ _CONTACTS: Final = (
         coefficient=(0.5, "skin, typically 0.5 (Derler & Gerhardt, review)"),
         static_coefficient=(0.75, f"1.5 times the kinetic one, as 2.1 to 1.4 in {FINGER}"),
         coefficient_curve=(((0.0, 0.5), (0.05, 0.4)), "assumed: by a fifth less at 50 mm/s"),
+        breakaway=(0.0075, f"1.5 times the kinetic one, as 2.1 to 1.4 in {FINGER}"),
+        velocity=(0.03, "assumed: half the hand's speed"),
+        viscous=(0.005, "assumed: a force of 0.3 mN at 60 mm/s"),
+        breakaway_coefficient=(0.75, f"1.5 times the kinetic one, as 2.1 to 1.4 in {FINGER}"),
+        viscous_coefficient=(0.5, "assumed: 0.03 at 60 mm/s"),
     ),
     *inputs(
         "finger",

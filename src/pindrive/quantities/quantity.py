@@ -110,6 +110,8 @@ class Quantity:
     """Bounds of all possible values; of an input those of the core."""
     limits: Bounds = FINITE_OR_NOT
     """Bounds of the computable values, far outside of any device; other values are rejected."""
+    choices: tuple[str, ...] = ()
+    """Names of the values 0, 1, 2 …; a device file has the name."""
     seen: Bounds | None = None
     """Plausible values of any such device, in magnitude; a value outside is accepted with a
     warning."""
@@ -132,6 +134,8 @@ class Quantity:
     @property
     def kind(self) -> str:
         """Kind of a value for messages: "a number in kg", "a plain number"."""
+        if self.choices:
+            return f"one of {', '.join(self.choices)}"
         return f"a number in {self.unit}" if self.unit not in ("", "1") else "a plain number"
 
     @property
@@ -163,6 +167,8 @@ class Quantity:
 
     def written(self, value: float) -> str:
         """`value` (SI) as a device file has it: "1.5 mm"; every digit that matters."""
+        if self.choices:
+            return self.choices[int(value)]
         return f"{value * self.display_scale:.12g} {self.display_unit}".rstrip()
 
     @property
@@ -198,6 +204,8 @@ class Quantity:
 
     def digits(self, value: float) -> str:
         """`value` (SI) in display units to four significant digits, without the unit."""
+        if self.choices:
+            return self.choices[int(value)]
         return significant(value * self.display_scale)
 
     def text(self, value: float) -> str:

@@ -16,8 +16,8 @@ from pindrive.files.device import DeviceFile
 from pindrive.files.keys import variable
 from pindrive.files.ratios import scaled_rows
 from pindrive.motion.batch import batched
-from pindrive.motion.drive import Contact, Drive
-from pindrive.motion.friction import COEFFICIENT_OF, COEFFICIENTS
+from pindrive.motion.drive import Contact, Drive, law_name
+from pindrive.motion.friction import COEFFICIENT_OF, COEFFICIENTS, LAW
 from pindrive.motion.motion import Motion
 from pindrive.motion.profile import Profile
 from pindrive.motion.release import INPUTS, Release
@@ -260,6 +260,8 @@ def _motion(given: Mapping[str, Any]) -> Motion:
     body |= {name: given[name] for name in ("preload", "touch_force", *_STOPS)}
     for table, stiffness in (("plate", inf), ("finger", given["finger_stiffness"] or inf)):
         own = {n: given[f"{table}_{n}"] for pair in COEFFICIENTS.items() for n in pair}
+        own |= {n: given[f"{table}_{n}"] for n in LAW}
+        own["law"] = law_name(own["law"])
         for kinetic, curve in (("kinetic", "curve"), ("coefficient", "coefficient_curve")):
             if own[curve] is not None:
                 own[curve] = scaled_rows(own[curve], own[kinetic])

@@ -1,0 +1,22 @@
+// A contact as Python hands it over.
+#pragma once
+
+#include <tuple>
+#include <utility>
+
+#include "owned_motion.hpp"
+
+/// Number of the law, friction at rest, Stribeck velocity, exponent, viscous part.
+using LawNumbers = std::tuple<double, double, double, double, double>;
+/// Kinetic and static friction, stiffness, the rows (speed, force) of the curve, and the law.
+using ContactNumbers = std::tuple<double, double, double, pindrive::Rows, LawNumbers>;
+
+inline pindrive::ContactNumbers contact_of(ContactNumbers given) {
+  auto& [kinetic, fixed, stiffness, curve, law] = given;
+  const auto& [number, breakaway, velocity, exponent, viscous] = law;
+  return {kinetic,
+          fixed,
+          stiffness,
+          std::move(curve),
+          {number, breakaway, velocity, exponent, viscous}};
+}
