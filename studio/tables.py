@@ -95,6 +95,7 @@ def checked(quantity: Quantity) -> dict[str, Any]:
     return row(quantity, of_drive) | brief(
         {
             "bounds": [bounds(quantity, of) for of in (quantity.bounds, quantity.limits)],
+            "choices": quantity.choices,
             "seen": [quantity.seen.lower, quantity.seen.upper] if quantity.seen else None,
             "default": quantity.default,
             "absent": quantity.absent,

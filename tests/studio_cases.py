@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from pindrive import Contact, Drive, Profile, Release
+from pindrive.motion.drive import law_values
 from pindrive.motion.motion import Motion
 from pindrive.motion.release import INPUTS
 from pindrive.quantities.results import ENDING, TRANSIENT
@@ -45,7 +46,15 @@ def drawn(random: np.random.Generator) -> tuple[Drive, Release, float | None]:
         more: dict[str, Any] = {"curve": curve} if kind == 2 else {}
         if kind == 1 and name == "finger":
             more["stiffness"] = between(500, 5000)
-        static = kinetic * (1.0 if random.integers(2) else between(1, 2))
+        rest = kinetic
+        if kind == 0 and random.integers(2):
+            more = {"viscous": (0.0, between(0, 0.1))[random.integers(2)]}
+            if law := (None, "stribeck", "hess-soom")[random.integers(3)]:
+                rest = kinetic * between(1, 2)
+                more |= {"law": law, "breakaway": rest, "stribeck_velocity": between(5e-3, 0.1)}
+            if law == "stribeck":
+                more["exponent"] = (None, 1.0, 2.0)[random.integers(3)]
+        static = rest * (1.0 if random.integers(2) else between(1, 2))
         contacts[name] = Contact(kinetic=kinetic, static=static, **more)
     mass, stiffness = between(2e-3, 2e-2), between(20, 400)
     ratio = (0.0, between(0, 0.3), between(0, 2), 1.0)[random.integers(4)]
@@ -93,6 +102,8 @@ def as_input(drive: Drive, release: Release) -> dict[str, Any]:
     numbers = {"mass": drive.mass, "stiffness": drive.stiffness, "damping": drive.damping}
     for name, contact in (("plate", drive.plate), ("finger", drive.finger)):
         numbers |= {f"{name}.kinetic": contact.kinetic, f"{name}.static": contact.static_friction}
+        law = law_values(contact) | {n: getattr(contact, n) for n in ("breakaway", "viscous")}
+        numbers |= {f"{name}.{n}": value for n, value in law.items() if value is not None}
     own = {name: getattr(drive, name) for name in ("travel", "stop_stiffness", "stop_damping")}
     numbers |= {name: value for name, value in own.items() if value is not None}
     stiffness = drive.finger.stiffness

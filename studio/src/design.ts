@@ -60,6 +60,11 @@ export function valueFor(values: Values, key: string): Value | null {
 const OPTIONAL: readonly (readonly [string, string])[] = [
   ["finger.stiffness", "finger.stiffness"],
   ...STOPS.map((name) => [name, `drive.${name}`] as const),
+  ...CONTACTS.flatMap((contact) =>
+    ["law", "stribeck_velocity", "exponent"].map(
+      (name) => [`${contact}.${name}`, `${contact}.${name}`] as const,
+    ),
+  ),
 ];
 
 /** As pindrive.h has it. */
@@ -71,8 +76,10 @@ export function coreInput(values: Values): Input {
     damping: dampingOf(values),
   };
   for (const contact of CONTACTS) {
-    const { kinetic, still, curve } = frictionOf(values, contact);
+    const { kinetic, still, curve, rest, viscous } = frictionOf(values, contact);
     if (curve) curves[contact] = curve;
+    if (rest !== null) drive[`${contact}.breakaway`] = rest;
+    if (viscous !== null) drive[`${contact}.viscous`] = viscous;
     drive[`${contact}.kinetic`] = kinetic;
     drive[`${contact}.static`] = still;
   }
@@ -190,11 +197,16 @@ export function direction(values: Values, key: string, part: number): Input {
   for (const contact of CONTACTS) {
     const curve = input.curves[contact];
     const coefficients = byCoefficient(values, contact);
-    const [ofKinetic, ofStatic, ofCurve] = frictionKeys(contact, coefficients);
+    const [ofKinetic, ofStatic, ofCurve, ofRest, ofViscous] = frictionKeys(contact, coefficients);
     const pressed = coefficients ? pressRate(values, contact, of) : 0;
     // The first force of a curve is kinetic friction and, without static friction, also the static limit.
     const kinetic = of(curve ? ofCurve : ofKinetic) + pressed;
-    const still = values[ofStatic] === undefined ? kinetic : of(ofStatic) + pressed;
+    const falling = values[ofRest] !== undefined;
+    const rest = falling ? of(ofRest) + pressed : kinetic;
+    const still = values[ofStatic] === undefined ? rest : of(ofStatic) + pressed;
+    if (falling) drive[`${contact}.breakaway`] = rest * input.drive[`${contact}.breakaway`]!;
+    if (values[ofViscous] !== undefined)
+      drive[`${contact}.viscous`] = (of(ofViscous) + pressed) * input.drive[`${contact}.viscous`]!;
     if (curve) curves[contact] = scaled(curve, kinetic);
     drive[`${contact}.kinetic`] = kinetic * input.drive[`${contact}.kinetic`]!;
     drive[`${contact}.static`] = still * input.drive[`${contact}.static`]!;
@@ -228,6 +240,7 @@ function pressRate(values: Values, contact: string, of: (key: string) => number)
 export function variedKeys(values: Values): string[] {
   return [...DRIVE.keys()].filter((key) => {
     if (key === "motion.duration" || key === "motion.settling_band") return false;
+    if (DRIVE.get(key)!.choices || key.endsWith(".exponent")) return false;
     const value = values[key];
     return value !== undefined && (isRows(value) ? value.some(([, y]) => y !== 0) : value !== 0);
   });

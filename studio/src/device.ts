@@ -234,6 +234,11 @@ function readValue(value: TomlValue, quantity: Quantity): Value {
 
 /** A number from text with a unit, or a bare one where the quantity has no unit. Throws in words. */
 export function readNumber(value: TomlValue, quantity: Quantity, example: string, label: string): number {
+  if (quantity.choices) {
+    const found = quantity.choices.indexOf(String(value));
+    if (typeof value === "string" && found >= 0) return found;
+    throw new Refusal(label, `one of ${quantity.choices.join(", ")}`, quoted(value));
+  }
   const bare = typeof value === "bigint" ? String(value) : typeof value === "number" ? floatRepr(value) : "";
   let found: number;
   try {

@@ -13,15 +13,60 @@ export interface Friction {
   readonly kinetic: number;
   readonly still: number;
   readonly curve: Rows | null;
+  /** At rest, where friction falls by a law; null elsewhere. */
+  readonly rest: number | null;
+  readonly viscous: number | null;
 }
 
 export const CONTACTS = ["plate", "finger"] as const;
-const KINDS = ["kinetic", "static", "curve"] as const;
+const KINDS = ["kinetic", "static", "curve", "breakaway", "viscous"] as const;
+type Keys = [string, string, string, string, string];
 
-/** The keys of the friction of a contact: kinetic, static, curve. */
-export function frictionKeys(contact: string, coefficients: boolean): [string, string, string] {
+/** The keys of the friction of a contact: kinetic, static, curve, at rest, viscous. */
+export function frictionKeys(contact: string, coefficients: boolean): Keys {
   const keys = KINDS.map((kind) => `${contact}.${kind}`);
-  return (coefficients ? keys.map((key) => TABLES.coefficients[key]!) : keys) as [string, string, string];
+  return (coefficients ? keys.map((key) => TABLES.coefficients[key]!) : keys) as Keys;
+}
+
+const FALLING = ["stribeck", "hess-soom"];
+
+/** Name of the friction law of a contact. */
+export function lawOf(values: Found, contact: string): string {
+  const curve = frictionKeys(contact, byCoefficient(values, contact))[2];
+  const given = values[`${contact}.law`] as number | null | undefined;
+  return given == null
+    ? values[curve]
+      ? "table"
+      : "coulomb"
+    : DRIVE.get(`${contact}.law`)!.choices![given]!;
+}
+
+/** True if friction falls by a law. */
+export function falls(values: Found, contact: string): boolean {
+  return FALLING.includes(lawOf(values, contact));
+}
+
+/** The values with another law of a contact, and what it needs; a law that falls makes a finger rigid. */
+export function withLaw(values: Values, contact: string, law: string): Values {
+  const coefficients = byCoefficient(values, contact);
+  const [ofKinetic, ofStatic, ofCurve, ofRest] = frictionKeys(contact, coefficients);
+  const { kinetic, still } = givenFriction(values, contact);
+  const next: Record<string, Value> = { ...values, [ofKinetic]: kinetic };
+  for (const key of [`${contact}.law`, ofRest, `${contact}.stribeck_velocity`, `${contact}.exponent`])
+    delete next[key];
+  delete next[ofCurve];
+  if (law === "table")
+    next[ofCurve] = DRIVE.get(ofCurve)!.rows!.map(
+      ([u, y], _, rows) => [u, (y / rows[0]![1]) * kinetic] as const,
+    );
+  if (!FALLING.includes(law)) return next;
+  next[`${contact}.law`] = DRIVE.get(`${contact}.law`)!.choices!.indexOf(law);
+  next[ofRest] = still > kinetic ? still : 1.2 * kinetic;
+  next[`${contact}.stribeck_velocity`] = DRIVE.get(`${contact}.stribeck_velocity`)!.example!;
+  if (values[ofStatic] !== undefined) next[ofStatic] = next[ofRest];
+  delete next[`${contact}.stiffness`];
+  if (contact === "finger") delete next["motion.skin_stretch"];
+  return next;
 }
 
 export function byCoefficient(values: Found, contact: string): boolean {
@@ -37,10 +82,15 @@ export function normalForce(values: Found, contact: string): number {
 
 /** Notation of friction: by forces or by coefficients. */
 export function givenFriction(values: Found, contact: string): Friction {
-  const [ofKinetic, ofStatic, ofCurve] = frictionKeys(contact, byCoefficient(values, contact));
+  const [ofKinetic, ofStatic, ofCurve, ofRest, ofViscous] = frictionKeys(
+    contact,
+    byCoefficient(values, contact),
+  );
+  const number = (key: string): number | null => (values[key] as number | null | undefined) ?? null;
   const curve = (values[ofCurve] as Rows | null | undefined) ?? null;
-  const kinetic = (values[ofKinetic] as number | null | undefined) ?? curve![0]![1];
-  return { kinetic, still: (values[ofStatic] as number | null | undefined) ?? kinetic, curve };
+  const kinetic = number(ofKinetic) ?? curve![0]![1];
+  const rest = number(ofRest);
+  return { kinetic, still: number(ofStatic) ?? rest ?? kinetic, curve, rest, viscous: number(ofViscous) };
 }
 
 /** The forces, N. */
@@ -49,9 +99,16 @@ export function frictionOf(values: Found, contact: string): Friction {
   return byCoefficient(values, contact) ? times(given, normalForce(values, contact)) : given;
 }
 
-function times({ kinetic, still, curve }: Friction, load: number): Friction {
+function times({ kinetic, still, curve, rest, viscous }: Friction, load: number): Friction {
   const rows = curve?.map(([speed, each]) => [speed, each * load] as const) ?? null;
-  return { kinetic: kinetic * load, still: still * load, curve: rows };
+  const part = (each: number | null): number | null => (each === null ? null : each * load);
+  return {
+    kinetic: kinetic * load,
+    still: still * load,
+    curve: rows,
+    rest: part(rest),
+    viscous: part(viscous),
+  };
 }
 
 /** The keys from which a friction force follows where a coefficient gives it; of others none. */
@@ -73,7 +130,9 @@ export function withKind(values: Values, contact: string, coefficients: boolean)
     else delete next[touch];
   }
   const found = coefficients ? times(forces, 1 / normalForce(next, contact)) : forces;
-  const [ofKinetic, ofStatic, ofCurve] = frictionKeys(contact, coefficients);
+  const [ofKinetic, ofStatic, ofCurve, ofRest, ofViscous] = frictionKeys(contact, coefficients);
+  if (found.rest !== null) next[ofRest] = found.rest;
+  if (found.viscous !== null) next[ofViscous] = found.viscous;
   next[ofKinetic] = found.kinetic;
   if (values[before[1]] !== undefined) next[ofStatic] = found.still;
   if (found.curve) next[ofCurve] = found.curve.map(([u, y], i) => [u, i ? y : found.kinetic] as const);

@@ -20,9 +20,9 @@ export function mapKeys(state: State): string[] {
   const { values } = state.designs[state.current]!;
   return [...DRIVE.keys()].filter((key) => {
     const value = values[key];
-    return (
-      value !== undefined && !isRows(value) && key !== "motion.duration" && key !== "motion.settling_band"
-    );
+    if (value === undefined || isRows(value)) return false;
+    if (DRIVE.get(key)!.choices || key.endsWith(".exponent")) return false;
+    return key !== "motion.duration" && key !== "motion.settling_band";
   });
 }
 

@@ -3,7 +3,16 @@ import { applies, isRows, valueFor, withValue } from "./design";
 import { readNumber } from "./device";
 import { h, option, show, symbol, textField } from "./dom";
 import type { Value, Values } from "./friction";
-import { byCoefficient, frictionKeys, frictionOf, givenFriction, withKind } from "./friction";
+import {
+  byCoefficient,
+  falls,
+  frictionKeys,
+  frictionOf,
+  givenFriction,
+  lawOf,
+  withKind,
+  withLaw,
+} from "./friction";
 import { partOf, type Range, rangeOf, valueAt } from "./range";
 import { columnsOf, DRIVE, plausible, type Quantity, TABLES, text, unitOf } from "./table";
 import { fieldText, written } from "./write";
@@ -37,7 +46,11 @@ export class Panel {
       const rows = [...DRIVE.values()]
         .filter(({ key }) => key.startsWith(`${table}.`))
         .map((quantity) =>
-          quantity.rows && !quantity.mayBeConstant ? this.rowsOnly(quantity) : this.number(quantity),
+          quantity.choices
+            ? this.law(quantity)
+            : quantity.rows && !quantity.mayBeConstant
+              ? this.rowsOnly(quantity)
+              : this.number(quantity),
         );
       if (table in TABLES.pressedBy) rows.unshift(this.kind(table, title));
       this.controls.push(...rows);
@@ -82,6 +95,19 @@ export class Panel {
     };
   }
 
+  /** Friction law of a contact. */
+  private law({ key, choices, meaning }: Quantity): Control {
+    const contact = key.split(".")[0]!;
+    const id = key.replace(".", "-");
+    const names = choices!.map((name) => option(name, name));
+    const select = h("select", { id, "aria-label": `friction law of the ${contact}` }, ...names);
+    select.addEventListener("change", () => this.change(withLaw(this.now(), contact, select.value), ""));
+    return {
+      element: h("label", { class: "kind", for: id, title: meaning }, "law", select),
+      update: (values) => (select.value = lawOf(values, contact)),
+    };
+  }
+
   /** Number field; optional unless mandatory, with rows if the key may have rows. */
   private number(quantity: Quantity): Control {
     const { key } = quantity;
@@ -105,7 +131,8 @@ export class Panel {
     const note = h("p", { class: "problem", id: `${id}-note`, role: "status" });
     const rows = quantity.rows ? rowsEditor(quantity, (value) => this.set(key, value, "")) : null;
     let range: Range = rangeOf(quantity, 0);
-    const optional = !quantity.mandatory && !partner(key) && !PRESSED.includes(key);
+    const needed = PRESSED.includes(key) || FALLING.some((name) => key.includes(name));
+    const optional = !quantity.mandatory && !partner(key) && !needed;
     const given = optional
       ? h("input", { type: "checkbox", id: `${id}-given`, "aria-label": `give ${nameOf(quantity)}` })
       : null;
@@ -183,7 +210,10 @@ export class Panel {
   private usual(quantity: Quantity): number {
     const values = this.now();
     const [contact, name] = quantity.key.split(".") as [string, string];
-    if (name.startsWith("static")) return givenFriction(values, contact).kinetic * 1.2;
+    if (name.startsWith("static")) {
+      const { kinetic, rest } = givenFriction(values, contact);
+      return (rest ?? kinetic) * 1.2;
+    }
     if (name === "skin_stretch") {
       const limit = frictionOf(values, "finger").still;
       return limit / 2 / ((values["finger.stiffness"] as number | undefined) ?? Infinity);
@@ -217,11 +247,20 @@ function startOf(values: Values): number {
 /** Mandatory keys of a contact with coefficients. */
 const PRESSED: readonly string[] = ["plate.coefficient", "finger.coefficient", "finger.touch_force"];
 
+/** Parts of the keys of friction that falls. */
+const FALLING: readonly string[] = ["breakaway", "stribeck_velocity"];
+
 /** True if a key has a meaning with the notation of its contact and with these end stops. */
 function meant(key: string, values: Values): boolean {
   const contact = key.split(".")[0]!;
   if (!(contact in TABLES.pressedBy)) return key in values || applies(values, key);
   const coefficients = byCoefficient(values, contact);
+  const falling = falls(values, contact);
+  if (FALLING.some((name) => key.includes(name)) && !falling) return false;
+  if (key.endsWith(".exponent")) return lawOf(values, contact) === "stribeck";
+  if (key === "finger.stiffness") return !falling;
+  const curve = DRIVE.get(key)!.rowsOf?.endsWith("curve") === true;
+  if (curve && lawOf(values, contact) !== "table") return false;
   if (key in TABLES.pressedBy[contact]!) return coefficients || values[key] !== undefined;
   return !frictionKeys(contact, !coefficients).includes(key);
 }
@@ -241,6 +280,9 @@ function absentWords(key: string, values: Values): string {
   const words: Record<string, string> = {
     static: "as kinetic",
     static_coefficient: "as coefficient",
+    exponent: "1",
+    viscous: "none",
+    viscous_coefficient: "none",
     stiffness: "rigid",
     velocity: "plate's",
     skin_stretch: "none",

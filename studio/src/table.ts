@@ -34,6 +34,8 @@ export interface Quantity {
   readonly rowsOf?: "curve" | "coefficient_curve" | "profile" | "places";
   readonly rows?: Rows;
   readonly mayBeConstant?: boolean;
+  /** Names of the values 0, 1, 2 … */
+  readonly choices?: readonly string[];
   readonly usual?: string;
   readonly usualRows?: string;
   readonly line?: string;
@@ -151,6 +153,7 @@ export function shownNumber(quantity: Quantity, value: number): string {
 
 /** A value (SI) for a person to read: "1.500 mm". */
 export function text(quantity: Quantity, value: number): string {
+  if (quantity.choices) return quantity.choices[value]!;
   return `${shownNumber(quantity, value)} ${unitOf(quantity)}`.trim();
 }
 

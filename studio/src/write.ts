@@ -10,6 +10,7 @@ import { toSi } from "./units";
 
 /** A value (SI) as a device file has it, with the fewest digits that give it back to the bit. */
 export function written(quantity: Quantity, value: number): string {
+  if (quantity.choices) return quantity.choices[value]!;
   const unit = quantity.unit || "1";
   if (unit === "1") return floatRepr(value);
   for (let digits = 6; digits <= 17; ++digits) {
@@ -46,7 +47,7 @@ export function deviceFile(design: Design): string {
 
 function valueText(quantity: Quantity, value: number): string {
   const text = written(quantity, value);
-  return (quantity.unit || "1") === "1" ? text : JSON.stringify(text);
+  return (quantity.unit || "1") === "1" && !quantity.choices ? text : JSON.stringify(text);
 }
 
 function rowsText(quantity: Quantity, rows: readonly (readonly [number, number])[]): string {

@@ -254,6 +254,24 @@ OTHERS = (
     ),
 )
 """Devices with rigid end stops and with the remaining keys."""
+LAW = 'law = "stribeck"\nstribeck_velocity = "30 mm/s"\nexponent = 2\n'
+BY_LAW = tuple(
+    GOOD.replace('kinetic = "20 mN"', f"{plate}\n{LAW}").replace(
+        'kinetic = "5 mN"', f"{finger}\n{LAW}"
+    )
+    for plate, finger in (
+        (
+            'kinetic = "20 mN"\nbreakaway = "25 mN"\nviscous = "0.1 N*s/m"',
+            'kinetic = "5 mN"\nbreakaway = "6 mN"\nviscous = "0.02 N*s/m"',
+        ),
+        (
+            'coefficient = 0.2\nbreakaway_coefficient = 0.3\nviscous_coefficient = "0.1 s/m"',
+            'touch_force = "10 mN"\ncoefficient = 0.5\nbreakaway_coefficient = 0.6\n'
+            'viscous_coefficient = "0.2 s/m"',
+        ),
+    )
+)
+"""Devices with friction by a law at both contacts, by forces and by coefficients."""
 
 
 def asked_of(text: str, **more: Any) -> dict[str, Any]:
@@ -288,6 +306,7 @@ def test_device_files_are_read_and_written_like_python(node: Ask, tmp_path: Path
         CURVED,
         STOPPED,
         *OTHERS,
+        *BY_LAW,
         *examples,
     ]
     assert sum("\ncoefficient" in text for text in texts) >= 3
