@@ -9,7 +9,17 @@ import numpy as np
 import pytest
 
 from notebook_reading import check_faces
-from pindrive import Contact, Drive, Recording, Release, fit, fit_friction
+from pindrive import (
+    Contact,
+    Drive,
+    HessSoom,
+    Recording,
+    Release,
+    Stribeck,
+    fit,
+    fit_friction,
+    simulate,
+)
 from pindrive.fitting.comparison import LAWS, compare_models
 from recordings import recorded
 
@@ -57,6 +67,47 @@ def test_hysteresis_is_no_noise() -> None:
 
 
 @pytest.mark.parametrize(
+    ("name", "made"),
+    [
+        ("coulomb", Contact(0.02, viscous=0.02)),
+        ("stribeck", Stribeck(kinetic=0.015, breakaway=0.022, stribeck_velocity=0.03)),
+        (
+            "stribeck, exponent 2",
+            Stribeck(kinetic=0.015, breakaway=0.022, stribeck_velocity=0.05, exponent=2),
+        ),
+        (
+            "hess-soom",
+            HessSoom(kinetic=0.015, breakaway=0.022, stribeck_velocity=0.03, viscous=0.01),
+        ),
+    ],
+)
+def test_the_law_of_measured_forces_is_the_best(name: str, made: Contact) -> None:
+    rng = np.random.default_rng(3)
+    speed = rng.uniform(0.0, 0.3, 600)
+    drive = Drive(mass=1.0, stiffness=1e-3, damping=0.0, plate=Contact(0.0), finger=made)
+
+    def friction(u: float) -> float:
+        """Force at the start of a motion at that speed."""
+        motion = simulate(drive, Release(0.0, 0.0, u), duration=1e-5)
+        return -float(motion.force("finger", 0.0))
+
+    exact = np.array([friction(float(u)) for u in speed])
+    found = fit_friction(speed, exact + 1e-4 * rng.normal(size=600))
+    assert found.best == name
+    law = found.laws[name]
+    np.testing.assert_allclose(law(speed), exact, atol=6e-5)
+    assert law.noise == pytest.approx(1e-4, rel=0.1)
+    contact = found.contact(law=name)
+    assert contact.law in (made.law, "coulomb")
+    assert contact.kinetic == pytest.approx(made.kinetic, rel=0.1)
+    with pytest.raises(ValueError, match="law must be one of table, coulomb, stribeck, "):
+        found.contact(law="none")
+    assert {"law"} <= {*found.to_dataset().coords}
+    gids = {line.get_gid() for line in found.plot().axes[0].lines}
+    assert "law" in gids
+
+
+@pytest.mark.parametrize(
     ("speed", "force", "said"),
     [
         ([0.1] * 9, [1.0] * 8, "force must be finite numbers, as many as speeds, got 8 of them"),
@@ -99,8 +150,15 @@ def test_the_published_motion_gives_its_friction_curve_back() -> None:
     np.testing.assert_allclose(force, stribeck(at), rtol=0.03)
     assert any(left.structured for left in found.residuals)  # nine rows are not its smooth law
 
+    law = Stribeck(kinetic=2.0, breakaway=6.0, stribeck_velocity=1.0, viscous=0.5)
+    free = [f"finger.{name}" for name in ("kinetic", "breakaway", "stribeck_velocity", "viscous")]
+    by_law = fit(recordings, drive.replace(finger=law), releases, free=free, profiles=False)
+    values = [by_law[name].value for name in free]
+    np.testing.assert_allclose(values, [3.0, 8.0, 0.5, 1.0], rtol=1e-3)
+    assert by_law.aicc < found.aicc - 1000.0
 
-def test_the_law_that_made_a_recording_is_the_best_of_four() -> None:
+
+def test_the_law_that_made_a_recording_is_the_best_of_five() -> None:
     drive = Drive(
         mass=0.006,
         stiffness=160.0,
@@ -122,7 +180,7 @@ def test_the_law_that_made_a_recording_is_the_best_of_four() -> None:
     assert compared.best == "compliant skin"
     assert compared.weights["compliant skin"] > 0.999
     assert compared.excess["Coulomb"] > 10.0
-    assert compared.to_dataset().parameters.values.tolist() == [3, 4, 6, 4]
+    assert compared.to_dataset().parameters.values.tolist() == [3, 4, 5, 6, 4]
     skin = compared.fits["compliant skin"]["finger.stiffness"]
     assert abs(skin.value - 700.0) < 4.0 * skin.standard_error
     assert check_faces(compared) == 1 + len(LAWS)

@@ -104,13 +104,14 @@ template <class Real>
 std::array<Real, series_order + 2> bernstein(const std::array<Real, series_order + 2>& powers,
                                              int degree) {
   std::array<Real, series_order + 2> b{};
-  for (int i = 0; i <= degree; ++i) {
-    Real ratio{1};  // ratios of binomials: (i over j) / (degree over j)
-    for (int j = 0; j <= i; ++j) {
-      b[i] += ratio * powers[j];
-      ratio *= Real(i - j) / Real(degree - j);
-    }
+  Real binomial{1};  // (degree over j)
+  for (int j = 0; j <= degree; ++j) {
+    b[j] = powers[j] / binomial;
+    binomial *= Real(degree - j) / Real(j + 1);
   }
+  // Sums of (i over j) b_j, as in Pascal's triangle.
+  for (int k = 1; k <= degree; ++k)
+    for (int i = degree; i >= k; --i) b[i] += b[i - 1];
   return b;
 }
 

@@ -270,7 +270,9 @@ class Measurement {
   T rest_begin() const {
     const Segment<T>* segment = std::prev(motion_.end());
     const auto still = [](const Segment<T>& before) {
-      return before.flow.position.constant() || !(before.end > before.begin);
+      const Path<T>& v = before.flow.velocity;  // a series has but its start
+      const bool rests = v.constant() && v.start == 0 && before.flow.position.constant();
+      return rests || !(before.end > before.begin);
     };
     while (segment != motion_.begin() && still(*std::prev(segment))) --segment;
     return segment->begin;

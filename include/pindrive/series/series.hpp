@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "pindrive/flow/polynomial.hpp"
 #include "pindrive/law/oblique.hpp"
@@ -43,9 +44,12 @@ class SeriesFlow : public SeriesStep<T> {
     step = std::min({this->suggested_part(),
                      1 / ((rate / Real(longest_step) + rising_rate(equation)) * step),
                      farthest / step, Real(farthest_step)});
-    for (int tries = 0; tries < most_reductions; ++tries, step = Real(0.75)) {
+    for (int tries = 0; tries < most_reductions; ++tries) {
       this->rescale(step);
-      if (bound(equation)) break;
+      const Real excess = bound(equation);
+      if (excess <= 1) break;
+      // The error grows with the power N + 1 of the step.
+      step = std::max(Real(0.25), Real(0.95) * exp(-log(std::min(excess, Real(1e30))) / (N + 1)));
     }
     this->trim();
   }
@@ -306,12 +310,13 @@ class SeriesFlow : public SeriesStep<T> {
     }
   }
 
-  /// Bounds the truncation error from the residual of the equation; true if the bound is within
-  /// rounding. The error e of a mode, with 2 E² = m e_v² + k e_x² + (f e_y)²/K, grows at most by
+  /// Bounds the truncation error from the residual of the equation; returns its largest ratio to
+  /// rounding, at most 1 for a step that may be used. The error e of a mode, with 2 E² = m e_v² + k e_x² + (f e_y)²/K, grows at most by
   /// the energy that the residual supplies, as the slope of friction dissipates energy unless it is
   /// negative.
-  bool bound(const SeriesEquation<T>& e) {
+  Real bound(const SeriesEquation<T>& e) {
     using std::max;
+    constexpr Real never = std::numeric_limits<Real>::infinity();
     const Real h = span(), m = plain(e.mass), k = plain(e.stiffness), b = plain(e.damping);
     const Real b_change = plain(e.damping_rate) * h, decay = plain(e.skin_decay);
     const Real f = plain(e.skin_factor.value), f_change = plain(e.skin_factor.rate) * h;
@@ -322,7 +327,7 @@ class SeriesFlow : public SeriesStep<T> {
     const auto last = [](const Polynomial<T>& p, int n) { return abs(plain(p.c[n])); };
     const Sums u = sums_of(inner(1).c);
     const Turning turning = bound_turning(e);
-    if (!turning.known) return false;
+    if (!turning.known) return never;
     // Residual of the equation: terms from order N on.
     const Real missed = e.held ? Real(0)
                                : max(abs(b), abs(b + b_change)) * last(velocity, N) +
@@ -347,11 +352,17 @@ class SeriesFlow : public SeriesStep<T> {
     // Slider beside a pin at rest: error of its velocity from the rounding of the forces.
     const Real forces =
         decay != 0 ? most_f * sums_of(skin.c)[0] + k * sums_of(position.c)[0] : Real(0);
-    return v_bound <= rounding_of(sums_of(velocity.c)) + step_error<Real> * forces * h / m &&
-           (K == 0 || skin_bound <= rounding_of(sums_of(skin.c))) &&
-           speed_bound <= rounding_of(from_rest(speed.c)) + rounding_of(sums_of(velocity.c)) &&
-           !(e.held && turning.direction > direction_error<Real>) &&
-           !(e.held && turning.falling > direction_error<Real> * plain(e.plate_falling.excess));
+    const Real of_velocity = rounding_of(sums_of(velocity.c));
+    const auto over = [](Real missing, Real allowed) {
+      return missing <= allowed ? Real(0) : allowed > 0 ? missing / allowed : never;
+    };
+    Real excess = max(over(v_bound, of_velocity + step_error<Real> * forces * h / m),
+                      over(speed_bound, rounding_of(from_rest(speed.c)) + of_velocity));
+    if (K != 0) excess = max(excess, over(skin_bound, rounding_of(sums_of(skin.c))));
+    if (!e.held) return excess;
+    const Real rest = direction_error<Real> * plain(e.plate_falling.excess);
+    return max(
+        {excess, over(turning.direction, direction_error<Real>), over(turning.falling, rest)});
   }
 };
 

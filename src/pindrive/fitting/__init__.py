@@ -6,6 +6,7 @@
 - `Fit`: what `fit` found
 - `fit_friction`: fits a friction curve to friction forces that were measured at sliding speeds
 - `FrictionCurve`: a friction curve that was fitted
+- `FittedLaw`: a friction law that was fitted
 - `Identifiability`: whether recordings tell a parameter
 - `ModelComparison`: fits of several laws of friction to the same recordings
 - `read_recording`: a recording from a CSV file whose header names columns with their units

@@ -3,6 +3,7 @@
 from .results import ModelComparison as ModelComparison
 from .comparison import compare_models as compare_models
 from .estimation import fit as fit
+from .friction_curve import FittedLaw as FittedLaw
 from .friction_curve import FrictionCurve as FrictionCurve
 from .friction_curve import fit_friction as fit_friction
 from .identifiability import Identifiability as Identifiability

@@ -9,14 +9,16 @@ import numpy as np
 
 from pindrive.fitting.estimation import fit
 from pindrive.fitting.results import Fit, ModelComparison
-from pindrive.motion.drive import Contact, Drive
+from pindrive.motion.drive import Contact, Drive, Stribeck
 from pindrive.motion.profile import Profile
 
 __all__ = ["compare_models"]
 
 SPEEDS: Final = (0.0, 0.1, 0.4, 1.0)
 """Rows of a friction curve that is tried, in parts of the largest sliding speed."""
-LAWS: Final = ("Coulomb", "static friction", "friction curve", "compliant skin")
+STRIBECK: Final = 0.2
+"""Stribeck velocity from which a fit starts, a part of the largest sliding speed."""
+LAWS: Final = ("Coulomb", "static friction", "Stribeck", "friction curve", "compliant skin")
 """In their order."""
 
 
@@ -28,8 +30,8 @@ def compare_models(found: Fit, seed: int = 1) -> ModelComparison:
         seed: Seed of the candidates.
 
     Returns:
-        Coulomb friction, static friction, a friction curve and compliant skin, where the drive can
-        have them, with AICc and weights.
+        Coulomb friction, static friction, Stribeck's law, a friction curve and compliant skin, each
+        where the drive can have it, with AICc and weights.
 
     Raises:
         ValueError: None of them can be fitted.
@@ -88,6 +90,18 @@ def _changed(
             for name in contacts:
                 kinetic = made[name].kinetic
                 made[name] = Contact(kinetic, 1.2 * kinetic)
+        case "Stribeck":
+            rigid = [name for name in contacts if name == "plate" or drive.finger.rigid]
+            for name in rigid:
+                kinetic = made[name].kinetic
+                made[name] = Stribeck(
+                    kinetic=kinetic,
+                    breakaway=1.2 * kinetic,
+                    stribeck_velocity=STRIBECK * _fastest(found),
+                )
+                keys = [*keys, f"{name}.breakaway", f"{name}.stribeck_velocity"]
+            if not rigid:
+                return None, ["skin that stretches has no law by which friction falls"]
         case "friction curve":
             loaded = any(
                 isinstance(release.plate_load, Profile) and release.plate_load.changes

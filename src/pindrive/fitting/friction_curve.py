@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable
 from dataclasses import dataclass
-from math import log, pi, sqrt
+from math import log, nan, pi, sqrt
 from typing import Any, Final
 
 import numpy as np
@@ -20,7 +21,7 @@ from pindrive.quantities.value import equal_by_value
 
 Array = NDArray[np.float64]
 
-__all__ = ["FrictionCurve", "fit_friction"]
+__all__ = ["FittedLaw", "FrictionCurve", "fit_friction"]
 
 MOST: Final = 12
 """Rows that are tried."""
@@ -34,6 +35,51 @@ CLOSEST: Final = 1e-3
 """Part of the range of speeds by which rows are at least apart."""
 
 
+@dataclass(frozen=True)
+class FittedLaw:
+    """A friction law fitted to forces over speed.
+
+    Attributes:
+        kinetic: N, far above the Stribeck velocity and without the viscous part.
+        breakaway: N, at rest.
+        stribeck_velocity: m/s; NaN of Coulomb's law.
+        viscous: N*s/m.
+        noise: Standard deviation of the forces about the law, N.
+        aicc: Akaike's corrected criterion.
+    """
+
+    name: str
+    kinetic: float
+    breakaway: float
+    stribeck_velocity: float
+    viscous: float
+    noise: float
+    aicc: float
+
+    def __call__(self, speed: ArrayLike) -> Array:
+        """The force (N) at sliding speeds (m/s) of either sign, in their shape."""
+        u = np.abs(np.asarray(speed, float))
+        shape = _SHAPES[self.name]
+        falls = 0.0 if shape is None else shape(u / self.stribeck_velocity)
+        found: Array = self.kinetic + (self.breakaway - self.kinetic) * falls + self.viscous * u
+        return found
+
+    def contact(self, static: float | None = None) -> Contact:
+        """A contact under the law, with static friction (N; None: that at rest)."""
+        if self.name == "coulomb":
+            return Contact(self.kinetic, static, viscous=self.viscous)
+        law, _, exponent = self.name.partition(", exponent ")
+        return Contact(
+            self.kinetic,
+            static,
+            law=law,
+            breakaway=self.breakaway,
+            stribeck_velocity=self.stribeck_velocity,
+            exponent=exponent or None,
+            viscous=self.viscous,
+        )
+
+
 @equal_by_value
 @dataclass(frozen=True, eq=False, repr=False)
 class FrictionCurve(lazy.NotebookHtml):
@@ -44,6 +90,8 @@ class FrictionCurve(lazy.NotebookHtml):
         standard_errors: Standard errors of the forces, N, one for each row.
         noise: Standard deviation of the forces about the curve, N.
         aicc: Akaike's corrected criterion for each number of rows that was tried.
+        laws: Laws fitted to the same data: "coulomb", "stribeck" and "stribeck, exponent 2", and
+            "hess-soom", each with a viscous part.
         speed: Measured sliding speeds, m/s, shape (n,).
         force: Measured friction forces at them, N, shape (n,).
     """
@@ -52,6 +100,7 @@ class FrictionCurve(lazy.NotebookHtml):
     standard_errors: tuple[float, ...]
     noise: float
     aicc: dict[int, float]
+    laws: dict[str, FittedLaw]
     speed: Array
     force: Array
 
@@ -78,9 +127,29 @@ class FrictionCurve(lazy.NotebookHtml):
         found: Array = np.where(u > x[-1], beyond, np.interp(u, x, y))
         return found
 
-    def contact(self, static: float | None = None) -> Contact:
-        """A contact with this friction, and static friction (N; None: the force at rest)."""
-        return Contact(static=static, curve=self.rows)
+    @property
+    def best(self) -> str:
+        """The law with the least criterion, by its name in `laws`; "table": the rows."""
+        name = min(self.laws, key=lambda name: self.laws[name].aicc)
+        # A table of two rows is Coulomb's law with a viscous part, within rounding.
+        table = self.aicc[len(self.rows)] < self.laws[name].aicc - 1e-6
+        return "table" if table else name
+
+    def contact(self, static: float | None = None, *, law: str = "table") -> Contact:
+        """Return a contact with this friction.
+
+        Args:
+            static: Static friction, N; None: the force at rest.
+            law: Name of a law in `laws`, or "table".
+
+        Raises:
+            ValueError: There is no such law, or static friction is too low.
+        """
+        if law == "table":
+            return Contact(static=static, curve=self.rows)
+        if law not in self.laws:
+            raise ValueError(refusal("law", f"one of table, {', '.join(self.laws)}", repr(law)))
+        return self.laws[law].contact(static)
 
     def plot(self) -> mpl_figure.Figure:
         """Measured forces, the curve and its rows over speed, and AICc over their number."""
@@ -96,11 +165,12 @@ class FrictionCurve(lazy.NotebookHtml):
             "curve_force": ("row", y, {"units": "N"}),
             "standard_error": ("row", np.array(self.standard_errors), {"units": "N"}),
             "noise": ((), self.noise, {"units": "N"}),
+            "law_aicc": ("law", [law.aicc for law in self.laws.values()], {"units": "1"}),
             "aicc": ("row_count", [*self.aicc.values()], {"units": "1"}),
             "speed": ("sample", self.speed, {"units": "m/s"}),
             "force": ("sample", self.force, {"units": "N"}),
         }
-        coords = {"row_count": [*self.aicc]}
+        coords = {"row_count": [*self.aicc], "law": [*self.laws]}
         return xr.Dataset(data, coords=coords, attrs={"status": self.status.name})
 
 
@@ -109,7 +179,8 @@ def fit_friction(speed: ArrayLike, force: ArrayLike, *, rows: int | None = None)
 
     The curve is continuous and linear between rows; least squares place the rows and their forces.
     Rows are added one by one where they help most, and their number is the one with the least
-    corrected Akaike criterion.
+    corrected Akaike criterion. The laws with a name are fitted to the same data, and `best` is the
+    one with the least criterion.
 
     Args:
         speed: Sliding speeds, m/s, shape (n,), of either sign.
@@ -118,7 +189,7 @@ def fit_friction(speed: ArrayLike, force: ArrayLike, *, rows: int | None = None)
         rows: Number of rows, at least 1; None: by the criterion.
 
     Returns:
-        The rows with their standard errors, and the criterion for each number of rows.
+        The rows with their standard errors, the laws, and the criterion of each.
 
     Raises:
         ValueError: The arrays are empty, differ in length, hold too few samples, have no speed or
@@ -163,7 +234,44 @@ def fit_friction(speed: ArrayLike, force: ArrayLike, *, rows: int | None = None)
             stacklevel=2,
         )
     found = tuple(zip(knots.tolist(), np.maximum(values, 0.0).tolist(), strict=True))
-    return FrictionCurve(found, tuple(errors.tolist()), noise, aicc, u, f)
+    laws = {name: _law(name, u, f) for name in _SHAPES}
+    return FrictionCurve(found, tuple(errors.tolist()), noise, aicc, laws, u, f)
+
+
+_SHAPES: Final[dict[str, Callable[[Array], Array] | None]] = {
+    "coulomb": None,
+    "stribeck": lambda s: np.exp(-s),
+    "stribeck, exponent 2": lambda s: np.exp(-s * s),
+    "hess-soom": lambda s: 1.0 / (1.0 + s * s),
+}
+"""The part that falls, over the speed in units of the Stribeck velocity."""
+
+
+def _law(name: str, u: Array, f: Array) -> FittedLaw:
+    """A law by least squares, no force negative; the Stribeck velocity by a search along it."""
+    shape = _SHAPES[name]
+
+    def solved(velocity: float) -> tuple[Array, float]:
+        falls = [] if shape is None else [shape(u / velocity)]
+        values, off = optimize.nnls(np.column_stack([np.ones_like(u), u, *falls]), f)
+        return values, off**2
+
+    velocity = nan
+    if shape is not None:
+        last = float(u[-1])
+        grid = np.log(np.geomspace(CLOSEST * last, 2.0 * last, GRID))
+        at = int(np.argmin([solved(v)[1] for v in np.exp(grid)]))
+        ends = grid[max(at - 1, 0)], grid[min(at + 1, GRID - 1)]
+        found = optimize.minimize_scalar(
+            lambda log_v: solved(np.exp(log_v))[1], bounds=ends, method="bounded"
+        )
+        velocity = float(np.exp(found.x))
+    values, power = solved(velocity)
+    kinetic, viscous = float(values[0]), float(values[1])
+    rest = kinetic + (float(values[2]) if shape is not None else 0.0)
+    n, k = len(u), 3 if shape is None else 5
+    noise = sqrt(power / max(1, n - k + 1))
+    return FittedLaw(name, kinetic, rest, velocity, viscous, noise, _criterion(power, f, k))
 
 
 HYSTERESIS: Final = 0.7
@@ -264,8 +372,13 @@ def _power(u: Array, f: Array, knots: Array) -> float:
 
 def _aicc(u: Array, f: Array, knots: Array) -> float:
     """Return the corrected Akaike criterion for forces, inner knots and noise."""
-    n, k = len(u), len(knots) + KNOT * max(0, len(knots) - 2) + 1
-    square = max(_power(u, f, knots) / n, (1e-12 * float(np.abs(f).max())) ** 2)
+    return _criterion(_power(u, f, knots), f, len(knots) + KNOT * max(0, len(knots) - 2) + 1)
+
+
+def _criterion(power: float, f: Array, k: int) -> float:
+    """Return the corrected Akaike criterion of a sum of squares and a number of parameters."""
+    n = len(f)
+    square = max(power / n, (1e-12 * float(np.abs(f).max())) ** 2)
     return n * (log(2.0 * pi * square) + 1.0) + 2.0 * k + 2.0 * k * (k + 1) / max(n - k - 1, 1)
 
 

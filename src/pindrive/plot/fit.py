@@ -209,6 +209,10 @@ def plot_friction_curve(found: FrictionCurve) -> Figure:
         look = {"color": PALETTE["curve"], "marker": "o", "mfc": "white"}
         errors = 1e3 * np.array(found.standard_errors)
         axes.plot(MM * speed, 1e3 * force, **look, label="curve and its rows", gid="curve")
+        if found.best != "table":
+            law = found.laws[found.best]
+            at = np.linspace(0.0, float(found.speed[-1]), 300)
+            axes.plot(MM * at, 1e3 * law(at), color=PALETTE["stick"], label=law.name, gid="law")
         axes.errorbar(MM * speed, 1e3 * force, 1.96 * errors, fmt="none", color=PALETTE["curve"])
         axes.set(xlabel="sliding speed (mm/s)", ylabel="friction force (mN)")
         axes.legend(frameon=False)
