@@ -103,8 +103,10 @@ def test_the_law_of_measured_forces_is_the_best(name: str, made: Contact) -> Non
     with pytest.raises(ValueError, match="law must be one of table, coulomb, stribeck, "):
         found.contact(law="none")
     assert {"law"} <= {*found.to_dataset().coords}
-    gids = {line.get_gid() for line in found.plot().axes[0].lines}
-    assert "law" in gids
+    drawn = next(line for line in found.plot().axes[0].lines if line.get_gid() == "law")
+    x, y = (np.asarray(data, float) for data in drawn.get_data())
+    np.testing.assert_allclose(y, 1e3 * law(1e-3 * x))
+    assert drawn.get_label() == name
 
 
 @pytest.mark.parametrize(
