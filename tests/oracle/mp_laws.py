@@ -1,0 +1,264 @@
+"""Thirty-digit oracle: a released pin under friction laws with a name, rigid contacts, in mpmath.
+
+Between events the equation of motion is integrated by extrapolation of the explicit midpoint rule
+(Gragg 1965), which evaluates the law itself: no series of the law, no closed form. Inputs are
+linear between breakpoints. A guard is tested at the ends of each step, a part of the natural
+period, and its zero is found by bisection and secants of steps from the same start.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from mpmath import exp, mp, mpf, sqrt
+
+DIGITS = 30
+ROWS = 14  # of the extrapolation: order 28
+PARTS = 40  # steps in a natural period
+KNOWN = mpf("1e-22")  # relative change at which a zero is known
+
+State = tuple[mpf, mpf]
+
+
+@dataclass(frozen=True)
+class Law:
+    """Kinetic friction over the sliding speed, and static friction."""
+
+    name: str
+    kinetic: mpf
+    breakaway: mpf
+    velocity: mpf
+    exponent: int
+    viscous: mpf
+    static: mpf
+
+    def at(self, speed: mpf) -> mpf:
+        """The friction at a sliding speed."""
+        if self.name == "coulomb":
+            return self.kinetic + self.viscous * speed
+        s = max(speed / self.velocity, mpf(-1))  # beyond its guard a step may try any
+        part = exp(-(s**self.exponent)) if self.name == "stribeck" else 1 / (1 + s * s)
+        return self.kinetic + (self.breakaway - self.kinetic) * part + self.viscous * speed
+
+
+def line(rows: list[list[float]], t: mpf) -> tuple[mpf, mpf]:
+    """Value and rate of an input just after a time."""
+    later = [i for i, (at, _) in enumerate(rows) if at > t]
+    if not later or later[0] == 0:
+        return mpf(rows[0 if later else -1][1]), mpf(0)
+    (t0, y0), (t1, y1) = (tuple(map(mpf, row)) for row in rows[later[0] - 1 : later[0] + 1])
+    rate = (y1 - y0) / (t1 - t0)
+    return y0 + rate * (t - t0), rate
+
+
+class Pin:
+    """A pin between two breakpoints, in one mode: -1 or 1 slips, 0 sticks, None slips obliquely."""
+
+    def __init__(self, case: dict[str, Any]) -> None:
+        self.case = case
+        self.mass, self.stiffness, self.damping = (
+            mpf(case[name]) for name in ("mass", "stiffness", "damping")
+        )
+        self.laws = {
+            contact: Law(**{k: v if k in ("name", "exponent") else mpf(v) for k, v in law.items()})
+            for contact, law in case["laws"].items()
+        }
+        self.plate: int | None = 0
+        self.finger = 0
+        self.begin(mpf(0))
+
+    def begin(self, t: mpf) -> None:
+        """Read the inputs from a time on."""
+        self.since = t
+        self.lines = {name: line(rows, t) for name, rows in self.case["inputs"].items()}
+
+    def at(self, name: str, t: mpf) -> mpf:
+        value, rate = self.lines[name]
+        return value + rate * (t - self.since)
+
+    def plate_force(self, t: mpf, v: mpf) -> mpf:
+        u, w = v - self.at("mouse_velocity", t), self.at("across_velocity", t)
+        law, load = self.laws["plate"], self.at("plate_load", t)
+        if self.plate is None:
+            speed = sqrt(u * u + w * w)
+            return -load * law.at(speed) * u / speed
+        return -load * self.plate * law.at(self.plate * u)
+
+    def finger_force(self, t: mpf, v: mpf) -> mpf:
+        return -self.at("finger_load", t) * self.finger * self.laws["finger"].at(self.finger * v)
+
+    def other_forces(self, t: mpf, x: mpf, v: mpf) -> mpf:
+        inertia = self.mass * self.lines["mouse_velocity"][1]
+        return inertia + self.at("force", t) - self.damping * v - self.stiffness * x
+
+    def acceleration(self, t: mpf, x: mpf, v: mpf) -> mpf:
+        if self.plate == 0:
+            return self.lines["mouse_velocity"][1]
+        if self.finger == 0:
+            return mpf(0)
+        forces = self.plate_force(t, v) + self.finger_force(t, v) + self.other_forces(t, x, v)
+        return forces / self.mass
+
+    def needed(self, t: mpf, x: mpf, v: mpf) -> mpf:
+        """Force of the contact that holds the pin."""
+        at_plate = self.plate == 0
+        moves = self.mass * self.lines["mouse_velocity"][1] if at_plate else mpf(0)
+        other = self.finger_force(t, v) if at_plate else self.plate_force(t, v)
+        return moves - other - self.other_forces(t, x, v)
+
+    def limit(self, t: mpf) -> mpf:
+        contact = "plate" if self.plate == 0 else "finger"
+        return self.laws[contact].static * self.at(f"{contact}_load", t)
+
+    def guards(self, t: mpf, state: State) -> dict[str, mpf]:
+        """What stays positive in the mode."""
+        x, v = state
+        u, found = v - self.at("mouse_velocity", t), {}
+        if self.plate:
+            found["plate"] = self.plate * u
+        if self.finger:
+            found["finger"] = self.finger * v
+        if 0 in (self.plate, self.finger):
+            force, most = self.needed(t, x, v), self.limit(t)
+            found |= {"pulls": most - force, "pushes": most + force}
+        return found
+
+    def step(self, t: mpf, state: State, h: mpf, halvings: int = 5) -> State:
+        """The state after a time, by halves where the extrapolation does not converge."""
+        if h == 0:
+            return state
+        table: list[list[State]] = []
+        for j in range(ROWS):
+            count = 2 * (j + 1)
+            sub = h / count
+            (x0, v0), (x, v) = state, state
+            x1, v1 = x + sub * v, v + sub * self.acceleration(t, x, v)
+            for i in range(1, count):
+                a = self.acceleration(t + i * sub, x1, v1)
+                x0, v0, x1, v1 = x1, v1, x0 + 2 * sub * v1, v0 + 2 * sub * a
+            row = [(x1, v1)]
+            for k in range(1, j + 1):
+                ratio = mpf(j + 1) ** 2 / mpf(j + 1 - k) ** 2 - 1
+                (fine, coarse) = row[k - 1], table[j - 1][k - 1]
+                row.append(
+                    (
+                        fine[0] + (fine[0] - coarse[0]) / ratio,
+                        fine[1] + (fine[1] - coarse[1]) / ratio,
+                    )
+                )
+            table.append(row)
+            if j > 4 and all(
+                abs(a - b) <= mpf("1e-25") * (abs(a) + mpf("1e-6"))
+                for a, b in zip(row[j], row[j - 1], strict=True)
+            ):
+                return row[-1]
+        if halvings == 0:
+            return table[-1][-1]
+        half = self.step(t, state, h / 2, halvings - 1)
+        return self.step(t + h / 2, half, h / 2, halvings - 1)
+
+    def select(self, t: mpf, state: State, still: set[str]) -> State:
+        """The mode at an instant; `still`: contacts with no sliding velocity."""
+        x, v = state
+        across = self.lines["across_velocity"]
+        oblique = across != (0, 0)
+        if oblique:
+            self.plate = None
+            still = still - {"plate"}
+        if "plate" in still:
+            v = self.at("mouse_velocity", t)
+        if "finger" in still:
+            v = mpf(0)
+        for contact in sorted(still, reverse=True):
+            if contact == "plate":
+                self.plate = 0
+                self.finger = (v > 0) - (v < 0) or self.finger
+            else:
+                self.finger = 0
+                u = v - self.at("mouse_velocity", t)
+                if self.plate is not None:
+                    self.plate = (u > 0) - (u < 0)
+            force = self.needed(t, x, v)
+            if abs(force) <= self.limit(t):
+                return x, v
+            # It slips against the force that would hold it.
+            side = -1 if force > 0 else 1
+            if contact == "plate":
+                self.plate = side
+            else:
+                self.finger = side
+        return x, v
+
+
+def solve(case: dict[str, Any], stop: Callable[[int], bool] = lambda _: False) -> dict[str, Any]:
+    """Follow a case; return its events (time, contact, kind) and the states at its times."""
+    mp.dps = DIGITS
+    pin = Pin(case)
+    x, v = mpf(case["displacement"]), mpf(case["velocity"])
+    breaks = sorted({mpf(t) for rows in case["inputs"].values() for t, _ in rows if t > 0})
+    times, asked = [mpf(t) for t in case["times"]], []
+    end, longest = times[-1], 2 * mp.pi * sqrt(pin.mass / pin.stiffness) / PARTS
+    u = v - pin.at("mouse_velocity", mpf(0))
+    pin.plate, pin.finger = (u > 0) - (u < 0), (v > 0) - (v < 0)
+    still = {name for name, at in (("plate", u), ("finger", v)) if at == 0}
+    x, v = pin.select(mpf(0), (x, v), still)
+    t = mpf(0)
+    events: list[tuple[mpf, str, str]] = []
+    while t < end and not stop(len(events)):
+        bounds = [*(b for b in breaks if b > t), *(s for s in times if s > t)]
+        h = min(longest, min(bounds) - t)
+        after = pin.step(t, (x, v), h)
+        broken = [name for name, value in pin.guards(t + h, after).items() if value < 0]
+        if broken:
+            h, name = min(_zero(pin, t, (x, v), h, name) for name in broken)
+            after = pin.step(t, (x, v), h)
+        t += h
+        x, v = after
+        before = {"plate": pin.plate, "finger": pin.finger}
+        if not broken and t in breaks:
+            pin.begin(t)
+            resting = {contact for contact, mode in before.items() if mode == 0}
+            x, v = pin.select(t, (x, v), resting)
+        elif broken:
+            held = {contact for contact, mode in before.items() if mode == 0}
+            x, v = pin.select(t, (x, v), {name} if name in before else held)
+            for contact, mode in before.items():
+                now = getattr(pin, contact)
+                if mode != now and None not in (mode, now):
+                    kind = "stick" if now == 0 else "slip" if mode == 0 else "reverse"
+                    events.append((t, contact, kind))
+        if t in times:
+            asked.append((x, v))
+    return {"events": events, "states": asked}
+
+
+def _zero(pin: Pin, t: mpf, state: State, h: mpf, name: str) -> tuple[mpf, str]:
+    """The time to the zero of a guard within a step, by the Illinois rule."""
+
+    def value(tau: mpf) -> mpf:
+        return pin.guards(t + tau, pin.step(t, state, tau))[name]
+
+    low, high, at_low, at_high = mpf(0), h, value(mpf(0)), value(h)
+    if at_low <= 0:  # it begins at its zero, and has left it within the step
+        low = h * mpf("1e-9")
+        at_low = value(low)
+        if at_low <= 0:
+            return mpf(0), name
+    for _ in range(200):
+        tau = high - at_high * (high - low) / (at_high - at_low)
+        if not low < tau < high:
+            tau = (low + high) / 2
+        here = value(tau)
+        if here < 0:
+            if at_high < 0:
+                at_low /= 2
+            high, at_high = tau, here
+            at_low = value(low) if at_low == 0 else at_low
+        else:
+            low, at_low = tau, here
+            at_high /= 2
+        if high - low <= KNOWN * h or here == 0:
+            break
+    return (low + high) / 2, name
