@@ -1,6 +1,7 @@
 // Motions under friction that falls with the sliding speed: by the certificate, beside the closed form under
 // a table of many points of the same law, and their derivatives beside differences.
 #include <cmath>
+#include <cstdlib>
 #include <random>
 #include <vector>
 
@@ -224,7 +225,7 @@ void derivatives() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  by_certificate(argc > 1 ? std::atoi(argv[1]) : cases(500));
+  by_certificate(argc > 1 ? static_cast<int>(std::strtol(argv[1], nullptr, 10)) : cases(500));
   beside_tables();
   derivatives();
   return check::status();
