@@ -17,6 +17,9 @@ COIL: dict[str, Any] = {
     **{"magnet.turns": 250.0, "magnet.pole_area": 3e-6, "magnet.gap": 1e-4},
     **{"magnet.wire_diameter": 1e-4, "magnet.turn_length": 0.01, "magnet.supply_voltage": 5.0},
 }
+FALLING: dict[str, Any] = {
+    **{"plate.law": 1.0, "plate.breakaway": 0.03, "plate.stribeck_velocity": 0.03},
+}
 RULES: list[tuple[dict[str, Any], str]] = [
     # bounds and rows
     ({"drive.mass": -1.0}, "drive.mass must be finite and greater than 0 kg, got -1.0 kg"),
@@ -51,6 +54,31 @@ RULES: list[tuple[dict[str, Any], str]] = [
      "friction is given as a force, got 0.1 N"),
     ({"finger.kinetic": "gone", "finger.coefficient": 0.5}, "finger.touch_force must be given "
      "where a coefficient gives the finger's friction, got none"),
+    ({"plate.law": 0.5}, "plate.law must be 0, 1, 2 or 3, got 0.5"),
+    (FALLING | {"plate.breakaway": "gone"},
+     "plate.breakaway must be given under law stribeck, got none"),
+    (FALLING | {"plate.law": 2.0, "plate.stribeck_velocity": "gone"},
+     "plate.stribeck_velocity must be given under law hess-soom, got none"),
+    ({"plate.breakaway": 0.03}, "plate.breakaway must be left out under law coulomb, got 0.03 N"),
+    ({"plate.exponent": 1.0}, "plate.exponent must be left out under law coulomb, got 1.0"),
+    (FALLING | {"plate.exponent": 1.5}, "plate.exponent must be 1 or 2, got 1.5"),
+    (FALLING | {"plate.breakaway": 0.01},
+     "plate.breakaway must be at least the kinetic friction, 0.02 N, got 0.01 N"),
+    (FALLING | {"plate.static": 0.025},
+     "plate.static must be at least the kinetic friction at rest, 0.03 N, got 0.025 N"),
+    (FALLING | {"plate.curve": ((0.0, 0.02), (0.1, 0.01))},
+     "plate.curve must be left out under law stribeck, got both"),
+    ({"plate.law": 0.0, "plate.curve": ((0.0, 0.02), (0.1, 0.01))},
+     "plate.curve must be left out under law coulomb, got both"),
+    ({"plate.law": 3.0}, "plate.curve must be given under law table, got none"),
+    ({"finger.law": 2.0, "finger.breakaway": 0.006, "finger.stribeck_velocity": 0.03,
+      "finger.stiffness": 1e3},
+     "finger.law must be coulomb or table on skin that stretches, got hess-soom"),
+    (FALLING | {"plate.stribeck_velocity": 1e-12},
+     "plate.stribeck_velocity must be such that friction falls at most with 1e6 times critical "
+     "damping, got 1e+10 N*s/m"),
+    ({"plate.viscous": 1e8},
+     "plate.viscous must be at most 1e6 times critical damping, got 1e+08 N*s/m"),
     # drive and release
     ({"drive.stop_damping": 1.0},
      "drive.stop_damping must be left out without travel, as there are no end stops, "
