@@ -5,7 +5,8 @@
 - `Certificate`: the largest violation of each law
 - `Coefficients`: friction forces over what presses
 - `Contact`: dry friction between the pin and a surface
-- `Stribeck`, `HessSoom`: dry friction by a law that falls with the sliding speed
+- `Stribeck`: a contact under Stribeck's law, by which friction falls with the sliding speed
+- `HessSoom`: a contact under the law of Hess and Soom
 - `ContactUse`: use of one contact in it
 - `Afterwards`: use of one contact after it
 - `Crossings`: where a quantity of a motion crosses a level

@@ -224,6 +224,9 @@ def Stribeck(
         viscous_coefficient: Viscous part of the coefficient, s/m, in place of `viscous`.
         static_coefficient: Largest coefficient without sliding, in place of `static`.
 
+    Returns:
+        A `Contact` of the law.
+
     Raises:
         ValueError: A value is invalid, as for `Contact`.
 
@@ -274,6 +277,9 @@ def HessSoom(
         breakaway_coefficient: Coefficient as sliding begins, in place of `breakaway`.
         viscous_coefficient: Viscous part of the coefficient, s/m, in place of `viscous`.
         static_coefficient: Largest coefficient without sliding, in place of `static`.
+
+    Returns:
+        A `Contact` of the law.
 
     Raises:
         ValueError: A value is invalid, as for `Contact`.
