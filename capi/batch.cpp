@@ -39,8 +39,8 @@ void run_kernel(Block& block, std::size_t count, Asked asked) {
 /// Arguments of the core for a point without curves and varying inputs, with the plate load
 /// included in the friction, in the order of the kernel's blocks.
 std::array<double, Block::inputs> arguments(const pd::Numbers& at, double band) {
-  const double load = at.plate_load[0].second, velocity = at.mouse_velocity[0].second;
-  const double finger_load = at.finger_load[0].second;
+  const double load = at.plate_load.value(), velocity = at.mouse_velocity.value();
+  const double finger_load = at.finger_load.value();
   return {at.mass,
           at.stiffness,
           at.damping,
@@ -57,23 +57,22 @@ std::array<double, Block::inputs> arguments(const pd::Numbers& at, double band) 
           load};
 }
 bool constant(const pd::Numbers& at) {
-  const auto none_of = [](const pd::Rows& rows) { return rows.size() == 1 && rows[0].second == 0; };
   const auto coulomb = [](const pd::ContactNumbers& contact) {
     return contact.curve.empty() && contact.law.shape() == pd::FallingShape::none &&
            contact.law.viscous == 0;
   };
-  return coulomb(at.plate) && coulomb(at.finger) && at.mouse_velocity.size() == 1 &&
-         at.plate_load.size() == 1 && std::isnan(at.skin_stretch) && none_of(at.force) &&
-         none_of(at.across_velocity) && at.finger_load.size() == 1 && !at.stops.present();
+  return coulomb(at.plate) && coulomb(at.finger) && at.mouse_velocity.constant() &&
+         at.plate_load.constant() && std::isnan(at.skin_stretch) && at.force.is(0) &&
+         at.across_velocity.is(0) && at.finger_load.constant() && !at.stops.present();
 }
 /// Contact with its load included in its friction.
 pd::Numbers pressed(pd::Numbers at) {
-  const double load = at.plate_load[0].second;
+  const double load = at.plate_load.value();
   if (load != 1)
     for (double* force : {&at.plate.kinetic, &at.plate.static_limit}) *force *= load;
   for (double* force : {&at.finger.kinetic, &at.finger.static_limit})
-    *force *= at.finger_load[0].second;
-  at.plate_load[0].second = at.finger_load[0].second = 1;
+    *force *= at.finger_load.value();
+  at.plate_load = at.finger_load = {{{0, 1}}};
   return at;
 }
 

@@ -1,4 +1,5 @@
 // The C interface: drives and releases by the names of their numbers, how they are checked, and what an error says.
+#include <algorithm>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
@@ -11,6 +12,7 @@
 #include "owned_motion.hpp"
 #include "pindrive.h"
 #include "pindrive/device/inputs.hpp"
+#include "pindrive/series/input_range.hpp"
 #include "wording.hpp"
 
 namespace pd = pindrive;
@@ -98,7 +100,7 @@ bool pindrive_c::set(pindrive_drive& drive, const char* name, double value) {
 
 namespace {
 
-pd::Rows* profile(pindrive_release& release, const char* name) {
+pd::InputNumbers* profile(pindrive_release& release, const char* name) {
   if (std::strcmp(name, "mouse_velocity") == 0) return &release.mouse_velocity;
   if (std::strcmp(name, "plate_load") == 0) return &release.plate_load;
   if (std::strcmp(name, "force") == 0) return &release.force;
@@ -110,8 +112,8 @@ pd::Rows* profile(pindrive_release& release, const char* name) {
 }  // namespace
 
 bool pindrive_c::set(pindrive_release& release, const char* name, double value) {
-  if (pd::Rows* rows = profile(release, name)) {
-    rows->assign(1, {0, value});
+  if (pd::InputNumbers* input = profile(release, name)) {
+    *input = {{{0, value}}};
     return true;
   }
   const std::pair<const char*, double*> numbers[] = {{"displacement", &release.displacement},
@@ -187,6 +189,57 @@ pindrive_error check_rows(const char* name, const pd::Rows& rows, bool negative,
   return PINDRIVE_OK;
 }
 
+/// Largest rate of a term of an input, 1/s.
+constexpr double largest_rate = 1e7;
+
+/// Pieces in order, with numbers in range.
+pindrive_error check_pieces(const char* name, const std::vector<pd::PieceNumbers>& pieces) {
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const pd::PieceNumbers& piece = pieces[i];
+    if (!std::isfinite(piece.begin) || (i > 0 && !(piece.begin > pieces[i - 1].begin)))
+      return fail(PINDRIVE_BAD_VALUE, "piece %zu of %s must begin after the one before, not at %.17g",
+                  i, name, piece.begin);
+    for (const double coefficient : piece.polynomial)
+      if (!std::isfinite(coefficient))
+        return fail(PINDRIVE_BAD_VALUE, "piece %zu of %s must have finite coefficients, not %.17g",
+                    i, name, coefficient);
+    for (const auto& [cosine, sine, decay, frequency] : piece.terms) {
+      for (const double amplitude : {cosine, sine})
+        if (!in_range(amplitude, true))
+          return fail(PINDRIVE_BAD_VALUE, "an amplitude of %s must be %s, not %.17g", name,
+                      range_of(true), amplitude);
+      for (const double rate : {decay, frequency})
+        if (!(rate >= 0 && rate <= largest_rate))
+          return fail(PINDRIVE_BAD_VALUE, "a rate of %s must be from 0 to %g 1/s, not %.17g", name,
+                      largest_rate, rate);
+    }
+  }
+  return PINDRIVE_OK;
+}
+
+/// A function of time: a velocity may not jump, a load may not be negative.
+pindrive_error check_function(const char* name, const pd::InputNumbers& input, bool negative,
+                              bool steps) {
+  if (const pindrive_error error = check_pieces(name, input.pieces)) return error;
+  const pd::OwnedInput<double> owned(input, input);
+  const pd::Profile<double> profile = owned.profile();
+  const pd::InputJump jump = pd::first_jump(profile);
+  if (!steps && jump.time < infinity)
+    return fail(PINDRIVE_BAD_VALUE, "%s must be without a jump, not from %.17g to %.17g at %.17g s",
+                name, jump.before, jump.after, jump.time);
+  const pd::InputPoint lowest = negative ? pd::InputPoint{0, 0} : pd::lowest_value(profile, infinity);
+  if (lowest.value < -1e-9)
+    return fail(PINDRIVE_BAD_VALUE, "%s must not be negative, and is %.17g at %.17g s", name,
+                lowest.value, lowest.time);
+  return PINDRIVE_OK;
+}
+
+pindrive_error check_input(const char* name, const pd::InputNumbers& input, bool negative,
+                           bool steps) {
+  return input.pieces.empty() ? check_rows(name, input.rows, negative, steps)
+                              : check_function(name, input, negative, steps);
+}
+
 pindrive_error check_contact(const char* name, const pd::ContactNumbers& contact) {
   char of[40];
   const auto named = [&](const char* what) {
@@ -258,11 +311,16 @@ pindrive_error pindrive_c::check(const pindrive_drive& drive, const pindrive_rel
   if (!error && stops.stiffness != infinity)
     error = check("stop_stiffness", stop_stiffness, stops.stiffness);
   if (!error) error = check("stop_damping", stop_damping, stops.damping);
-  if (!error) error = check_rows("mouse_velocity", release.mouse_velocity, true, false);
-  if (!error) error = check_rows("plate_load", release.plate_load, false, true);
-  if (!error) error = check_rows("force", release.force, true, true);
-  if (!error) error = check_rows("across_velocity", release.across_velocity, true, false);
-  if (!error) error = check_rows("finger_load", release.finger_load, false, true);
+  if (!error) error = check_input("mouse_velocity", release.mouse_velocity, true, false);
+  if (!error) error = check_input("plate_load", release.plate_load, false, true);
+  if (!error) error = check_input("force", release.force, true, true);
+  if (!error) error = check_input("across_velocity", release.across_velocity, true, false);
+  if (!error) error = check_input("finger_load", release.finger_load, false, true);
+  if (!error && !release.across_velocity.pieces.empty())
+    error = fail(PINDRIVE_UNSUPPORTED, "across_velocity must be constant or a profile");
+  if (!error && !release.finger_load.pieces.empty() && drive.finger.stiffness != infinity)
+    error = fail(PINDRIVE_UNSUPPORTED,
+                 "finger_load must be constant or a profile beside a finger.stiffness");
   if (!error) error = check("displacement", displacement, release.displacement);
   if (!error && stops.stiffness == infinity)
     error =
@@ -274,13 +332,17 @@ pindrive_error pindrive_c::check(const pindrive_drive& drive, const pindrive_rel
     error = check("skin_stretch", stretch, release.skin_stretch);
   if (error) return error;
   const double skin = release.skin_stretch;
-  const double most = drive.finger.static_limit * release.finger_load[0].second;
+  const double most = drive.finger.static_limit * initial(release.finger_load);
   if (std::isnan(skin)) return PINDRIVE_OK;
   if (!std::isfinite(drive.finger.stiffness))
     return fail(PINDRIVE_UNSUPPORTED, "skin_stretch must be NaN for a rigid finger");
   return check("skin_stretch", skin, std::abs(skin) * drive.finger.stiffness <= most,
                "at most static friction over stiffness", most / drive.finger.stiffness, "m",
                ", either way");
+}
+
+double pindrive_c::initial(const pd::InputNumbers& input) {
+  return pd::OwnedInput<double>(input, input).profile().from(0).value;
 }
 
 pindrive_error pindrive_c::check_duration(const pindrive_release& release) {
@@ -295,6 +357,14 @@ pindrive_error same_rows(const char* name, const pd::Rows& rows, const pd::Rows&
   return fail(PINDRIVE_BAD_VALUE, "the rate of %s must have %zu rows, as it has, not %zu", name,
               rows.size(), rates.size());
 }
+pindrive_error same_input(const char* name, const pd::InputNumbers& at,
+                          const pd::InputNumbers& rate) {
+  bool same = at.pieces.size() == rate.pieces.size();
+  for (std::size_t i = 0; same && i < at.pieces.size(); ++i)
+    same = at.pieces[i].terms.size() == rate.pieces[i].terms.size();
+  if (same) return same_rows(name, at.rows, rate.rows);
+  return fail(PINDRIVE_BAD_VALUE, "the rate of %s must have its pieces, with their terms", name);
+}
 
 }  // namespace
 
@@ -304,12 +374,12 @@ pindrive_error pindrive_c::check_rates(const pindrive_drive& drive, const pindri
   pindrive_error error = same_rows("plate.curve", drive.plate.curve, drive_rate.plate.curve);
   if (!error) error = same_rows("finger.curve", drive.finger.curve, drive_rate.finger.curve);
   if (!error)
-    error = same_rows("mouse_velocity", release.mouse_velocity, release_rate.mouse_velocity);
-  if (!error) error = same_rows("plate_load", release.plate_load, release_rate.plate_load);
-  if (!error) error = same_rows("force", release.force, release_rate.force);
+    error = same_input("mouse_velocity", release.mouse_velocity, release_rate.mouse_velocity);
+  if (!error) error = same_input("plate_load", release.plate_load, release_rate.plate_load);
+  if (!error) error = same_input("force", release.force, release_rate.force);
   if (!error)
-    error = same_rows("across_velocity", release.across_velocity, release_rate.across_velocity);
-  if (!error) error = same_rows("finger_load", release.finger_load, release_rate.finger_load);
+    error = same_input("across_velocity", release.across_velocity, release_rate.across_velocity);
+  if (!error) error = same_input("finger_load", release.finger_load, release_rate.finger_load);
   return error;
 }
 
@@ -323,8 +393,8 @@ pd::Numbers pindrive_c::numbers_of(const pindrive_drive& drive, const pindrive_r
 
 void pindrive_c::start(pd::Numbers& at, pd::Numbers& along) {
   if (!std::isnan(at.velocity)) return;
-  const pd::OwnedRows<Dual> rows(at.mouse_velocity, along.mouse_velocity);
-  const Dual plate = rows.profile().from(Dual(0)).value;
+  const pd::OwnedInput<Dual> input(at.mouse_velocity, along.mouse_velocity);
+  const Dual plate = input.profile().from(Dual(0)).value;
   at.velocity = plate.value;
   along.velocity = plate.slope;
 }
@@ -389,16 +459,37 @@ pindrive_error pindrive_release_set_profile(pindrive_release* release, const cha
   if (!release) return null_pointer("release");
   if (!name) return null_pointer("name");
   if (!times || !values) return null_pointer("times and values");
-  pd::Rows* input = profile(*release, name);
-  if (!input)
-    return bad_name(
-        "a release", name,
-        "the profiles mouse_velocity, plate_load, force, across_velocity and finger_load");
+  pd::InputNumbers* input = profile(*release, name);
+  if (!input) return bad_name("a release", name, input_names);
   if (count == 0) return fail(PINDRIVE_BAD_VALUE, "a profile must have at least one row, not 0");
   return guarded([&]() -> pindrive_error {
     pd::Rows rows;
     for (std::size_t i = 0; i < count; ++i) rows.emplace_back(times[i], values[i]);
-    *input = std::move(rows);
+    *input = {std::move(rows)};
+    return PINDRIVE_OK;
+  });
+}
+
+pindrive_error pindrive_release_set_function(pindrive_release* release, const char* name,
+                                             const pindrive_piece* pieces, size_t count) {
+  if (!release) return null_pointer("release");
+  if (!name) return null_pointer("name");
+  if (!pieces) return null_pointer("pieces");
+  pd::InputNumbers* input = profile(*release, name);
+  if (!input) return bad_name("a release", name, input_names);
+  if (count == 0) return fail(PINDRIVE_BAD_VALUE, "a function must have at least one piece, not 0");
+  return guarded([&]() -> pindrive_error {
+    std::vector<pd::PieceNumbers> made(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      made[i].begin = pieces[i].begin;
+      std::copy_n(pieces[i].polynomial, made[i].polynomial.size(), made[i].polynomial.begin());
+      if (pieces[i].count > 0 && !pieces[i].terms) return null_pointer("terms");
+      for (std::size_t j = 0; j < pieces[i].count; ++j) {
+        const pindrive_term& term = pieces[i].terms[j];
+        made[i].terms.push_back({term.cosine, term.sine, term.decay, term.frequency});
+      }
+    }
+    *input = {{}, std::move(made)};
     return PINDRIVE_OK;
   });
 }
@@ -425,11 +516,11 @@ pindrive_release* pindrive_release_rate_new(const pindrive_release* release) {
   pindrive_release* rate = nullptr;
   if (release)
     guarded([&]() -> pindrive_error {
-      rate = new pindrive_release{pd::Rows(release->mouse_velocity.size()),
-                                  pd::Rows(release->plate_load.size()),
-                                  pd::Rows(release->force.size()),
-                                  pd::Rows(release->across_velocity.size()),
-                                  pd::Rows(release->finger_load.size()),
+      rate = new pindrive_release{pd::without_change(release->mouse_velocity),
+                                  pd::without_change(release->plate_load),
+                                  pd::without_change(release->force),
+                                  pd::without_change(release->across_velocity),
+                                  pd::without_change(release->finger_load),
                                   0,
                                   0,
                                   0,

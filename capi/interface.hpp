@@ -25,8 +25,8 @@ struct pindrive_drive {
 };
 
 struct pindrive_release {
-  pindrive::Rows mouse_velocity{{0, 0}}, plate_load{{0, 1}}, force{{0, 0}}, across_velocity{{0, 0}},
-      finger_load{{0, 1}};
+  pindrive::InputNumbers mouse_velocity{{{0, 0}}}, plate_load{{{0, 1}}}, force{{{0, 0}}},
+      across_velocity{{{0, 0}}}, finger_load{{{0, 1}}};
   double displacement{0}, velocity{pindrive_c::none}, skin_stretch{pindrive_c::none},
       duration{pindrive_c::infinity};
 };
@@ -92,6 +92,8 @@ bool set(pindrive_release& release, const char* name, double value);
 constexpr const char* drive_names =
     "mass, stiffness, damping, travel, stop_stiffness, stop_damping, finger.stiffness, and, of "
     "plate and finger, kinetic, static, law, breakaway, stribeck_velocity, exponent, viscous";
+constexpr const char* input_names =
+    "the inputs mouse_velocity, plate_load, force, across_velocity and finger_load";
 constexpr const char* release_names =
     "mouse_velocity, plate_load, force, across_velocity, finger_load, displacement, velocity, "
     "skin_stretch, duration";
@@ -104,6 +106,8 @@ pindrive_error check(const char* label, double value, bool good, const char* wor
 pindrive_error check_band(double band);
 /// Checks that the core can simulate the drive, and that the direction of a derivative fits.
 pindrive_error check(const pindrive_drive& drive, const pindrive_release& release);
+/// Value of an input at the begin.
+double initial(const pd::InputNumbers& input);
 pindrive_error check_duration(const pindrive_release& release);
 pindrive_error check(const char* name, double value, bool good, const char* range);
 pindrive_error check_rates(const pindrive_drive& drive, const pindrive_release& release,

@@ -2,6 +2,7 @@
 /// segments. The interfaces in Python and C use it.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <limits>
 #include <type_traits>
@@ -16,6 +17,25 @@ namespace pindrive {
 
 /// (speed, force) of a friction curve, or (time, value) of an input: one row for a constant.
 using Rows = std::vector<std::pair<double, double>>;
+
+/// Piece of an input that is a function: its begin (s), its polynomial in the time since then, and its
+/// terms (cosine, sine, decay in 1/s, frequency in rad/s).
+struct PieceNumbers {
+  double begin{0};
+  std::array<double, InputPiece<double>::degree + 1> polynomial{};
+  std::vector<std::array<double, 4>> terms{};
+};
+
+/// Input over time: rows or, if it is a function, pieces.
+struct InputNumbers {
+  Rows rows{};
+  std::vector<PieceNumbers> pieces{};
+
+  bool constant() const { return pieces.empty() && rows.size() == 1; }
+  /// Value of a constant.
+  double value() const { return rows[0].second; }
+  bool is(double constant_value) const { return constant() && value() == constant_value; }
+};
 
 /// Friction laws by their numbers in the interfaces.
 enum class Law : signed char { coulomb, stribeck, hess_soom, table };
@@ -51,13 +71,20 @@ struct StopNumbers {
 struct Numbers {
   double mass, stiffness, damping;
   ContactNumbers plate, finger;
-  Rows mouse_velocity, plate_load;
+  InputNumbers mouse_velocity, plate_load;
   double displacement, velocity, skin_stretch;
-  Rows force, across_velocity, finger_load;
+  InputNumbers force, across_velocity, finger_load;
   StopNumbers stops;
   double duration;
 };
 
+/// A direction in which an input does not change.
+inline InputNumbers without_change(const InputNumbers& at) {
+  InputNumbers along{Rows(at.rows.size()), std::vector<PieceNumbers>(at.pieces.size())};
+  for (std::size_t i = 0; i < at.pieces.size(); ++i)
+    along.pieces[i].terms.resize(at.pieces[i].terms.size());
+  return along;
+}
 /// A direction in which the drive does not change.
 inline Numbers without_change(const Numbers& at) {
   Numbers along{};
@@ -108,6 +135,45 @@ struct OwnedRows {
   }
 };
 
+/// An input with the arrays to which its profile refers.
+template <class T>
+class OwnedInput {
+ public:
+  OwnedInput(const InputNumbers& at, const InputNumbers& along) : rows_(at.rows, along.rows) {
+    std::size_t terms = 0;
+    for (const PieceNumbers& piece : at.pieces) terms += piece.terms.size();
+    terms_.reserve(terms);  // so that no piece refers to a term that moves
+    pieces_.reserve(at.pieces.size());
+    for (std::size_t i = 0; i < at.pieces.size(); ++i) add(at.pieces[i], along.pieces[i]);
+  }
+  OwnedInput(const OwnedInput&) = delete;
+  OwnedInput& operator=(const OwnedInput&) = delete;
+
+  Profile<T> profile() const {
+    if (pieces_.empty()) return rows_.profile();
+    return {pieces_.data(), pieces_.size()};
+  }
+
+ private:
+  void add(const PieceNumbers& at, const PieceNumbers& along) {
+    InputPiece<T> piece{number<T>(at.begin, along.begin), {}, terms_.data() + terms_.size(),
+                        at.terms.size()};
+    for (std::size_t n = 0; n < at.polynomial.size(); ++n)
+      piece.polynomial[n] = number<T>(at.polynomial[n], along.polynomial[n]);
+    for (std::size_t j = 0; j < at.terms.size(); ++j) {
+      const auto [cosine, sine, decay, frequency] = at.terms[j];
+      const auto& rate = along.terms[j];
+      terms_.push_back({number<T>(cosine, rate[0]), number<T>(sine, rate[1]),
+                        number<T>(decay, rate[2]), number<T>(frequency, rate[3])});
+    }
+    pieces_.push_back(piece);
+  }
+
+  OwnedRows<T> rows_;
+  std::vector<InputTerm<T>> terms_;
+  std::vector<InputPiece<T>> pieces_;
+};
+
 template <class T>
 struct OwnedContact {
   Contact<T> contact;
@@ -147,7 +213,7 @@ struct OwnedContact {
 template <class T>
 struct OwnedInputs {
   OwnedContact<T> plate, finger;
-  OwnedRows<T> mouse_velocity, plate_load, force, across_velocity, finger_load;
+  OwnedInput<T> mouse_velocity, plate_load, force, across_velocity, finger_load;
   Drive<T> core_drive;
   Inputs<T> core_inputs;
 

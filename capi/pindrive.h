@@ -144,6 +144,29 @@ PINDRIVE_API pindrive_error pindrive_release_set_profile(pindrive_release *relea
                                                          const char *name, const double *times,
                                                          const double *values, size_t count);
 
+/* Term of a function of time: (cosine cos(frequency tau) + sine sin(frequency tau)) exp(-decay tau),
+ * with decay (1/s) and frequency (rad/s) from 0 to 1e7. */
+typedef struct {
+  double cosine, sine, decay, frequency;
+} pindrive_term;
+
+/* Piece of a function of time from `begin` (s) on: with tau = t - begin, the polynomial of degree 5 whose
+ * coefficient of tau^n is polynomial[n], and `count` terms. */
+typedef struct {
+  double begin;
+  double polynomial[6];
+  const pindrive_term *terms;
+  size_t count;
+} pindrive_piece;
+
+/* Gives a release "mouse_velocity", "plate_load", "force" or "finger_load" as a function of time: `count`
+ * >= 1 pieces, begins increasing; before the first, its value there. A velocity has no jump, a load is not
+ * negative. The pieces are copied. */
+PINDRIVE_API pindrive_error pindrive_release_set_function(pindrive_release *release,
+                                                          const char *name,
+                                                          const pindrive_piece *pieces,
+                                                          size_t count);
+
 /* ---- simulation ------------------------------------------------------------------------------ */
 
 typedef struct pindrive_motion pindrive_motion;

@@ -15,16 +15,15 @@
 using namespace pindrive_c;  // NOLINT(google-build-using-namespace): its own
 
 pindrive_error pindrive_c::check_start(const pindrive_release& release, double begin) {
-  for (const auto& [name, rows] :
-       {std::pair<const char*, const pd::Rows*>{"mouse_velocity", &release.mouse_velocity},
-        std::pair<const char*, const pd::Rows*>{"plate_load", &release.plate_load},
-        std::pair<const char*, const pd::Rows*>{"force", &release.force},
-        std::pair<const char*, const pd::Rows*>{"across_velocity", &release.across_velocity},
-        std::pair<const char*, const pd::Rows*>{"finger_load", &release.finger_load}})
-    if (rows->size() > 1)
+  using Named = std::pair<const char*, const pd::InputNumbers*>;
+  for (const auto& [name, input] :
+       {Named{"mouse_velocity", &release.mouse_velocity}, Named{"plate_load", &release.plate_load},
+        Named{"force", &release.force}, Named{"across_velocity", &release.across_velocity},
+        Named{"finger_load", &release.finger_load}})
+    if (!input->constant())
       return fail(PINDRIVE_UNSUPPORTED,
-                  "%s of a stepper must have one value, not %zu rows; set it on the way", name,
-                  rows->size());
+                  "%s of a stepper must have one value, not %zu rows or pieces; set it on the way",
+                  name, input->rows.size() + input->pieces.size());
   return check("begin", begin, std::isfinite(begin), "finite");
 }
 

@@ -113,13 +113,13 @@ class Followed final : public Following {
     return stepper_.step(until, stop_at_event, [&] { return attended.go_on(); });
   }
   pindrive_error set(const char* input, double value, double rate) override {
-    return set_input(input, [&](pd::Line<T>& line) { line = {value, rate}; });
+    return set_input(input, [&](pd::Curve<T>& line) { line = {value, rate}; });
   }
   pindrive_error set_along(const char* input, double value, double rate) override {
     if constexpr (std::is_same_v<T, double>)
       return fail(PINDRIVE_DERIVATIVE, "a direction is set of derivatives, not of a stepper");
     else
-      return set_input(input, [&](pd::Line<T>& line) {
+      return set_input(input, [&](pd::Curve<T>& line) {
         line = {{line.value.value, value}, {line.rate.value, rate}};
       });
   }
@@ -140,8 +140,8 @@ class Followed final : public Following {
 
 /// The input of that name, or null.
 template <class T>
-pd::Line<T>* find(pd::InputLines<T>& inputs, const char* name) {
-  const std::pair<const char*, pd::Line<T>*> lines[] = {
+pd::Curve<T>* find(pd::InputCurves<T>& inputs, const char* name) {
+  const std::pair<const char*, pd::Curve<T>*> lines[] = {
       {"mouse_velocity", &inputs.plate_velocity},
       {"plate_load", &inputs.plate_load},
       {"across_velocity", &inputs.across_velocity},
@@ -155,8 +155,8 @@ pd::Line<T>* find(pd::InputLines<T>& inputs, const char* name) {
 template <class T>
 template <class Change>
 pindrive_error Followed<T>::set_input(const char* name, Change&& change) {
-  pd::InputLines<T> inputs = stepper_.inputs();
-  pd::Line<T>* const line = find(inputs, name);
+  pd::InputCurves<T> inputs = stepper_.inputs();
+  pd::Curve<T>* const line = find(inputs, name);
   if (!line)
     return fail(
         PINDRIVE_BAD_NAME,
@@ -173,8 +173,8 @@ pindrive_error Followed<T>::set_input(const char* name, Change&& change) {
 template <class T>
 std::unique_ptr<Followed<T>> followed(const pd::Numbers& at, const pd::Numbers& along,
                                       double begin) {
-  const auto held = [&](const pd::Rows& rows, const pd::Rows& rates) {
-    return pd::Held<T>{T(begin), {pd::number<T>(rows[0].second, rates[0].second), T(0)}};
+  const auto held = [&](const pd::InputNumbers& input, const pd::InputNumbers& rate) {
+    return pd::Held<T>{T(begin), {pd::number<T>(input.value(), rate.value()), T(0)}};
   };
   const pd::Inputs<T> inputs{held(at.mouse_velocity, along.mouse_velocity),
                              pd::number<T>(at.displacement, along.displacement),

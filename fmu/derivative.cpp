@@ -86,15 +86,15 @@ pindrive_error Instance::derivative(std::size_t unknown, const unsigned* knowns,
   pindrive_error error = followed();
   if (error) return error;
   const pd::Stepper<double>& stepper = *stepper_->values();
-  const pd::InputLines<double> lines = stepper.lines().from(stepper.tau());
+  const pd::InputCurves<double> lines = stepper.lines().from(stepper.tau());
   std::size_t place = 0;
-  const auto changing = [&](const pd::Line<double>& line) {
+  const auto changing = [&](const pd::Curve<double>& line) {
     const double change = value_of_input(place, along.data());
     const double of_rate = value_of_input(place + 1, along.data());
     place += 2;
     return pd::Line<Number>{{line.value, change}, {line.rate, of_rate}};
   };
-  pd::InputLines<Number> now;  // in the order of `inputs`
+  pd::InputCurves<Number> now;  // in the order of `inputs`
   now.plate_velocity = changing(lines.plate_velocity);
   now.plate_load = changing(lines.plate_load);
   now.force = changing(lines.force);

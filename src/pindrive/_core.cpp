@@ -1,9 +1,11 @@
 // Arrays in and out of the exact core. No logic lives here.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/unique_ptr.h>
+#include <nanobind/stl/variant.h>
 #include <nanobind/stl/vector.h>
 
 #include <array>
@@ -15,6 +17,7 @@
 #include <tuple>
 #include <type_traits>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "_contact.hpp"
@@ -26,6 +29,7 @@
 #include "pindrive/motion/duration.hpp"
 #include "pindrive/motion/energy.hpp"
 #include "pindrive/motion/transient.hpp"
+#include "pindrive/series/input_range.hpp"
 
 namespace nb = nanobind;
 namespace pd = pindrive;
@@ -43,11 +47,14 @@ using CoreMotion = pd::StoredMotion<T>;
 using Dual = pd::Dual<double>;
 /// Travel, stiffness, damping of the end stops.
 using StopNumbers = std::tuple<double, double, double>;
-/// Mass, stiffness, damping; plate, finger; rows (time, value) of mouse velocity and plate load, one
-/// row for a constant; displacement, velocity, skin stretch; rows of the force, of the velocity
-/// across and of the finger's load; the end stops; duration.
-using Numbers = std::tuple<double, double, double, ContactNumbers, ContactNumbers, Rows, Rows,
-                           double, double, double, Rows, Rows, Rows, StopNumbers, double>;
+/// Begin, polynomial, and terms (cosine, sine, decay, frequency) of a piece of a function.
+using Piece = std::tuple<double, std::array<double, 6>, std::vector<std::array<double, 4>>>;
+/// Rows (time, value) of an input, one row for a constant; or the pieces of a function.
+using Input = std::variant<Rows, std::vector<Piece>>;
+/// Mass, stiffness, damping; plate, finger; mouse velocity and plate load; displacement, velocity, skin
+/// stretch; the force, the velocity across and the finger's load; the end stops; duration.
+using Numbers = std::tuple<double, double, double, ContactNumbers, ContactNumbers, Input, Input,
+                           double, double, double, Input, Input, Input, StopNumbers, double>;
 
 /// Converts a Python tuple to the struct with equal fields.
 template <class Struct, class Tuple>
@@ -56,24 +63,32 @@ Struct as(Tuple&& tuple) {
                     std::forward<Tuple>(tuple));
 }
 
+pd::InputNumbers input_of(Input&& input) {
+  if (Rows* rows = std::get_if<Rows>(&input)) return {std::move(*rows)};
+  pd::InputNumbers found;
+  for (Piece& piece : std::get<std::vector<Piece>>(input))
+    found.pieces.push_back(as<pd::PieceNumbers>(std::move(piece)));
+  return found;
+}
+
 /// Moves an array without other owners into the core.
 pd::Numbers numbers(double mass, double stiffness, double damping, ContactNumbers&& plate,
-                    ContactNumbers&& finger, Rows&& mouse_velocity, Rows&& plate_load,
-                    double displacement, double velocity, double skin_stretch, Rows&& force,
-                    Rows&& across, Rows&& finger_load, const StopNumbers& stops, double duration) {
+                    ContactNumbers&& finger, Input&& mouse_velocity, Input&& plate_load,
+                    double displacement, double velocity, double skin_stretch, Input&& force,
+                    Input&& across, Input&& finger_load, const StopNumbers& stops, double duration) {
   return {mass,
           stiffness,
           damping,
           contact_of(std::move(plate)),
           contact_of(std::move(finger)),
-          std::move(mouse_velocity),
-          std::move(plate_load),
+          input_of(std::move(mouse_velocity)),
+          input_of(std::move(plate_load)),
           displacement,
           velocity,
           skin_stretch,
-          std::move(force),
-          std::move(across),
-          std::move(finger_load),
+          input_of(std::move(force)),
+          input_of(std::move(across)),
+          input_of(std::move(finger_load)),
           as<pd::StopNumbers>(stops),
           duration};
 }
@@ -379,8 +394,8 @@ NB_MODULE(_core, m) {
   m.def(
       "simulate",
       [](double mass, double stiffness, double damping, ContactNumbers plate, ContactNumbers finger,
-         Rows mouse_velocity, Rows plate_load, double displacement, double velocity,
-         double skin_stretch, Rows force, Rows across_velocity, Rows finger_load,
+         Input mouse_velocity, Input plate_load, double displacement, double velocity,
+         double skin_stretch, Input force, Input across_velocity, Input finger_load,
          const StopNumbers& stops, double duration) {
         const pd::Numbers at = numbers(
             mass, stiffness, damping, std::move(plate), std::move(finger),
@@ -394,7 +409,32 @@ NB_MODULE(_core, m) {
       "Simulates one pin from its release until its ending is known or the duration is over. "
       "Contacts are (kinetic, static, stiffness, rows (speed, force) of the curve, (law, "
       "breakaway, Stribeck velocity, exponent, viscous)), inputs rows "
-      "(time, value), one row for a constant.");
+      "(time, value), one row for a constant, or the pieces (begin, polynomial, terms (cosine, sine, "
+      "decay, frequency)) of a function.");
+  m.def(
+      "function_range",
+      [](std::vector<Piece> pieces) {
+        const pd::InputNumbers input = input_of(std::move(pieces));
+        const pd::OwnedInput<double> owned(input, input);
+        const pd::InputPoint low =
+            pd::lowest_value(owned.profile(), std::numeric_limits<double>::infinity());
+        const pd::InputJump jump = pd::first_jump(owned.profile());
+        return std::make_tuple(std::make_tuple(low.time, low.value),
+                               std::make_tuple(jump.time, jump.before, jump.after));
+      },
+      "pieces"_a,
+      "The lowest value of a function (time, value), and its first jump (time, before, after), at an "
+      "infinite time without one.");
+  m.def(
+      "function_at",
+      [](std::vector<Piece> pieces, const Times& times) {
+        const pd::InputNumbers input = input_of(std::move(pieces));
+        const pd::OwnedInput<double> owned(input, input);
+        const pd::Profile<double> profile = owned.profile();
+        return mapped<double>(times.size(),
+                              [&](std::size_t i) { return profile.from(times.data()[i]).value; });
+      },
+      "pieces"_a, "times"_a, "The values of a function at times (s).");
   m.def("differentiate", &differentiate, "numbers"_a, "along"_a,
         "The derivatives of a motion along a direction; both as the arguments of simulate.");
   bind_batch(m);

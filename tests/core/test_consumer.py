@@ -61,7 +61,7 @@ PUBLIC = {
     },
     "events": {"simulate", "stepper", "stepper_state"},
     "flow": {"flow", "oscillator"},
-    "model": {"input_lines", "model"},
+    "model": {"input_curves", "model"},
     "motion": {
         "batch",
         "contact_use",

@@ -64,7 +64,7 @@ struct Case {
   Case& operator=(const Case&) = delete;
 
   /// The inputs from a row on.
-  pd::InputLines<double> from(double t) const {
+  pd::InputCurves<double> from(double t) const {
     const auto line = [&](const std::vector<double>& values) {
       return pd::Profile<double>(times.data(), values.data(), times.size()).from(t);
     };

@@ -119,8 +119,8 @@ struct Changing {
 };
 
 /// Inputs whose values and rates change along random slopes; none of the finger's load where that may not.
-pd::InputLines<Dual> changing(const pd::InputLines<double>& inputs, bool touch, Random& random) {
-  const auto line = [&](const pd::Line<double>& l, bool changes = true) {
+pd::InputCurves<Dual> changing(const pd::InputCurves<double>& inputs, bool touch, Random& random) {
+  const auto line = [&](const pd::Curve<double>& l, bool changes = true) {
     const double value = changes ? between(random, -1, 1) : 0;
     return pd::Line<Dual>{{l.value, value}, {l.rate, changes ? between(random, -1, 1) : 0}};
   };
@@ -128,8 +128,8 @@ pd::InputLines<Dual> changing(const pd::InputLines<double>& inputs, bool touch, 
           line(inputs.force), line(inputs.finger_load, touch)};
 }
 template <class T>
-pd::Inputs<T> started(const pd::InputLines<T>& l, T x, T v) {
-  const auto held = [](const pd::Line<T>& line) { return pd::Held<T>(T(0), line); };
+pd::Inputs<T> started(const pd::InputCurves<T>& l, T x, T v) {
+  const auto held = [](const pd::Curve<T>& input) { return pd::Held<T>(T(0), input.line()); };
   return {held(l.plate_velocity),
           x,
           v,
@@ -155,7 +155,7 @@ void at_an_instant() {
       finger.branches = pd::branches_of(curve_speeds, rows, 3, curve.data());
       finger.curve = curve.data();
     }
-    pd::InputLines<double> inputs = c.from(0);
+    pd::InputCurves<double> inputs = c.from(0);
     const bool touch = finger.rigid() && finger.branches == 0;
     if (!touch) inputs.finger_load = {1, 0};
     if (one_of(random, 8)) inputs.across_velocity.value = 0;
@@ -168,7 +168,7 @@ void at_an_instant() {
     if (stepper.status() != pd::Status::ok) continue;
 
     const Changing moving(c.drive, &random), still(c.drive, nullptr);
-    pd::InputLines<Dual> first = changing(inputs, touch, random);
+    pd::InputCurves<Dual> first = changing(inputs, touch, random);
     if (plate == 0) first.plate_velocity.value = 0;  // else it is no rest to the finger
     const Dual x(c.displacement, between(random, -1e-3, 1e-3));
     const Dual u = v == plate ? first.plate_velocity.value : Dual(v, between(random, -1, 1));
@@ -178,7 +178,7 @@ void at_an_instant() {
          pd::released(moving.drive, begun.mode(), first, x, u, Dual(nan), stepper.pin())},
         begun);
 
-    const auto fixed = [](const pd::Line<double>& l) { return pd::Line<Dual>{l.value, l.rate}; };
+    const auto fixed = [](const pd::Curve<double>& l) { return pd::Line<Dual>{l.value, l.rate}; };
     pd::Stepper<Dual> later(still.drive,
                             started<Dual>({fixed(inputs.plate_velocity), fixed(inputs.plate_load),
                                            fixed(inputs.across_velocity), fixed(inputs.force),
@@ -186,8 +186,8 @@ void at_an_instant() {
                                           c.displacement, v));
     const double time = between(random, 0, 0.1);
     if (!stepper.step(time) || !later.step(time)) continue;
-    const pd::InputLines<double> now = stepper.lines().from(stepper.tau());
-    const pd::InputLines<Dual> next = changing(now, touch, random);
+    const pd::InputCurves<double> now = stepper.lines().from(stepper.tau());
+    const pd::InputCurves<Dual> next = changing(now, touch, random);
     later.set(next);
     // Where a stop takes over from a contact the event loop goes on in another mode; and it has no derivative
     // along a load of 0.

@@ -65,7 +65,8 @@ void changes(const pd::Branch<double>& of) {
     };
     const auto closing = static_cast<double>((square(h) - square(-h)) / (2 * h));
     const auto parting = static_cast<double>((square(h) + square(-h) - 2 * square(0)) / (h * h));
-    speeds = speeds && near(slip.closing(), closing, 1e-12) && near(slip.parting(0), parting, 1e-9);
+    speeds =
+        speeds && near(slip.closing(), closing, 1e-12) && near(slip.parting(0, 0), parting, 1e-9);
   }
   expect(rates, "the rate of the force is its derivative along straight velocities");
   expect(bends, "... and the bend its second one");

@@ -34,9 +34,12 @@ void arithmetic() {
   expect(p.at(0.25) == 4 * 0.25 * -1.5, "a value is that of the part of the step");
   expect(near(p.derivative().at(0.25), 4 * 2 * (2 * 0.5 - 2.25), 1e-15), "a rate is per second");
   const pd::Line<double> line{3, -2};
-  const P sum = p + 2.0 * p, product = line * p;
-  P shifted = p;
+  const P sum = p + 2.0 * p;
+  P shifted = p, straight;
+  straight.span = p.span;
+  straight += line;
   shifted += line;
+  const P product = straight * p;
   expect(near(sum.at(0.1), 3 * p.at(0.1), 4e-15) && near(shifted.at(0.1), p.at(0.1) + 2.8, 4e-15) &&
              near(product.at(0.1), p.at(0.1) * 2.8, 4e-15) && product.degree == 3,
          "sums and products have the values of their parts");

@@ -27,13 +27,13 @@ pd::Drive<double> drive(double skin = inf) {
 constexpr auto forward = ContactState::slip_forward, backward = ContactState::slip_backward,
                stick = ContactState::stick, elastic = ContactState::elastic_stick;
 
-bool closed(const pd::Drive<double>& d, const Mode& mode, const pd::InputLines<double>& inputs) {
+bool closed(const pd::Drive<double>& d, const Mode& mode, const pd::InputCurves<double>& inputs) {
   return pd::detail::SeriesMode<double>(d, mode, inputs).has_closed_form();
 }
 
 void closed_forms() {
-  const pd::InputLines<double> still{{0.1, 0}};
-  pd::InputLines<double> loaded = still, touched = still, oblique = still, unloaded;
+  const pd::InputCurves<double> still{{0.1, 0}};
+  pd::InputCurves<double> loaded = still, touched = still, oblique = still, unloaded;
   loaded.plate_load = {1, 2};
   touched.finger_load = {1, 2};
   oblique.across_velocity = {0, 0.1};
@@ -60,7 +60,7 @@ void closed_forms() {
 }
 
 void equations() {
-  pd::InputLines<double> inputs{{0.1, 0.5}, {2, 1}, {}, {0.3, -1}, {3, -2}};
+  pd::InputCurves<double> inputs{{0.1, 0.5}, {2, 1}, {}, {0.3, -1}, {3, -2}};
   const auto rigid = drive();
   const auto e =
       pd::detail::SeriesMode<double>(rigid, {backward, forward, 0, 1}, inputs).equation();
@@ -101,7 +101,7 @@ void guards() {
   d.damping = 0;
   d.stiffness = 1e-12;
   d.finger = {};
-  pd::InputLines<double> inputs{{0, 0}, {1, 1}};
+  pd::InputCurves<double> inputs{{0, 0}, {1, 1}};
   const pd::detail::SeriesMode<double> mode(d, {forward, ContactState::absent, 1, 0}, inputs);
   const auto step = pd::detail::series_step(mode.equation(), {0, 0.06}, 0.01);
   const auto found = mode.guards(step, {});

@@ -15,7 +15,7 @@ constexpr double unit = std::numeric_limits<double>::epsilon();
 /// v = 1/(1 − q σ), σ = τ/span: the coefficients are powers of q.
 struct Geometric : pd::detail::SeriesStep<double> {
   explicit Geometric(double q, double length = 2) {
-    begin(length);
+    begin(pd::detail::SeriesEquation<double>{}, length);
     double power = 1;
     for (int n = 0; n <= N; ++n, power *= q) velocity.c[n] = power;
     for (int n = 0; n <= N; ++n) position.c[n + 1] = length * velocity.c[n] / (n + 1);

@@ -98,7 +98,7 @@ struct Stored {
       return static_cast<pd::ContactState>(state == 5 ? 1 : int(state));
     };
     const pd::Mode mode{state_of(c.plate), state_of(c.finger)};
-    pd::InputLines<T> inputs{
+    pd::InputCurves<T> inputs{
         {T(c.v_p[0]), T(c.v_p[1])}, {load, T(c.load[1])}, {T(c.across[0]), T(c.across[1])}};
     typename pd::detail::SeriesMode<T>::Reached at;
     const double speed = abs(c.v - c.v_p[0]);  // does it begin at an end of its branch?
@@ -238,8 +238,8 @@ void bounds() {
     const auto wide = [](pd::Line<double> given) { return pd::Line<L>{given.value, given.rate}; };
     pd::detail::SeriesEquation<L> fine{e.mass, e.damping, e.stiffness};
     fine.force = wide(e.force);
-    fine.plate_velocity = wide(e.plate_velocity);
-    fine.load = wide(e.load);
+    fine.plate_velocity = wide(e.plate_velocity.line());
+    fine.load = wide(e.load.line());
     fine.across = wide(e.across);
     fine.plate_force = e.plate_force;
     fine.plate_slope = e.plate_slope;

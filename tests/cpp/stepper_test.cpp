@@ -52,7 +52,7 @@ struct Values {
   double x, v, plate, finger, stop;
 };
 Values values_in(const pd::Drive<double>& drive, const pd::Segment<double>& segment,
-                 const pd::InputLines<double>& lines, double tau) {
+                 const pd::InputCurves<double>& lines, double tau) {
   return pd::visit_trajectory(drive, segment, lines, [&](const auto& t) {
     const auto friction = pd::friction_along(t, drive, segment, [&] { return lines; }, tau);
     return Values{t.at(t.position(), tau), t.at(t.velocity(), tau), friction.plate, friction.finger,
@@ -65,11 +65,15 @@ Values values_of(const pd::Stepper<double>& stepper) {
 
 pd::Inputs<double> start_of(const Case& c) {
   const auto lines = c.from(0);
-  return {{0, lines.plate_velocity}, c.displacement,
-          c.velocities[0],           infinity,
-          {0, lines.plate_load},     std::numeric_limits<double>::quiet_NaN(),
-          {0, lines.force},          {0, lines.across_velocity},
-          {0, lines.finger_load}};
+  return {{0, lines.plate_velocity.line()},
+          c.displacement,
+          c.velocities[0],
+          infinity,
+          {0, lines.plate_load.line()},
+          std::numeric_limits<double>::quiet_NaN(),
+          {0, lines.force.line()},
+          {0, lines.across_velocity.line()},
+          {0, lines.finger_load.line()}};
 }
 
 struct Worst {
@@ -109,7 +113,7 @@ void compare(const Case& c, Random& random, Worst& worst) {
       const auto [segment, tau] = motion.locate(stepper->now(), pd::Side::left);
       const Values found = values_of(*stepper);
       const Values expected = values_in(
-          c.drive, *segment, pd::InputLines<double>::of(c.drive, whole.inputs, *segment), tau);
+          c.drive, *segment, pd::InputCurves<double>::of(c.drive, whole.inputs, *segment), tau);
       worst.position = std::max(worst.position, std::abs(found.x - expected.x) / size);
       ++worst.checked;
       worst.at_stop += segment->mode.stop != pd::StopState::apart;
@@ -252,7 +256,7 @@ void set_twice() {
     segments.push_back(segment);
     return true;
   };
-  pd::InputLines<double> lines = stepper.inputs();
+  pd::InputCurves<double> lines = stepper.inputs();
   lines.force = {1, 0};
   stepper.set(lines, infinity, keep);
   expect(segments.size() == 1 && segments[0].event.finger == pd::Transition::slip, "is pushed");
@@ -312,7 +316,7 @@ void at_the_stops() {
 /// An input that jumps is one that gets there ever faster.
 void a_jump() {
   const double before = 0.004, after = 0.011;
-  const pd::InputLines<double> lines[]{
+  const pd::InputCurves<double> lines[]{
       {{-0.05, 0}},                    // the mouse velocity
       {{0.10, 0}, {1, 0}, {0.03, 0}},  // the velocity across, on a plate that did not slide across
       {{0.10, 0}, {3, 0}, {}, {0.020, 0}}};  // the load and the force
@@ -325,7 +329,7 @@ void a_jump() {
     const double x = values_of(stepper).x;
     double last = infinity;
     for (const double ramp : {1e-5, 1e-7, 1e-9}) {
-      const auto towards = [&](const pd::Line<double>& from, const pd::Line<double>& to) {
+      const auto towards = [&](const pd::Curve<double>& from, const pd::Curve<double>& to) {
         return pd::Line<double>{from.value, (to.value - from.value) / ramp};
       };
       pd::Stepper<double> ramped(drive, release);

@@ -41,7 +41,7 @@ void compare(const pd::Drive<double>& drive, const pd::Inputs<double>& inputs,
   pd::Segment<double> step = segment;  // of which a series has the begin alone
   step.flow.velocity.drift = segment.flow.acceleration().start;
   const pd::detail::BySeries<double> series(drive, step,
-                                            pd::InputLines<double>::of(drive, inputs, segment));
+                                            pd::InputCurves<double>::of(drive, inputs, segment));
   ++agree.count;
   for (const double part : {0.0, 0.3, 0.7, 1.0}) {
     const double tau = part * span;
@@ -97,13 +97,13 @@ void lines() {
   segment.mode = {pd::ContactState::absent, pd::ContactState::absent};
   const pd::detail::ClosedForm<double> closed(segment);
   const pd::detail::BySeries<double> series({0.01, 100, 0.1, {}, {}}, segment, {});
-  const pd::Line<double> line{3, -1};
-  expect(closed.at(closed.line(line), 0.5) == 2.5 && series.at(series.line(line), 0.5) == 2.5,
+  const pd::Curve<double> line{3, -1};
+  expect(closed.at(closed.input(line), 0.5) == 2.5 && series.at(series.input(line), 0.5) == 2.5,
          "a line is a quantity of either form");
-  expect(closed.constant(closed.line({3, 0})) && series.constant(series.line({3, 0})) &&
-             !closed.constant(closed.line(line)) && !series.constant(series.line(line)),
+  expect(closed.constant(closed.input({3, 0})) && series.constant(series.input({3, 0})) &&
+             !closed.constant(closed.input(line)) && !series.constant(series.input(line)),
          "... and constant without a rate");
-  expect(!closed.waves() && closed.terms(closed.line(line), 0.5) == 3.5,
+  expect(!closed.waves() && closed.terms(closed.input(line), 0.5) == 3.5,
          "a pin at rest does not wave");
   expect(pd::detail::quantity_of(closed, pd::Quantity::velocity).start == 0,
          "a quantity has a name");

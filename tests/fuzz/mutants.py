@@ -243,7 +243,7 @@ MUTANTS = (
     ),
     Mutant(
         "a plate that comes to rest along and across turns before it does",
-        "model/input_lines.hpp",
+        "model/input_curves.hpp",
         "if (held && along.rate != 0 &&",
         "if (held && along.rate != 0 && time < 0 &&",
     ),

@@ -17,7 +17,7 @@ namespace pindrive::detail {
 template <class T>
 struct Beginning {
   T x, v, plate_force, finger_force;
-  Line<T> plate_velocity;
+  Curve<T> plate_velocity;
   T plate_load, finger_load, force;
   bool rests_on_plate, rests_on_finger;
   bool plate_began, finger_began;  ///< the contact changed its state at this instant
@@ -110,7 +110,7 @@ class Breakaways {
   static T spare_at(const EvaluatedSegment<T, Trajectory>& segment, PinState<T> s, bool plate,
                     bool finger) {
     const Drive<T>& drive = segment.drive;
-    const Line<T>& plate_velocity = segment.plate_velocity;
+    const Curve<T>& plate_velocity = segment.plate_velocity;
     // A given velocity is exact: next to that of the plate, the pin slides.
     const T still = segment.segment.begin > 0 ? T(still_velocity) * segment.scales.v : T(0);
     const bool with_plate = abs(s.v - plate_velocity.value) <= still;

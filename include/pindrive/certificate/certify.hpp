@@ -269,11 +269,11 @@ class Certifier {
   void leap(const Closed& evaluated, const ClosedState& from, const ClosedState& to) {
     const Segment<T>& segment = evaluated.segment;
     const Path<T>&v = segment.flow.velocity, plate = segment.plate_force;
-    const Path<T> v_plate = evaluated.plate_velocity;
+    const Path<T> v_plate = evaluated.plate_velocity.line();
     const auto over = [&](const Path<T>& p, const Path<T>& q) {
       return detail::product_integral(segment.flow.oscillator, p, q, from.tau, to.tau);
     };
-    Line<T> push = evaluated.force;
+    Line<T> push = evaluated.force.line();
     push.value += drive_.mass * evaluated.plate_velocity.rate;
     const Path<T> inertia = push;
     Sums sums;
@@ -296,9 +296,9 @@ class Certifier {
     if (mode.finger == ContactState::elastic_stick)
       raise(errors.velocity,
             along.at(evaluated.finger_rate, s.moment) / drive_.finger.stiffness + s.v);
-    const T missed = drive_.mass * (s.a - evaluated.plate_velocity.rate) + drive_.damping * s.v +
-                     drive_.stiffness * s.x - s.plate_force - s.finger_force -
-                     evaluated.force.at(s.tau) - evaluated.stop_force(s);
+    const T missed = drive_.mass * (s.a - evaluated.plate_velocity.rate_at(s.tau)) +
+                     drive_.damping * s.v + drive_.stiffness * s.x - s.plate_force -
+                     s.finger_force - evaluated.force.at(s.tau) - evaluated.stop_force(s);
     raise(errors.law, std::max(abs(missed) - evaluated.unsure(s), T(0)));
     if (held_by_stop(drive_, mode)) {
       const int end = stop_sign(mode.stop);
@@ -343,7 +343,8 @@ class Certifier {
     // A whole wave may begin and end at nothing, and be summed from what is stored on the way.
     stored_ = std::max(stored_, energy(s));
     const T v_plate = evaluated.plate_velocity.at(s.tau);
-    const T push = drive_.mass * evaluated.plate_velocity.rate + evaluated.force.at(s.tau);
+    const T push =
+        drive_.mass * evaluated.plate_velocity.rate_at(s.tau) + evaluated.force.at(s.tau);
     sums.v += weight * s.v;
     sums.a += weight * s.a;
     sums.input += weight * (s.plate_force * v_plate + push * s.v);
@@ -389,7 +390,7 @@ class Certifier {
     if (!drive_.finger.compliant()) return;
     const T asked = abs(left.finger_force), drop = asked - abs(right.finger_force);
     if (event.finger != Transition::slip) {
-      const Line<T> load = motion_.inputs().finger_load.from(before.begin);
+      const Curve<T> load = motion_.inputs().finger_load.from(before.begin);
       const T known = detail::skin_unsure(drive_, load, before.end, left);
       const T jump = abs(left.finger_force - right.finger_force);
       worst(result_.continuity, std::max(jump - known, T(0)), scales_.force);
@@ -412,7 +413,7 @@ class Certifier {
   bool lifts_off(const Mode& mode, T v, T time) const {
     using std::abs;
     const Contact<T>& finger = drive_.finger;
-    const Line<T> load = motion_.inputs().finger_load.from(time);
+    const Curve<T> load = motion_.inputs().finger_load.from(time);
     if (!(load.rate < 0)) return false;
     const T slope = is_slip(mode.finger) ? finger.branch(mode.finger_branch).slope : T(0);
     const T limit = finger.static_limit;

@@ -42,10 +42,9 @@ class SegmentGuards {
   explicit SegmentGuards(const Evaluated& segment) : evaluated_(segment), along_(segment.along) {
     const Drive<T>& drive = segment.drive;
     const Mode& mode = segment.mode();
-    const Line<T>&load = segment.load, finger_load = segment.finger_load;
     if (!segment.oblique())
       slipping(drive.plate, mode.plate, mode.plate_branch,
-               along_.velocity() + T(-1) * along_.line(segment.plate_velocity));
+               along_.velocity() + T(-1) * along_.input(segment.plate_velocity));
     else if constexpr (std::is_same_v<Trajectory, BySeries<T>>)
       within(drive.plate.branch(mode.plate_branch), along_.sliding_speed(), false);
     // A slider is slower than the pin by what its skin stretches.
@@ -59,13 +58,10 @@ class SegmentGuards {
     }
     beyond_stops(drive.stops, mode.stop);
     if (held_by_stop(drive, mode)) return;
-    const Line<T> at_plate{drive.plate.static_limit * load.value,
-                           drive.plate.static_limit * load.rate};
-    const Line<T> at_finger{drive.finger.static_limit * finger_load.value,
-                            drive.finger.static_limit * finger_load.rate};
+    const Quantity at_plate = drive.plate.static_limit * along_.input(segment.load);
+    const Quantity at_finger = drive.finger.static_limit * along_.input(segment.finger_load);
     if (mode.both_stuck()) {
-      sticking(along_.plate_force(),
-               {at_plate.value + at_finger.value, at_plate.rate + at_finger.rate});
+      sticking(along_.plate_force(), at_plate + at_finger);
     } else {
       if (mode.plate == ContactState::stick) sticking(along_.plate_force(), at_plate);
       if (mode.finger == ContactState::stick || mode.finger == ContactState::elastic_stick)
@@ -102,9 +98,7 @@ class SegmentGuards {
     const int last = std::max(contact.branches - 1, 0);
     within(contact.branch(std::clamp(branch, 0, last)), T(sign(does)) * sliding, true);
   }
-  template <class Path>
-  void sticking(const Path& force, const Line<T>& limit) {
-    const auto most = along_.line(limit);
+  void sticking(const Quantity& force, const Quantity& most) {
     const T scale = evaluated_.scales.force;
     watch(most + force, &Certificate<T>::force_bound, scale);
     watch(most + T(-1) * force, &Certificate<T>::force_bound, scale);

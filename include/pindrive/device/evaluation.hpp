@@ -119,7 +119,8 @@ inline std::vector<Span> touches(const Profile<double>& load) {
   double begin = -infinity;
   while (begin < infinity) {
     const double end = load.next_breakpoint(begin);
-    const Line<double> line = begin > -infinity ? load.from(begin) : Line<double>{load.first(), 0};
+    const Line<double> line =
+        begin > -infinity ? load.from(begin).line() : Line<double>{load.first(), 0};
     const bool at_begin = line.value > 0;
     if (at_begin || line.rate > 0) {
       if (at_begin && !found.empty() && found.back().end == begin)

@@ -96,12 +96,12 @@ class PinFollower {
   /// Release with the inputs at the begin.
   Inputs<double> release(const ScanInputs& scan, const PinState& from) const {
     const PlateVelocity& plate = scan.plate;
-    const Line<double> along = plate.profile(plate.along).from(0);
+    const Line<double> along = plate.profile(plate.along).from(0).line();
     Inputs<double> inputs{
         {0, along}, from.position,     std::isnan(from.velocity) ? along.value : from.velocity,
         infinity,   {0, load(begin_)}, scan.held_stretch(from.stretch)};
-    inputs.across_velocity = {0, plate.profile(plate.across).from(0)};
-    inputs.finger_load = {0, scan.finger_load.from(0)};
+    inputs.across_velocity = {0, plate.profile(plate.across).from(0).line()};
+    inputs.finger_load = {0, scan.finger_load.from(0).line()};
     return inputs;
   }
   Line<double> load(double time) const {
@@ -125,7 +125,7 @@ class PinFollower {
   /// at the same time.
   template <class Sink>
   void pass(const ScanInputs& scan, double time, Sink&& sink) {
-    InputLines<double> lines = stepper_.inputs();
+    InputCurves<double> lines = stepper_.inputs();
     if (passed_ == -infinity) lines.plate_load = load(begin_);
     for (double at; (at = std::min(command(), coil_.next())) - begin_ <= time;) {
       if (at == command())

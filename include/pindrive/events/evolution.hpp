@@ -61,7 +61,7 @@ class Evolution {
   PINDRIVE_FLAT void begin(Segment<T>& segment) {
     if (pin.plate.oblique())
       pin.plate.across =
-          InputLines<T>::across_from(inputs_, pin.time, pin.plate.surface, pin.held());
+          InputCurves<T>::across_from(inputs_, pin.time, pin.plate.surface, pin.held());
     const Force<T> plate = pin.plate.force_law(pin.state), finger = pin.finger.force_law(pin.state);
     segment.begin = pin.time;
     segment.end = never;
@@ -107,9 +107,8 @@ class Evolution {
   T turning_point() const {
     const bool turns =
         pin.plate.oblique() || !pin.drive.plate.linear() || !pin.drive.finger.linear();
-    return series.used() && turns && !pin.held() && !(next_breakpoint < never)
-               ? series.turning_point()
-               : never;
+    return series.used() && turns && !pin.held() && has_constant_inputs() ? series.turning_point()
+                                                                          : never;
   }
   /// Time after τ, s, with the rounding of earlier sums.
   T time_after(T tau) const { return pin.time + (tau + time_error); }
@@ -201,7 +200,13 @@ class Evolution {
   Pin<T> pin;
   SelectedMotion<T> selected;
   SeriesSegment<T> series;
-  T time_error{0};           ///< rounding error of the time of the pin (Kahan 1965), s
+  T time_error{0};  ///< rounding error of the time of the pin (Kahan 1965), s
+  /// True if no input changes from now on.
+  bool has_constant_inputs() const {
+    return !(next_breakpoint < never) && pin.plate.surface.steady() && pin.plate.across.steady() &&
+           pin.force.steady() && pin.plate.load.steady() && pin.finger.load.steady();
+  }
+
   T next_breakpoint{never};  ///< time of the next breakpoint of an input, s
   bool struck{false};        ///< the pin has just struck a rigid stop
 
@@ -218,12 +223,7 @@ class Evolution {
   /// constant inputs forces balance and the speed has decayed.
   bool in_equilibrium() const {
     const State<T>& s = pin.state;
-    if (next_breakpoint < never || pin.held() || pin.plate.surface.rate != 0 ||
-        pin.plate.across.rate != 0)
-      return false;
-    if (pin.force.rate != 0 || pin.plate.load.rate != 0 || pin.finger.load.rate != 0 ||
-        pin.finger.has_slider_state())
-      return false;
+    if (!has_constant_inputs() || pin.held() || pin.finger.has_slider_state()) return false;
     return abs(s.v) <= rest_speed() &&
            pin.drive.mass * abs(selected.acceleration) <=
                T(rest_tolerance) * pin.drive.stiffness * s.position_scale;
@@ -244,7 +244,7 @@ class Evolution {
     if (pin.state.v == 0 || !(abs(pin.state.v) <= rest_speed())) return;
     for (ContactPoint<T>* side : {&pin.plate, &pin.finger}) {
       if (!side->sliding() || side->oblique() || !side->contact.rigid()) continue;
-      if (side->surface.value != 0 || side->surface.rate != 0) continue;
+      if (!side->surface.is_zero()) continue;
       pin.state.v = T(0);
       side->reached_guard = ActiveGuard::lower;
     }
@@ -280,7 +280,7 @@ class Evolution {
       pin.finger.load = inputs_.finger_load.from(pin.time);
       pin.force = inputs_.force.from(pin.time);
       pin.plate.across =
-          InputLines<T>::across_from(inputs_, pin.time, pin.plate.surface, pin.held());
+          InputCurves<T>::across_from(inputs_, pin.time, pin.plate.surface, pin.held());
       next_breakpoint = inputs_.next_breakpoint(pin.time);
       if (next_breakpoint - pin.time > rounding<T> * pin.time) return;
     }

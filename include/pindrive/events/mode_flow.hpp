@@ -28,7 +28,7 @@ Flow<T> mode_flow(const Pin<T>& pin, const SelectedMotion<T>& selected,
   const State<T>& s = pin.state;
   if (pin.stop.is_holding()) return Flow<T>::stuck(s.x, Line<T>{});
   if (pin.plate.stuck() || pin.finger.stuck())
-    return Flow<T>::stuck(s.x, pin.plate.stuck() ? pin.plate.surface : Line<T>{});
+    return Flow<T>::stuck(s.x, pin.plate.stuck() ? pin.plate.surface.line() : Line<T>{});
   T damping = pin.drive.damping + plate.drag + finger.drag;
   T stiffness = pin.drive.stiffness + plate.stiffness + finger.stiffness;
   T pull = selected.applied_force - pin.drive.stiffness * s.x + plate.constant.value +

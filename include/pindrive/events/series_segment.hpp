@@ -36,7 +36,7 @@ class SeriesSegment {
   /// with their zeros.
   template <class Point>
   [[gnu::noinline]] void begin(Segment<T>& segment, Guards<T>& guards, const Drive<T>& drive,
-                               const Point& plate, const Point& finger, const Line<T>& force,
+                               const Point& plate, const Point& finger, const Curve<T>& force,
                                const State<T>& state, T acceleration, int at_limit, bool no_push,
                                T span) {
     const SeriesMode<T> mode(

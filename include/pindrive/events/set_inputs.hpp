@@ -64,7 +64,7 @@ T change_to(const T& given, const Held<T>& held, T now) {
 
 /// True if an input differs from its continuation in value or rate.
 template <class T>
-bool differs(const Line<T>& given, const Held<T>& held, T now) {
+bool differs(const Curve<T>& given, const Held<T>& held, T now) {
   return !is_zero(change_to(given.value, held, now)) || !is_zero(given.rate - held.from(now).rate);
 }
 

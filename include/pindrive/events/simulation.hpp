@@ -41,7 +41,7 @@ class Simulation {
         const Mode after = pin.mode();
         segment.event = evolution_.transitions(segment.mode);
         const bool changes = segment.event.any() || !same_mode(segment.mode, after);
-        if (!(evolution_.next_breakpoint < never) && (changes || turn < event))
+        if (evolution_.has_constant_inputs() && (changes || turn < event))
           cycles_.visit(segment, after, pin.time, evolution_.time_error, pin.state, outcome_);
       } else if (tau == never) {
         end_with(segment, outcome_);

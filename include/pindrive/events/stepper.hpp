@@ -60,7 +60,7 @@ class Stepper {
   State hand_over() {
     restart();
     State found = with_inputs(kept());
-    found.plate_velocity = evolution_.pin.plate.surface;
+    found.plate_velocity = evolution_.pin.plate.surface.line();
     return found.on_clock_from(now_);
   }
 
@@ -103,7 +103,7 @@ class Stepper {
   /// `horizon` is the time (s) at which the inputs are set next at the latest: events are not sought
   /// beyond it, as if the inputs had a breakpoint there. `sink` is called as in a step.
   template <class Sink = Unattended>
-  void set(const InputLines<T>& given, T horizon = never, Sink&& sink = {}) {
+  void set(const InputCurves<T>& given, T horizon = never, Sink&& sink = {}) {
     Held<T>&velocity = inputs_.mouse_velocity.held(), &load = inputs_.plate_load.held();
     Held<T>&across = inputs_.across_velocity.held(), &force = inputs_.force.held();
     Held<T>& touch = inputs_.finger_load.held();
@@ -120,8 +120,8 @@ class Stepper {
     const T from = detail::is_zero(jump) ? given.plate_velocity.value : velocity.from(now_).value;
     if (turns) velocity = {now_, {from, given.plate_velocity.rate}};
     if (loads) load = detail::falling_load(now_, given.plate_load.value, given.plate_load.rate);
-    if (drifts) across = {now_, given.across_velocity};
-    if (pushes) force = {now_, given.force};
+    if (drifts) across = {now_, given.across_velocity.line()};
+    if (pushes) force = {now_, given.force.line()};
     if (touches)
       touch = detail::falling_load(now_, given.finger_load.value, given.finger_load.rate);
     for (Held<T>* each : {&velocity, &across}) detail::end_at(*each, now_, horizon);
@@ -145,7 +145,7 @@ class Stepper {
   const Event& event() const { return event_; }  ///< transitions of the contacts now
   Mode mode() const { return segment_.mode; }    ///< mode of the contacts from now on
   const Drive<T>& drive() const { return drive_; }
-  InputLines<T> inputs() const {
+  InputCurves<T> inputs() const {
     return {inputs_.mouse_velocity.from(now_), inputs_.plate_load.from(now_),
             inputs_.across_velocity.from(now_), inputs_.force.from(now_),
             inputs_.finger_load.from(now_)};
@@ -172,7 +172,7 @@ class Stepper {
     pin.move(along, evolution_.pin.finger.elastic());
     return pin;
   }
-  InputLines<T> lines() const {
+  InputCurves<T> lines() const {
     return {segment_.plate_velocity, evolution_.pin.plate.load, evolution_.pin.plate.across,
             evolution_.pin.force, evolution_.pin.finger.load};
   }
@@ -201,7 +201,7 @@ class Stepper {
   /// pin.
   void take_inputs(const T& time) {
     evolution_.pin.plate.load = inputs_.plate_load.from(time);
-    evolution_.pin.plate.across = InputLines<T>::across_from(
+    evolution_.pin.plate.across = InputCurves<T>::across_from(
         inputs_, time, evolution_.pin.plate.surface, evolution_.pin.held());
     evolution_.pin.force = inputs_.force.from(time);
     evolution_.pin.finger.load = inputs_.finger_load.from(time);
@@ -254,7 +254,7 @@ class Stepper {
             pin.stop.met,
             evolution_.struck,
             before_,
-            pin.plate.surface};
+            pin.plate.surface.line()};
   }
 
   /// Begins the next segment; the present one `ends`. Returns the transitions.

@@ -72,12 +72,15 @@ struct Polynomial {
     for (int n = 0; n <= p.degree; ++n) p.c[n] *= factor;
     return p;
   }
-  /// Product with a line; the degree of the polynomial is below the highest order.
-  friend Polynomial operator*(const Line<T>& line, Polynomial p) {
-    if (line.rate != 0) p.c[++p.degree] = T(0);
-    for (int n = p.degree; n >= 0; --n)
-      p.c[n] = line.value * p.c[n] + (n > 0 ? line.rate * p.span * p.c[n - 1] : T(0));
-    return p;
+  /// Product over the same span, without the terms beyond the highest order.
+  friend Polynomial operator*(const Polynomial& p, const Polynomial& q) {
+    Polynomial product;
+    product.span = q.span;
+    product.degree = std::min(p.degree + q.degree, series_order + 1);
+    for (int i = 0; i <= p.degree; ++i)
+      for (int j = 0; j <= std::min(q.degree, product.degree - i); ++j)
+        product.c[i + j] += p.c[i] * q.c[j];
+    return product;
   }
 };
 

@@ -23,7 +23,7 @@ struct ContactPoint {
   explicit ContactPoint(const Contact<T>& given) : contact(given) {}
 
   Contact<T> contact;
-  Line<T> surface{}, load{T(1), T(0)}, across{};
+  Curve<T> surface{}, load{T(1), T(0)}, across{};
   ContactMode<T> mode{};
   ModeStart<T> start{};                          ///< friction and slider where the mode starts
   ContactState before{};                         ///< state before the last event
@@ -196,7 +196,9 @@ struct ContactPoint {
       second = speed.force_second_rate(range, bend, load);
     } else {
       rate = -range.slope * load.value * relative - mode.slip_sign * start.friction * load.rate;
-      second = -2 * range.slope * load.rate * relative;
+      second = -2 * range.slope * load.rate * relative +
+               range.slope * load.value * surface.second() -
+               mode.slip_sign * start.friction * load.second();
       if (bend != 0) second -= mode.slip_sign * bend * load.value * relative * relative;
     }
     const T slope_error = range.rounding * load.value * abs(relative);
@@ -254,7 +256,7 @@ struct ContactPoint {
     if (oblique()) {
       const ObliqueSlip<T> speed = oblique_slip(s.v, surface.rate + first);
       const T closing = speed.closing(), known = speed.rounding_of(surface.value);
-      const T parting = speed.parting(second);
+      const T parting = speed.parting(second, across.second());
       const bool turns = closing == 0 || grazes(closing, parting, known);
       T faster = closing;
       if (turns) faster = parting != 0 ? parting : speed.u.value * third;
@@ -276,7 +278,7 @@ struct ContactPoint {
   }
 
   ObliqueSlip<T> oblique_slip(T v, T acceleration) const {
-    return {{v - surface.value, acceleration - surface.rate}, across};
+    return {{v - surface.value, acceleration - surface.rate}, across.line()};
   }
 
  private:

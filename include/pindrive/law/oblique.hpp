@@ -6,7 +6,7 @@
 #include "pindrive/flow/flow.hpp"
 #include "pindrive/law/contact_mode.hpp"
 #include "pindrive/law/state.hpp"
-#include "pindrive/model/input_lines.hpp"
+#include "pindrive/model/input_curves.hpp"
 #include "pindrive/model/model.hpp"
 #include "pindrive/numbers/limits.hpp"
 
@@ -48,22 +48,24 @@ struct ObliqueSlip {
 
   /// Derivative of ρ²/2, m²/s³; positive if the sliding speed grows.
   T closing() const { return u.value * u.rate + w.value * w.rate; }
-  /// Second derivative of ρ²/2 for a pin with this jerk, where the first derivative is zero within
-  /// its error.
-  T parting(T jerk) const { return u.rate * u.rate + w.rate * w.rate + u.value * jerk; }
+  /// Second derivative of ρ²/2 with the second derivatives of u and w, where the first derivative
+  /// is zero within its error.
+  T parting(T jerk, T across) const {
+    return u.rate * u.rate + w.rate * w.rate + u.value * jerk + w.value * across;
+  }
   /// Error of the derivative of ρ²/2, for a surface with this velocity.
   T rounding_of(T surface) const { return rounding<T> * speed() * (speed() + abs(surface)); }
   /// Decrease of the force with the axial velocity, N s/m.
-  T steepness(const Branch<T>& branch, const Line<T>& load) const {
+  T steepness(const Branch<T>& branch, const Curve<T>& load) const {
     const T r = speed(), across = r > 0 ? w.value / r : T(0);
     return load.value * ((r > 0 ? branch.intercept() * across * across / r : T(0)) + branch.slope);
   }
-  T force_rate(const Branch<T>& branch, const Line<T>& load) const {
+  T force_rate(const Branch<T>& branch, const Curve<T>& load) const {
     const T strength = branch.intercept();
     return -load.rate * (strength * along() + branch.slope * u.value) -
            load.value * (strength * turning() + branch.slope * u.rate);
   }
-  T force_second_rate(const Branch<T>& branch, T curvature, const Line<T>& load) const {
+  T force_second_rate(const Branch<T>& branch, T curvature, const Curve<T>& load) const {
     const T strength = branch.intercept();
     const T bend = curvature == 0 ? T(0) : curvature * faster() * faster() * along() * load.value;
     return -2 * load.rate * (strength * turning() + branch.slope * u.rate) -

@@ -28,7 +28,7 @@ struct Pin {
   State<T> state;
   ContactPoint<T> plate, finger;
   EndStops<T> stop;
-  Line<T> force{};          ///< external force, N
+  Curve<T> force{};         ///< external force, N
   int stick_limit_side{0};  ///< side of a stick force that has just reached its limit, else 0
 
   /// Selected mode.

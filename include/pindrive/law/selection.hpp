@@ -127,20 +127,20 @@ class Selection {
     selected_.tangential = false;
     selected_.acceleration = T(0);
     const T end = stop_sign(pin_.stop.state);
-    const auto choose = [&](ContactPoint& side, T relative) {  // relative acceleration, m/s²
+    const auto choose = [&](ContactPoint& side) {
       for (int k = 0; k < side.candidates.size(); ++k) {
         side.choose(k);
-        if (side.stuck() ? relative == 0 : side.is_admissible(pin_.state, relative)) return true;
+        if (is_admissible_beside(Curve<T>{}, side)) return true;
       }
       return false;
     };
-    if (!choose(pin_.plate, -pin_.plate.surface.rate) || !choose(pin_.finger, T(0))) return false;
+    if (!choose(pin_.plate) || !choose(pin_.finger)) return false;
     const T force = selected_.applied_force - restoring_force_ + pin_.plate.force(pin_.state) +
                     pin_.finger.force(pin_.state);
     const auto rate = pin_.plate.force_rate(T(0), T(0)), skin = pin_.finger.force_rate(T(0), T(0));
-    const Path<T> push{end * force, T(0), T(0), end * (pin_.force.rate + rate.value + skin.value),
-                       end * (rate.second + skin.second)};
-    return pin_.stop.try_hold(push, abs(pin_.force.rate) + rate.scale + skin.scale, pin_.no_push(),
+    const Path<T> push{end * force, T(0), T(0), end * (applied_rate() + rate.value + skin.value),
+                       end * (applied_second_rate() + rate.second + skin.second)};
+    return pin_.stop.try_hold(push, abs(applied_rate()) + rate.scale + skin.scale, pin_.no_push(),
                               pin_.state.force_error, selected_.guards);
   }
 
@@ -165,16 +165,19 @@ class Selection {
                              T& scale) const {
     const T a = on.surface.rate, spring = stiffness() * pin_.state.v, damper = damping() * a;
     const auto rate = other.force_rate(pin_.state.v, a);
+    // Of the inertial and external force and of the inertia of the pin on its surface.
+    const T applied = applied_rate() - pin_.drive.mass * on.surface.second();
+    const T bend = damping() * on.surface.second() -
+                   (applied_second_rate() - pin_.drive.mass * on.surface.third());
     scale = abs(spring) + abs(damper) + rate.scale;
-    const T drift = spring + damper - rate.value - pin_.force.rate;
-    scale += abs(pin_.force.rate);
-    return {force, T(0), T(0), drift, stiffness() * a - rate.second};
+    const T drift = spring + damper - rate.value - applied;
+    scale += abs(applied);
+    return {force, T(0), T(0), drift, stiffness() * a - rate.second + bend};
   }
 
   /// Tests the mode in which a contact, and `other` if it sticks too, keeps the pin on its surface.
   bool try_stick(const ContactPoint& on, const ContactPoint& other) {
-    const T relative = on.surface.rate - other.surface.rate;
-    if (other.stuck() ? relative != 0 : !other.is_admissible(pin_.state, relative)) return false;
+    if (!is_admissible_beside(on.surface, other)) return false;
     if (!pin_.stop.is_consistent(pin_.state.v, on.surface.rate, {})) return false;
     const T own_limit = on.contact.static_limit;
     const T other_limit = other.stuck() ? other.contact.static_limit : T(0);
@@ -184,11 +187,13 @@ class Selection {
     const int at_limit = pin_.stays_at_limit() ? pin_.stick_limit_side : 0;
     if (limit.value - abs(force) < -pin_.state.force_error && (force < 0 ? -1 : 1) != at_limit)
       return false;
+    Path<T> most = limit;
+    most.curvature = own_limit * on.load.second() + other_limit * other.load.second();
     T scale;
     selected_.stick_force = holding_force_from(force, on, other, scale);
     selected_.guards.clear();
     for (const int side : {1, -1}) {
-      Path<T> margin = Path<T>(limit) + T(-side) * selected_.stick_force;
+      Path<T> margin = most + T(-side) * selected_.stick_force;
       if (!(margin.start > pin_.state.force_error) || side == at_limit) {
         margin.start = T(0);
         if (abs(margin.drift) <= rounding<T> * (scale + abs(limit.rate)) ||
@@ -239,7 +244,7 @@ class Selection {
       if (side.oblique()) {
         const Line<T> jerk = this->jerk();
         return side.is_admissible(pin_.state, selected_.acceleration - side.surface.rate,
-                                  jerk.value, jerk.rate);
+                                  jerk.value - side.surface.second(), jerk.rate);
       }
       if (!selected_.tangential) return side.is_admissible(pin_.state, force);
       const T relative = selected_.acceleration - side.surface.rate;
@@ -265,6 +270,20 @@ class Selection {
     return force * rate < 0 && 2 * abs(force) <= rounding<T> * pin_.time * abs(rate);
   }
 
+  /// Derivatives of the inertial and external force, N/s and N/s².
+  T applied_rate() const { return pin_.force.rate + pin_.drive.mass * pin_.plate.surface.second(); }
+  T applied_second_rate() const {
+    return pin_.force.second() + pin_.drive.mass * pin_.plate.surface.third();
+  }
+  /// True if a contact may stick or slip while the pin moves as a surface does.
+  bool is_admissible_beside(const Curve<T>& surface, const ContactPoint& side) const {
+    const T relative = surface.rate - side.surface.rate;
+    const T second = surface.second() - side.surface.second();
+    const T third = surface.third() - side.surface.third();
+    if (side.stuck()) return relative == 0 && second == 0 && third == 0;
+    return side.is_admissible(pin_.state, relative, second, third);
+  }
+
   /// True if a slipping pin is consistent with the state of the stops.
   bool leaves_stop() {
     const bool none = pin_.drive.mass * abs(selected_.acceleration) <= pin_.state.force_error ||
@@ -287,9 +306,10 @@ class Selection {
     const auto plate = pin_.plate.force_rate(pin_.state.v, selected_.acceleration);
     const auto finger = pin_.finger.force_rate(pin_.state.v, selected_.acceleration);
     const T spring = stiffness() * pin_.state.v, damper = damping() * selected_.acceleration;
-    return {pin_.force.rate + plate.value + finger.value - spring - damper,
-            abs(pin_.force.rate) + plate.scale + finger.scale + abs(spring) + abs(damper),
-            plate.second + finger.second - stiffness() * selected_.acceleration};
+    return {applied_rate() + plate.value + finger.value - spring - damper,
+            abs(applied_rate()) + plate.scale + finger.scale + abs(spring) + abs(damper),
+            applied_second_rate() + plate.second + finger.second -
+                stiffness() * selected_.acceleration};
   }
 
   Pin<T>& pin_;

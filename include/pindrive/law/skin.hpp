@@ -256,7 +256,7 @@ T largest_friction(const Contact<T>& contact, T speed) {
 template <class T, class Point>
 [[gnu::noinline]] T defer_first_grip(Point& point, T v, T time, T breakpoint) {
   const Contact<T>& contact = point.contact;
-  Line<T>& load = point.load;
+  Curve<T>& load = point.load;
   if (load.rate == 0 || contact.rigid() || !contact.present()) return breakpoint;
   const T u = v < 0 ? -v : v, known = first_grip<T> * breakpoint;
   if (load.value == 0 && load.rate > 0) {

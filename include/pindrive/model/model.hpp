@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "pindrive/flow/flow.hpp"
+#include "pindrive/model/input_function.hpp"
 #include "pindrive/numbers/limits.hpp"
 
 namespace pindrive {
@@ -197,7 +198,8 @@ struct Held {
   T next_breakpoint(T t) const { return t < ends ? ends : std::numeric_limits<T>::infinity(); }
 };
 
-/// Input over time: held, or linear between its breakpoints and constant outside. Owns no memory.
+/// Input over time: held, or linear between its breakpoints and constant outside, or a function of pieces.
+/// Owns no memory.
 template <class T>
 class Profile {
  public:
@@ -209,10 +211,20 @@ class Profile {
   Profile(const T* times, const T* values, std::size_t count)
       : held_(values[0]), constant_(false), times_(times), values_(values), count_(count) {}
 
-  /// Value and rate from time t on, until the next breakpoint.
-  Line<T> from(T t) const {
+  /// Input of count >= 1 pieces, begins strictly increasing; before the first begin, its value there.
+  Profile(const InputPiece<T>* pieces, std::size_t count)
+      : held_(pieces[0].at(T(0))), constant_(false), pieces_(pieces), count_(count) {}
+
+  /// Input from time t on, until the next breakpoint.
+  Curve<T> from(T t) const {
     if (count_ == 0) return held_.from(t);
     const std::size_t i = breakpoints_until(t);
+    if (pieces_ != nullptr) {
+      if (i == 0) return {first(), T(0)};
+      const InputPiece<T>& piece = pieces_[i - 1];
+      const T after = t - piece.begin;
+      return {piece, after > detail::rounding<T> * t ? after : T(0)};
+    }
     if (i == 0) return {first(), T(0)};
     if (i == count_) return {values_[count_ - 1], T(0)};
     const T rate = (values_[i] - values_[i - 1]) / (times_[i] - times_[i - 1]);
@@ -223,10 +235,12 @@ class Profile {
   T next_breakpoint(T t) const {
     if (count_ == 0) return held_.next_breakpoint(t);
     const std::size_t i = breakpoints_until(t);
-    return i == count_ ? std::numeric_limits<T>::infinity() : times_[i];
+    if (i == count_) return std::numeric_limits<T>::infinity();
+    return pieces_ != nullptr ? pieces_[i].begin : times_[i];
   }
-  bool constant() const { return constant_; }   ///< the input is one number and remains so
-  T first() const { return held_.line.value; }  ///< value before the first breakpoint
+  bool constant() const { return constant_; }           ///< the input is one number and remains so
+  bool straight() const { return pieces_ == nullptr; }  ///< linear between breakpoints
+  T first() const { return held_.line.value; }          ///< value before the first breakpoint
 
   /// Line of an input without breakpoints, to be set during the simulation; the input is not
   /// constant any more.
@@ -238,6 +252,11 @@ class Profile {
 
  private:
   std::size_t breakpoints_until(T t) const {
+    if (pieces_ != nullptr) {
+      const auto later = [](T time, const InputPiece<T>& piece) { return time < piece.begin; };
+      return static_cast<std::size_t>(std::upper_bound(pieces_, pieces_ + count_, t, later) -
+                                      pieces_);
+    }
     return static_cast<std::size_t>(std::upper_bound(times_, times_ + count_, t) - times_);
   }
 
@@ -245,7 +264,8 @@ class Profile {
   bool constant_{true};
   const T* times_{nullptr};
   const T* values_{nullptr};
-  std::size_t count_{0};
+  const InputPiece<T>* pieces_{nullptr};
+  std::size_t count_{0};  ///< of breakpoints, or of pieces
 };
 
 /// Release at t = 0 and inputs from then on.
@@ -267,6 +287,11 @@ struct Inputs {
     return std::min({mouse_velocity.next_breakpoint(t), plate_load.next_breakpoint(t),
                      finger_load.next_breakpoint(t), force.next_breakpoint(t),
                      across_velocity.next_breakpoint(t)});
+  }
+  /// True if all inputs are linear between breakpoints.
+  bool straight() const {
+    return mouse_velocity.straight() && plate_load.straight() && force.straight() &&
+           across_velocity.straight() && finger_load.straight();
   }
   bool constant() const {
     return mouse_velocity.constant() && plate_load.constant() && force.constant() &&
@@ -384,8 +409,8 @@ struct Segment {
   Mode mode;
   Event event;  ///< event at the end
   Flow<T> flow;
-  Propagator<T> moved;     ///< propagator of the oscillator from begin to a finite end
-  Line<T> plate_velocity;  ///< m/s
+  Propagator<T> moved;      ///< propagator of the oscillator from begin to a finite end
+  Curve<T> plate_velocity;  ///< m/s
   /// friction on the pin, N; if both contacts stick, the plate force is their sum
   Path<T> plate_force, finger_force;
   EliminatedPart eliminated{EliminatedPart::none};  ///< fast transient that the series omits

@@ -70,10 +70,11 @@ class ContactMeasurement {
                T to, T times) const {
     const bool whole = to >= segment.end - segment.begin;
     const T distance = moved(along, from, to);
-    const Line<T> plate = segment.plate_velocity;
-    const T carried = (plate.at(from) + plate.at(to)) / 2 * (to - from);
+    const Curve<T>& plate = segment.plate_velocity;
+    const T carried = plate.straight() ? (plate.at(from) + plate.at(to)) / 2 * (to - from)
+                                       : gauss<T>([&](T tau) { return plate.at(tau); }, from, to);
     use(result.plate, along, segment, segment.mode.plate,
-        along.velocity() + T(-1) * along.line(plate), along.plate_force(),
+        along.velocity() + T(-1) * along.input(plate), along.plate_force(),
         whole && stops(segment.event.plate), from, to, distance - carried, times);
     const auto finger = [&](const auto& sliding, T slid) {
       use(result.finger, along, segment, segment.mode.finger, sliding, along.finger_force(),
@@ -108,7 +109,7 @@ class ContactMeasurement {
               T to, T times) const {
     if (segment.mode.plate != ContactState::slip_oblique) return;
     const Drive<T>& drive = motion_.drive();
-    const auto lines = InputLines<T>::of(drive, motion_.inputs(), segment);
+    const auto lines = InputCurves<T>::of(drive, motion_.inputs(), segment);
     const auto speed = [&](T tau) {
       const T u = along.at(along.velocity(), tau) - lines.plate_velocity.at(tau);
       return hypot(u, lines.across_velocity.at(tau));

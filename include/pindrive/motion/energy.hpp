@@ -111,16 +111,17 @@ Ledger<T> energy_ledger(const Motion<T>& motion, T duration, GoOn go_on = {}) {
       const auto over = [&](const auto& p, const auto& q) {
         return times * along.product_integral(p, q, from, to);
       };
-      const T inertia = drive.mass * segment.plate_velocity.rate;
+      const auto plate_velocity = along.input(segment.plate_velocity);
+      const auto inertia = drive.mass * along.derivative(plate_velocity);
       const T v_squared = over(along.velocity(), along.velocity());
-      const T plate_work = over(along.plate_force(), along.line(segment.plate_velocity));
+      const T plate_work = over(along.plate_force(), plate_velocity);
       ledger.damper_dissipated += drive.damping * v_squared;
       ledger.plate_work += plate_work;
-      ledger.inertia_work += over(along.line({inertia, T(0)}), along.velocity());
-      T largest = abs(inertia);
+      ledger.inertia_work += over(inertia, along.velocity());
+      T largest = std::max(abs(along.at(inertia, from)), abs(along.at(inertia, to)));
       if (pushed) {
-        const Line<T> push = pushes.from(segment.begin);
-        ledger.force_work += over(along.line(push), along.velocity());
+        const Curve<T> push = pushes.from(segment.begin);
+        ledger.force_work += over(along.input(push), along.velocity());
         largest += std::max(abs(push.at(from)), abs(push.at(to)));
       }
       ledger.stop_dissipated +=

@@ -38,7 +38,7 @@ T kinetic_friction(const Contact<T>& contact, T speed) {
 
 /// Error of the skin tension, N: its change, as that of the load, within the time resolution.
 template <class T>
-T skin_unsure(const Drive<T>& drive, const Line<T>& load, T time, const PinState<T>& s) {
+T skin_unsure(const Drive<T>& drive, const Curve<T>& load, T time, const PinState<T>& s) {
   return !drive.finger.rigid() && load.rate != 0 ? rounding<T> * time * abs(s.finger_rate) : T(0);
 }
 
@@ -54,7 +54,7 @@ class EvaluatedSegment {
   const Scales<T>& scales;
   const Segment<T>& segment;
   const Trajectory& along;
-  const Line<T> plate_velocity, load, finger_load, force, across;
+  const Curve<T> plate_velocity, load, finger_load, force, across;
   const T span;  ///< time to the end of the segment or of the evaluated range, s
   const Quantity x_rate, acceleration, finger_rate;
 
@@ -68,7 +68,8 @@ class EvaluatedSegment {
         load(inputs.plate_load.from(part.begin)),
         finger_load(inputs.finger_load.from(part.begin)),
         force(inputs.force.from(part.begin)),
-        across(InputLines<T>::across_from(inputs, part.begin, plate_velocity, held(of, part.mode))),
+        across(
+            InputCurves<T>::across_from(inputs, part.begin, plate_velocity, held(of, part.mode))),
         span(std::min(part.end, std::max(duration, part.begin)) - part.begin),
         x_rate(along.derivative(along.position())),
         acceleration(along.acceleration()),
@@ -91,7 +92,7 @@ class EvaluatedSegment {
     const Stops<T>& stops = drive.stops;
     if (!stops.rigid())
       return stops.stiffness * (stop_sign(mode().stop) * stops.travel - s.x) - stops.damping * s.v;
-    return drive.stiffness * s.x - drive.mass * plate_velocity.rate - s.plate_force -
+    return drive.stiffness * s.x - drive.mass * plate_velocity.rate_at(s.tau) - s.plate_force -
            s.finger_force - force.at(s.tau);
   }
 
@@ -142,7 +143,7 @@ class EvaluatedSegment {
     const T speed = hypot(u, w);
     const T pressed = std::max(load.at(s.tau), T(0));  // less by rounding where it ends
     const T strength = pressed * kinetic_friction(drive.plate, speed);
-    const T moves = scales.v + time * (abs(s.a) + abs(plate_velocity.rate));
+    const T moves = scales.v + time * (abs(s.a) + abs(plate_velocity.rate_at(s.tau)));
     if (!(speed > 0)) return T(0);
     const T turns = w / speed;
     return difference_error<T> * moves * strength * turns * turns / speed;

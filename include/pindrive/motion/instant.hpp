@@ -17,13 +17,13 @@ namespace pindrive {
 template <class T>
 class Instant {
  public:
-  Instant(const Drive<T>& drive, const Mode& mode, const InputLines<T>& inputs,
+  Instant(const Drive<T>& drive, const Mode& mode, const InputCurves<T>& inputs,
           const detail::State<T>& state) {
     const detail::SeriesMode<T> series(drive, mode, inputs);
     const detail::SeriesEquation<T> e = series.equation();
     const bool has_slider_state = series.has_slider_state(), at_stop = held_by_stop(drive, mode);
     position_ = at_stop ? stop_sign(mode.stop) * drive.stops.travel : drive.stops.within(state.x);
-    const Line<T> surface = at_stop ? Line<T>{} : e.surface;
+    const Line<T> surface = at_stop ? Line<T>{} : e.surface.line();
     velocity_ = e.held ? surface.value : state.v;
     const T skin = e.skin_factor.value * (has_slider_state ? state.slider_velocity : state.skin);
     T pull = e.force.value - e.damping * velocity_ - e.stiffness * position_ - skin;
@@ -97,8 +97,8 @@ class Instant {
 /// of sliding skin or, at rest, zero. `pin` is the state in plain numbers: a rigid stop may have
 /// taken the velocity.
 template <class T, class Plain>
-detail::State<T> released(const Drive<T>& drive, const Mode& mode, const InputLines<T>& inputs, T x,
-                          T v, T stretch, const detail::State<Plain>& pin) {
+detail::State<T> released(const Drive<T>& drive, const Mode& mode, const InputCurves<T>& inputs,
+                          T x, T v, T stretch, const detail::State<Plain>& pin) {
   using std::abs;
   using std::isnan;
   detail::State<T> state{x, v};

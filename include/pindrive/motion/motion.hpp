@@ -14,10 +14,10 @@ namespace pindrive {
 /// One-sided limit at an event.
 enum class Side : signed char { left, right };
 
-/// Calls visit with the trajectory of a segment whose inputs are linear from its begin on: a
+/// Calls visit with the trajectory of a segment with known inputs from its begin on: a
 /// `detail::ClosedForm`, else a `detail::BySeries`. Returns the result of visit.
 template <class T, class Visitor>
-auto visit_trajectory(const Drive<T>& drive, const Segment<T>& segment, const InputLines<T>& lines,
+auto visit_trajectory(const Drive<T>& drive, const Segment<T>& segment, const InputCurves<T>& lines,
                       Visitor&& visit) {
   if (!(segment.end > segment.begin) || segment.eliminated == EliminatedPart::motion ||
       detail::SeriesMode<T>(drive, segment.mode, lines).has_closed_form())
@@ -39,23 +39,23 @@ Friction<T> friction_along(const Trajectory& along, const Drive<T>& drive,
                            const Segment<T>& segment, Lines&& lines, T tau) {
   const Friction<T> found{along.at(along.plate_force(), tau), along.at(along.finger_force(), tau)};
   if (!segment.mode.both_stuck()) return found;
-  const InputLines<T> inputs = lines();
+  const InputCurves<T> inputs = lines();
   const T at_plate = drive.plate.static_limit * inputs.plate_load.at(tau);
   const T at_finger = drive.finger.static_limit * inputs.finger_load.at(tau);
   const T part = at_plate > 0 ? at_plate / (at_plate + at_finger) : T(0);
   return {part * found.plate, (1 - part) * found.plate};
 }
 
-/// Force of the end stops on the pin along a trajectory after τ, with a linear external force, N:
+/// Force of the end stops on the pin along a trajectory after τ, with an external force, N:
 /// of elastic stops by their law, of rigid stops the reaction.
 template <class Trajectory, class T>
 T stop_force_along(const Trajectory& along, const Drive<T>& drive, const Segment<T>& segment,
-                   const Line<T>& force, T tau) {
+                   const Curve<T>& force, T tau) {
   if (!in_contact(segment.mode.stop)) return T(0);
   const Stops<T>& stops = drive.stops;
   const T x = along.at(along.position(), tau);
   if (stops.rigid())
-    return drive.stiffness * x - drive.mass * segment.plate_velocity.rate - force.at(tau) -
+    return drive.stiffness * x - drive.mass * segment.plate_velocity.rate_at(tau) - force.at(tau) -
            along.at(along.plate_force(), tau) - along.at(along.finger_force(), tau);
   return stops.stiffness * (stop_sign(segment.mode.stop) * stops.travel - x) -
          stops.damping * along.at(along.velocity(), tau);
@@ -119,11 +119,11 @@ class Motion {
     const auto needs_series = [](const Contact<T>& contact, const Profile<T>& load) {
       return contact.branches > 0 && !(contact.linear() && load.constant());
     };
-    if (!needs_series(drive_.plate, inputs_.plate_load) &&
+    if (inputs_.straight() && !needs_series(drive_.plate, inputs_.plate_load) &&
         !needs_series(drive_.finger, inputs_.finger_load) && !drive_.finger.may_lag() &&
         segment.mode.plate != ContactState::slip_oblique)
       return visit(detail::ClosedForm<T>(segment));
-    return visit_trajectory(drive_, segment, InputLines<T>::of(drive_, inputs_, segment), visit);
+    return visit_trajectory(drive_, segment, InputCurves<T>::of(drive_, inputs_, segment), visit);
   }
 
   /// Position, velocity or acceleration, after τ in a segment.
@@ -147,7 +147,7 @@ class Motion {
   }
   template <class Trajectory>
   Friction<T> friction_of(const Trajectory& t, const Segment<T>& segment, T tau) const {
-    const auto lines = [&] { return InputLines<T>::of(drive_, inputs_, segment); };
+    const auto lines = [&] { return InputCurves<T>::of(drive_, inputs_, segment); };
     return friction_along(t, drive_, segment, lines, tau);
   }
   template <class Trajectory>

@@ -38,7 +38,7 @@ class ClosedForm {
   Path<T> acceleration() const { return segment_.flow.acceleration(); }
   const Path<T>& plate_force() const { return segment_.plate_force; }
   const Path<T>& finger_force() const { return segment_.finger_force; }
-  Path<T> line(const Line<T>& line) const { return line; }
+  Path<T> input(const Curve<T>& curve) const { return curve.line(); }
   Path<T> above(Path<T> path, T level) const {
     path.start -= level;
     return path;
@@ -89,7 +89,7 @@ template <class T>
 class BySeries {
  public:
   /// Expands the series anew from the begin of the segment; only the initial state is stored.
-  BySeries(const Drive<T>& drive, const Segment<T>& segment, const InputLines<T>& lines)
+  BySeries(const Drive<T>& drive, const Segment<T>& segment, const InputCurves<T>& lines)
       : step_(expand(drive, segment, lines)) {
     const bool at_stop = held_by_stop(drive, segment.mode);
     const bool held = segment.mode.stuck() && !at_stop;
@@ -112,11 +112,7 @@ class BySeries {
   const Polynomial<T>& sliding_speed() const {
     return step_.speed;
   }  ///< sliding speed on the plate, with its transverse part, m/s
-  Polynomial<T> line(const Line<T>& line) const {
-    Polynomial<T> p;
-    p.span = step_.span();
-    return p += line;
-  }
+  Polynomial<T> input(const Curve<T>& curve) const { return polynomial_of(curve, step_.span()); }
 
   Polynomial<T> above(Polynomial<T> p, T level) const {
     p.c[0] -= level;
@@ -156,7 +152,7 @@ class BySeries {
 
  private:
   static SeriesStep<T> expand(const Drive<T>& drive, const Segment<T>& segment,
-                              const InputLines<T>& lines) {
+                              const InputCurves<T>& lines) {
     const SeriesMode<T> mode(drive, segment.mode, lines);
     const Path<T>& v = segment.flow.velocity;
     const Path<T>& of_finger = segment.finger_force;
@@ -174,17 +170,14 @@ class BySeries {
     return SeriesFlow<T>(e, start, span, true);
   }
   /// Friction of a rigid finger, or of slipping skin.
-  Polynomial<T> of_finger(const Drive<T>& drive, const Mode& mode, const Line<T>& load) const {
+  Polynomial<T> of_finger(const Drive<T>& drive, const Mode& mode, const Curve<T>& given) const {
     const Branch<T> branch = drive.finger.branch(mode.finger_branch);
     const bool has_slider_state = SeriesMode<T>(drive, mode, {}).has_slider_state();
-    Polynomial<T> force = Line<T>{-branch.slope * load.value, -branch.slope * load.rate} *
-                          (has_slider_state ? step_.skin : step_.velocity);
-    const T at_rest = -along(mode.finger, branch.intercept());
-    force += Line<T>{at_rest * load.value, at_rest * load.rate};
-    if (!branch.linear())
-      force += Line<T>{-along(mode.finger, load.value), -along(mode.finger, load.rate)} *
-               step_.falling_finger.friction();
-    return force;
+    const Polynomial<T> load = input(given);
+    Polynomial<T> at_load_1 = branch.slope * (has_slider_state ? step_.skin : step_.velocity);
+    at_load_1.c[0] += along(mode.finger, branch.intercept());
+    if (!branch.linear()) at_load_1 += along(mode.finger, T(1)) * step_.falling_finger.friction();
+    return T(-1) * load * at_load_1;
   }
 
   SeriesStep<T> step_;

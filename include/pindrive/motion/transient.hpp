@@ -243,7 +243,7 @@ class Measurement {
       result.finger_afterwards.add(period.finger, outcome.period);
     } else if (outcome.end == End::resting) {
       // The plate continues to slide under the pin, at constant speed and friction.
-      const auto lines = InputLines<T>::of(drive, motion_.inputs(), last);
+      const auto lines = InputCurves<T>::of(drive, motion_.inputs(), last);
       using detail::hypot;
       const T speed = hypot(lines.plate_velocity.value, lines.across_velocity.value);
       const T friction = drive.plate.friction_at(speed) * lines.plate_load.value;

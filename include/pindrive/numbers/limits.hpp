@@ -143,6 +143,9 @@ inline constexpr T creep_error = 1024 * rounding<T>;
 /// Longest step of a series in units of its fastest time constant, even at rest: rounding of the
 /// start then remains rounding. Without it: series_test fails.
 inline constexpr double longest_step = 8;
+/// Longest step in units of the fastest time constant of the inputs: terms beyond order 24 are then
+/// below 2e-17 of theirs.
+inline constexpr double longest_input = 2;
 /// Factor between tried and used step of a series; the powers of the step must be finite. Without
 /// it: fuzz fails.
 inline constexpr double farthest_step = 1024;

@@ -39,13 +39,14 @@ class CreepFlow : public SeriesStep<T> {
     if (e.across.value < 0 || (e.across.value == 0 && e.across.rate < 0))
       e.across = {-e.across.value, -e.across.rate};  // symmetry: w >= 0
     acceleration_[0] = e.plate_velocity.rate;        // initial guess: acceleration of the plate
-    if (e.held || e.side != 0 || !(e.load.value * e.plate_force > 0) || !balance(e, start)) return;
-    Real farthest = plain(limit);
+    if (e.held || e.side != 0 || !e.load.straight() || !e.finger_load.straight()) return;
+    if (!(e.load.value * e.plate_force > 0) || !balance(e, start)) return;
+    Real farthest = std::min(plain(limit), e.input_reach());
     if (e.across.rate < 0)
       farthest = std::min(farthest, -plain(e.across.value) / plain(e.across.rate));
     const Real step = std::min(trial_step(e, start), farthest);
     if (!(step > 0)) return;
-    this->begin(step);
+    this->begin(e, step);
     Real before{0}, last{0};  // preceding iteration: initial creep velocity, change
     // Best iterate, for a known step whose iterations do not converge within rounding.
     SeriesStep<T> nearest;
@@ -156,9 +157,6 @@ class CreepFlow : public SeriesStep<T> {
   void expand(const SeriesEquation<T>& e, const SeriesState<T>& start, Real step, int order) {
     auto &x = position.c, &v = velocity.c, &y = skin.c;
     auto &t = inner(0).c, &s = inner(1).c, &d = inner(2).c;
-    const auto line = [&](const Line<T>& given, int n) {
-      return n == 0 ? given.value : n == 1 ? given.rate * step : T(0);
-    };
     const T w = e.across.value, w_rate = e.across.rate * step, load_rate = e.load.rate * step;
     const bool falls = e.plate_falling.present(), finger_falls = e.finger_falling.present();
     // Falling friction at the plate, along the axis, and at the finger, whose speed is given.
@@ -166,12 +164,6 @@ class CreepFlow : public SeriesStep<T> {
       speed.c[n] = w * s[n] + (n > 0 ? w_rate * s[n - 1] : T(0));
       falling_plate.extend(e.plate_falling, speed.c, T(1), n);
       return order_of_product(falling_plate.friction().c, d, n);
-    };
-    const auto at_finger = [&](int n) {
-      const T side = T(e.finger_side),
-              friction = falling_finger.extend(e.finger_falling, v, side, n);
-      const T preceding = n > 0 ? falling_finger.friction().c[n - 1] : T(0);
-      return side * (e.finger_load.value * friction + e.finger_load.rate * step * preceding);
     };
     x[0] = start.x;
     y[0] = start.skin;
@@ -188,8 +180,8 @@ class CreepFlow : public SeriesStep<T> {
       d[n] = n == 0 ? t_ / s[0] : -(product + s[n] * d[0]) / s[0];
       T u = w * t[n] + (n > 0 ? w_rate * t[n - 1] : T(0));
       T friction = e.plate_force * d[n] + e.plate_slope * u;
-      const T v_p = line(e.plate_velocity, n);
-      T others = e.stiffness * x[n] + e.skin_factor.value * y[n] - line(e.force, n) +
+      const T v_p = this->plate_velocity_[n];
+      T others = e.stiffness * x[n] + e.skin_factor.value * y[n] - this->given_force(e, n, step) +
                  e.mass * acceleration_[n];
       if (n > 0) others += step * (e.damping_rate * v[n - 1] + e.skin_factor.rate * y[n - 1]);
       if (n > 0 && n < N) {
@@ -202,7 +194,7 @@ class CreepFlow : public SeriesStep<T> {
         }
         if (finger_falls) {
           v[n] = v_p + u;
-          others += at_finger(n);
+          others += this->falling_at_finger(e, n);
           damping += e.finger_load.value * e.finger_falling.slope(T(e.finger_side) * v[0]);
         }
         const T missing = e.load.value * (friction + fallen) + load_rate * before +
@@ -215,7 +207,7 @@ class CreepFlow : public SeriesStep<T> {
       }
       if (falls) friction += at_plate(n);
       v[n] = v_p + u;
-      if (finger_falls) at_finger(n);
+      if (finger_falls) this->falling_at_finger(e, n);
       speed.c[n] = w * s[n] + (n > 0 ? w_rate * s[n - 1] : T(0));
       plate_force.c[n] = -(e.load.value * friction + load_rate * before);
       before = friction;
@@ -263,12 +255,13 @@ class CreepFlow : public SeriesStep<T> {
     const Sums t = sums_of(inner(0).c), s = sums_of(inner(1).c), d = sums_of(inner(2).c);
     const Sums v = sums_of(velocity.c);
     const Real root = beyond(s, s) + beyond(t, t), direction = beyond(s, d) + d[0] * root;
-    missed += max(abs(b), abs(b + b_change)) * last(velocity, N) +
-              abs(b_change) * last(velocity, N - 1) +
-              k * (last(position, N) + last(position, N + 1)) +
-              max(abs(f), abs(f + f_change)) * last(skin, N) + abs(f_change) * last(skin, N - 1) +
-              most_load * (abs(S) * v[N] + F * (d[N] + direction)) +
-              abs(load_change) * (abs(S) * v[N - 1] + F * (d[N - 1] - d[N]));
+    missed +=
+        max(abs(b), abs(b + b_change)) * last(velocity, N) + abs(b_change) * last(velocity, N - 1) +
+        k * (last(position, N) + last(position, N + 1)) +
+        max(abs(f), abs(f + f_change)) * last(skin, N) + abs(f_change) * last(skin, N - 1) +
+        this->missed_inputs(e) +
+        most_load * (abs(S) * (v[N] + this->plate_velocity_.missed()) + F * (d[N] + direction)) +
+        abs(load_change) * (abs(S) * v[N - 1] + F * (d[N - 1] - d[N]));
     Real falls{0};  // slopes of falling friction, N s/m
     if (e.plate_falling.present()) {
       const auto& phi = falling_plate.friction().c;

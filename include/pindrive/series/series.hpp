@@ -33,7 +33,8 @@ class SeriesFlow : public SeriesStep<T> {
              bool within_step = false) {
     const Real farthest = plain(limit);
     const Real rate = linear_rate(equation) + falling_rate(equation, start);
-    Real step = std::min(1 / (rate + turning_rate(equation, start)), farthest);
+    const Real reach = equation.input_reach();
+    Real step = std::min({1 / (rate + turning_rate(equation, start)), farthest, reach});
     expand(equation, start, step);
     if (within_step) {
       this->rescale(farthest / step);
@@ -43,7 +44,7 @@ class SeriesFlow : public SeriesStep<T> {
     }
     step = std::min({this->suggested_part(),
                      1 / ((rate / Real(longest_step) + rising_rate(equation)) * step),
-                     farthest / step, Real(farthest_step)});
+                     farthest / step, reach / step, Real(farthest_step)});
     for (int tries = 0; tries < most_reductions; ++tries) {
       this->rescale(step);
       const Real excess = bound(equation);
@@ -56,6 +57,8 @@ class SeriesFlow : public SeriesStep<T> {
 
  protected:
   using SeriesStep<T>::N;
+  using SeriesStep<T>::plate_velocity_, SeriesStep<T>::load_, SeriesStep<T>::finger_load_;
+  using SeriesStep<T>::surface_;
   using typename SeriesStep<T>::Sums;
 
  private:
@@ -130,8 +133,7 @@ class SeriesFlow : public SeriesStep<T> {
   };
   Turning bound_turning(const SeriesEquation<T>& e) {
     using std::max;
-    const Real h = span(), F = abs(plain(e.plate_force)), load = abs(plain(e.load.value));
-    const Real load_end = abs(plain(e.load.value) + plain(e.load.rate) * h);
+    const Real h = span(), F = abs(plain(e.plate_force));
     const Sums d = sums_of(this->inner_[0].c);
     Turning found;
     if (e.side == 0) {
@@ -143,25 +145,23 @@ class SeriesFlow : public SeriesStep<T> {
       const Real least = max({w_least, r[0] - 2 * r[1], p[0] - 2 * p[1]});
       // The error of r² is the rounding of its largest value.
       found.known = least > r[0] / 16;
-      found.root = (beyond(r, r) + beyond(p, p)) / least;
+      found.root = (beyond(r, r) + beyond(p, p)) / least + plate_velocity_.missed();
       found.direction = (beyond(r, d) + d[0] * found.root) / least;
     }
-    found.missed = F * (max(load, load_end) * (d[N] + found.direction) +
-                        abs(plain(e.load.rate)) * h * (d[N - 1] - d[N]));
+    if (e.side != 0) found.root = plate_velocity_.missed();
+    found.missed = F * (load_.beyond(d) + load_.most() * found.direction);
     if (e.plate_falling.present()) {
       const Sums r = sums_of(speed.c), phi = sums_of(falling_plate.friction().c);
       const Sums directed = sums_of(inner(2).c);
       found.falling = falling_plate.error(e.plate_falling, r, found.root);
       const Real cut = e.side == 0 ? beyond(phi, d) : Real(0);
-      found.missed += max(load, load_end) *
-                          (directed[N] + cut + d[0] * found.falling + phi[0] * found.direction) +
-                      abs(plain(e.load.rate)) * h * (directed[N - 1] - directed[N]);
+      found.missed += load_.beyond(directed) +
+                      load_.most() * (cut + d[0] * found.falling + phi[0] * found.direction);
     }
     if (e.finger_falling.present()) {
-      const Real pressed = plain(e.finger_load.value), change = abs(plain(e.finger_load.rate)) * h;
       const Sums phi = sums_of(falling_finger.friction().c);
       const Real error = falling_finger.error(e.finger_falling, sums_of(velocity.c), Real(0));
-      found.missed += (pressed + change) * (phi[N] + error) + change * (phi[N - 1] - phi[N]);
+      found.missed += finger_load_.beyond(phi) + finger_load_.most() * error;
     }
     return found;
   }
@@ -169,22 +169,19 @@ class SeriesFlow : public SeriesStep<T> {
   /// Evaluates the recurrences in the time σ = τ/step.
   void expand(const SeriesEquation<T>& e, const SeriesState<T>& start, Real step) {
     if (starts_to_slide(e, start)) return expand_from_rest(e, start, step);
-    this->begin(step);
+    this->begin(e, step);
     auto &x = position.c, &v = velocity.c, &y = skin.c, &r = speed.c;
     auto &d = inner(0).c, &u_ = inner(1).c;
     x[0] = start.x;
     v[0] = e.held ? e.surface.value : start.v;
     y[0] = start.skin;
-    const std::array<T, 2> force{e.force.value, e.force.rate * step};
-    const std::array<T, 2> v_p{e.plate_velocity.value, e.plate_velocity.rate * step};
     const std::array<T, 2> w{e.across.value, e.across.rate * step};
     const std::array<T, 3> w_squared{w[0] * w[0], 2 * w[0] * w[1], w[1] * w[1]};
-    const T load_rate = e.load.rate * step;
     const bool falls = e.plate_falling.present();
-    T before{0};  // F d + S u of the preceding order
+    std::array<T, N + 1> friction;  // F d + S u
     for (int n = 0;; ++n) {
       e.follow(y, v, n, T(step));
-      const T u = u_[n] = n < 2 ? v[n] - v_p[n] : v[n];
+      const T u = u_[n] = v[n] - plate_velocity_[n];
       if (e.side != 0) {
         r[n] = T(e.side) * u;
         d[n] = n == 0 ? T(e.side) : T(0);
@@ -196,19 +193,18 @@ class SeriesFlow : public SeriesStep<T> {
         for (int i = 1; i <= n; ++i) product -= r[i] * d[n - i];
         d[n] = product / r[0];
       }
-      T friction = e.plate_force * d[n] + e.plate_slope * u;
-      if (falls) friction += directed_falling(e, n, n);
-      plate_force.c[n] = -(e.load.value * friction + load_rate * before);
-      before = friction;
+      friction[n] = e.plate_force * d[n] + e.plate_slope * u;
+      if (falls) friction[n] += directed_falling(e, n, n);
+      plate_force.c[n] = -load_.times(friction, n);
       const T part = T(step) / T(n + 1);
       x[n + 1] = part * v[n];
-      T forces = plate_force.c[n] - e.damping * v[n] - e.stiffness * x[n] -
-                 e.skin_factor.value * y[n] + (n < 2 ? force[n] : T(0));
-      if (n > 0) forces -= step * (e.damping_rate * v[n - 1] + e.skin_factor.rate * y[n - 1]);
-      if (e.finger_falling.present()) forces -= falling_at_finger(e, n, step);
-      if (e.held) stick_force.c[n] = (n == 0 ? e.mass * e.surface.rate : T(0)) - forces;
+      T forces = plate_force.c[n] - this->damper_force(e, n, step) - e.stiffness * x[n] -
+                 e.skin_factor.value * y[n] + this->given_force(e, n, step);
+      if (n > 0) forces -= step * e.skin_factor.rate * y[n - 1];
+      if (e.finger_falling.present()) forces -= this->falling_at_finger(e, n);
+      if (e.held) stick_force.c[n] = e.mass * surface_.rate(n) - forces;
       if (n == N) return;
-      v[n + 1] = !e.held ? part * forces / e.mass : n == 0 ? e.surface.rate * step : T(0);
+      v[n + 1] = e.held ? surface_[n + 1] : part * forces / e.mass;
       if (n == 0 && !e.held && !isnan(start.acceleration)) v[1] = start.acceleration * step;
     }
   }
@@ -221,9 +217,7 @@ class SeriesFlow : public SeriesStep<T> {
   }
   Real steepest_fall_at_finger(const SeriesEquation<T>& e) const {
     if (!e.finger_falling.present()) return Real(0);
-    const Real pressed = plain(e.finger_load.value), change = plain(e.finger_load.rate) * span();
-    return std::max(pressed, pressed + change) *
-           falling_finger.steepest(e.finger_falling, sums_of(velocity.c));
+    return finger_load_.most() * falling_finger.steepest(e.finger_falling, sums_of(velocity.c));
   }
 
   /// Computes order n of φ and returns that of φ d, from the orders of d up to `known`.
@@ -234,41 +228,33 @@ class SeriesFlow : public SeriesStep<T> {
     for (int i = n - known; i <= n; ++i) sum += phi[i] * d[n - i];
     return inner(2).c[n] = sum;
   }
-  /// Order n of the falling friction of a rigid finger, in the direction of x', N.
-  T falling_at_finger(const SeriesEquation<T>& e, int n, Real step) {
-    const T side = T(e.finger_side),
-            friction = falling_finger.extend(e.finger_falling, velocity.c, side, n);
-    const T before = n > 0 ? falling_finger.friction().c[n - 1] : T(0);
-    return side * (e.finger_load.value * friction + e.finger_load.rate * step * before);
-  }
 
  private:
   /// Evaluates the recurrences where u and w begin at 0. The direction is that of u/σ and w/σ, so
   /// that order n needs the velocity of order n + 1, in which the equation is linear.
   void expand_from_rest(const SeriesEquation<T>& e, const SeriesState<T>& start, Real step) {
-    this->begin(step);
+    this->begin(e, step);
     begins_ = 1;
     auto &x = position.c, &v = velocity.c, &y = skin.c, &r = speed.c;
     auto &d = inner(0).c, &u = inner(1).c;
     x[0] = start.x;
     v[0] = e.plate_velocity.value;
     y[0] = start.skin;
-    const T w = e.across.rate * step, load_rate = e.load.rate * step;
+    const T w = e.across.rate * step;
     const bool falls = e.plate_falling.present();
     const T at_rest = falls ? e.plate_force + e.plate_falling.excess : e.plate_force;
     const T strength = e.load.value * at_rest;
-    T slope{0}, before{0};  // ∂d/∂(u/σ); F d + S u of the preceding order
+    T slope{0};                     // ∂d/∂(u/σ)
+    std::array<T, N + 1> friction;  // F d + S u
     for (int n = 0;; ++n) {
       const T part = T(step) / T(n + 1);
       x[n + 1] = part * v[n];
       e.follow(y, v, n, T(step));
       // All forces of this order except plate friction.
-      T others = -e.damping * v[n] - e.stiffness * x[n] - e.skin_factor.value * y[n] +
-                 (n == 0   ? e.force.value
-                  : n == 1 ? e.force.rate * step
-                           : T(0));
-      if (n > 0) others -= step * (e.damping_rate * v[n - 1] + e.skin_factor.rate * y[n - 1]);
-      if (e.finger_falling.present()) others -= falling_at_finger(e, n, step);
+      T others = this->given_force(e, n, step) - this->damper_force(e, n, step) -
+                 e.stiffness * x[n] - e.skin_factor.value * y[n];
+      if (n > 0) others -= step * e.skin_factor.rate * y[n - 1];
+      if (e.finger_falling.present()) others -= this->falling_at_finger(e, n);
       T product{0}, square{0};  // d and ρ of this order without u of the next
       for (int i = 1; i < n; ++i) {
         product -= r[i + 1] * d[n - i];
@@ -285,27 +271,31 @@ class SeriesFlow : public SeriesStep<T> {
         r[1] = sqrt(u[1] * u[1] + w * w);
         d[0] = u[1] / r[1];
         slope = w * w / (r[1] * r[1] * r[1]);
-        v[1] = u[1] + e.plate_velocity.rate * step;
+        v[1] = u[1] + plate_velocity_[1];
       } else {
         // d is linear in û: first with û = 0, then its contribution.
         r[n + 1] = square / (2 * r[1]);
         d[n] = (product - r[n + 1] * d[0]) / r[1];
-        const T friction = at_rest * d[n] + known;
-        const T forces = others - e.load.value * friction - load_rate * before;
-        if (!e.held && n < N) {
-          u[n + 1] = forces / (e.mass / part + strength * slope);
+        friction[n] = at_rest * d[n] + known;
+        const T forces = others - load_.times(friction, n);
+        if (e.held && n < N) {
+          v[n + 1] = surface_[n + 1];
+          u[n + 1] = v[n + 1] - plate_velocity_[n + 1];
           r[n + 1] += d[0] * u[n + 1];
           d[n] += slope * u[n + 1];
-          v[n + 1] = u[n + 1];
+        } else if (n < N) {
+          const T inertia = e.mass * plate_velocity_.rate(n);  // of a pin that moves with the plate
+          u[n + 1] = (forces - inertia) / (e.mass / part + strength * slope);
+          r[n + 1] += d[0] * u[n + 1];
+          d[n] += slope * u[n + 1];
+          v[n + 1] = u[n + 1] + plate_velocity_[n + 1];
         }
       }
       if (falls && n == 0) directed_falling(e, 0, 0);
-      const T friction = at_rest * d[n] + known;
+      friction[n] = at_rest * d[n] + known;
       if (falls && n > 0) inner(2).c[n] += e.plate_falling.excess * d[n];
-      plate_force.c[n] = -(e.load.value * friction + load_rate * before);
-      before = friction;
-      if (e.held)
-        stick_force.c[n] = (n == 0 ? e.mass * e.surface.rate : T(0)) - others - plate_force.c[n];
+      plate_force.c[n] = -load_.times(friction, n);
+      if (e.held) stick_force.c[n] = e.mass * surface_.rate(n) - others - plate_force.c[n];
       if (n == N) return;
     }
   }
@@ -321,25 +311,23 @@ class SeriesFlow : public SeriesStep<T> {
     const Real b_change = plain(e.damping_rate) * h, decay = plain(e.skin_decay);
     const Real f = plain(e.skin_factor.value), f_change = plain(e.skin_factor.rate) * h;
     const Real K = plain(e.skin_stiffness), most_f = max(abs(f), abs(f + f_change));
-    const Real S = plain(e.plate_slope);
-    const Real load = plain(e.load.value), load_change = plain(e.load.rate) * h;
-    const Real most_load = max(abs(load), abs(load + load_change));
+    const Real S = plain(e.plate_slope), most_load = load_.most();
     const auto last = [](const Polynomial<T>& p, int n) { return abs(plain(p.c[n])); };
     const Sums u = sums_of(inner(1).c);
     const Turning turning = bound_turning(e);
     if (!turning.known) return never;
     // Residual of the equation: terms from order N on.
-    const Real missed = e.held ? Real(0)
-                               : max(abs(b), abs(b + b_change)) * last(velocity, N) +
-                                     abs(b_change) * last(velocity, N - 1) +
-                                     k * (last(position, N) + last(position, N + 1)) +
-                                     most_f * last(skin, N) + abs(f_change) * last(skin, N - 1) +
-                                     most_load * abs(S) * (u[N]) +
-                                     abs(load_change) * abs(S) * (u[N - 1] - u[N]) + turning.missed;
+    const Real missed =
+        e.held ? Real(0)
+               : max(abs(b), abs(b + b_change)) * last(velocity, N) +
+                     abs(b_change) * last(velocity, N - 1) +
+                     k * (last(position, N) + last(position, N + 1)) + most_f * last(skin, N) +
+                     abs(f_change) * last(skin, N - 1) +
+                     abs(S) * (load_.beyond(u) + most_load * plate_velocity_.missed()) +
+                     turning.missed + this->missed_inputs(e);
     const Real missed_skin =
         K * last(velocity, N) + (abs(decay) + (N + 1) * abs(f_change) / h) * last(skin, N);
-    const Real falls = std::min(b, b + b_change) +
-                       std::min({Real(0), S * load, S * (load + load_change)}) -
+    const Real falls = std::min(b, b + b_change) + std::min(Real(0), S * most_load) -
                        most_load * steepest_fall(e) - steepest_fall_at_finger(e);
     const Real growth = exp(max({Real(0), -falls / m, f < 0 ? -decay / f : Real(0)}) * h);
     const Real error =

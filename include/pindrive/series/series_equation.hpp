@@ -7,6 +7,8 @@
 
 #include "pindrive/flow/polynomial.hpp"
 #include "pindrive/model/model.hpp"
+#include "pindrive/numbers/limits.hpp"
+#include "pindrive/series/series_inputs.hpp"
 
 namespace pindrive::detail {
 
@@ -25,8 +27,8 @@ struct SeriesState {
 ///
 ///     m x'' + b x' + k x = force + R − f y,   R = −λ (F d + S u),   u = x' − v_p,   (f y)' = K x' − D y − E,
 ///
-/// where F also has a part that falls with the sliding speed, d is the sign of u or, with a transverse velocity w, u / √(u² + w²); u and w are then
-/// never both 0, and b, λ and f are linear in time. y is the state of a compliant finger of
+/// where F also has a part that falls with the sliding speed, d is the sign of u or, with a transverse
+/// velocity w, u / √(u² + w²); u and w are then never both 0, and w and f are linear in time. y is the state of a compliant finger of
 /// stiffness K. In elastic stick, y is the tension (f = 1, D = E = 0). In slip under a load λ_f on
 /// a branch F_c + S_c |y|, y is the slider velocity (f = S_c λ_f, D = K, E = ±F_c λ_f'), and its
 /// constant part belongs to `force`. If f begins at 0, y begins at its only finite value. A pin
@@ -35,9 +37,10 @@ template <class T>
 struct SeriesEquation {
   T mass, damping, stiffness;           ///< the damping may be negative
   T damping_rate{0};                    ///< N s/m per s
-  Line<T> force{T(0), T(0)};            ///< inertial and given forces, N
-  Line<T> plate_velocity{T(0), T(0)};   ///< v_p, m/s
-  Line<T> load{T(1), T(0)};             ///< λ >= 0
+  Line<T> force{T(0), T(0)};            ///< tangent of the inertial and given forces, N
+  Curve<T> pushes{T(0), T(0)};          ///< external part of the force
+  Curve<T> plate_velocity{T(0), T(0)};  ///< v_p, m/s
+  Curve<T> load{T(1), T(0)};            ///< λ >= 0
   T plate_force{0};                     ///< F: friction of the branch extrapolated to zero speed, N
   T plate_slope{0};                     ///< S, N s/m
   FallingFriction<T> plate_falling{};   ///< part of F
@@ -48,21 +51,33 @@ struct SeriesEquation {
   T skin_drift{0};                      ///< E, N/s
   FallingFriction<T> finger_falling{};  ///< of a rigid finger, beside `force` and `damping`
   int finger_side{0};                   ///< sign of x' at that finger
-  Line<T> finger_load{T(1), T(0)};      ///< its load factor
+  Curve<T> finger_load{T(1), T(0)};     ///< its load factor
+  T finger_force{0}, finger_slope{0};   ///< friction at that finger in `force`, N, and in `damping`
   const T* stretching{nullptr};         ///< Taylor coefficients of (f y)' if known, N/s
   bool held{false};                     ///< true if a surface of this velocity holds the pin, m/s
-  Line<T> surface{T(0), T(0)};
+  Curve<T> surface{T(0), T(0)};
 
   /// Equation with time counted from τ on.
   SeriesEquation from(T tau) const {
     SeriesEquation later = *this;
     later.damping += damping_rate * tau;
     for (Line<T> SeriesEquation::* line :
-         {&SeriesEquation::force, &SeriesEquation::plate_velocity, &SeriesEquation::load,
-          &SeriesEquation::across, &SeriesEquation::skin_factor, &SeriesEquation::surface,
-          &SeriesEquation::finger_load})
+         {&SeriesEquation::force, &SeriesEquation::across, &SeriesEquation::skin_factor})
       (later.*line).value = (this->*line).at(tau);
+    for (Curve<T> SeriesEquation::* input :
+         {&SeriesEquation::pushes, &SeriesEquation::plate_velocity, &SeriesEquation::load,
+          &SeriesEquation::surface, &SeriesEquation::finger_load})
+      later.*input = (this->*input).from(tau);
     return later;
+  }
+
+  /// Time over which the terms of the inputs beyond the last order stay within rounding, s.
+  Real<T> input_reach() const {
+    Real<T> fastest{0};
+    for (const Curve<T>* input : {&pushes, &plate_velocity, &load, &finger_load, &surface})
+      if (!input->straight()) fastest = std::max(fastest, input->piece->fastest());
+    return fastest > 0 ? Real<T>(longest_input) / fastest
+                       : std::numeric_limits<Real<T>>::infinity();
   }
 
   /// Computes order n + 1 of y from the orders of y and x' up to n or, if f begins at 0, order n;

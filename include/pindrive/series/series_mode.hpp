@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "pindrive/law/contact_point.hpp"
-#include "pindrive/model/input_lines.hpp"
+#include "pindrive/model/input_curves.hpp"
 #include "pindrive/model/model.hpp"
 #include "pindrive/series/creep.hpp"
 
@@ -18,23 +18,27 @@ namespace pindrive::detail {
 template <class T>
 class SeriesMode {
  public:
-  SeriesMode(const Drive<T>& drive, const Mode& mode, const InputLines<T>& inputs)
+  SeriesMode(const Drive<T>& drive, const Mode& mode, const InputCurves<T>& inputs)
       : drive_(drive), mode_(mode), inputs_(inputs) {}
 
   /// True if flow.hpp has a mode in closed form, so that no series is needed.
   /// Under a held pin a plate of constant velocity slides across with a friction that only the load changes.
-  static bool closed_form(const Drive<T>& drive, const Mode& mode, const InputLines<T>& inputs) {
+  static bool closed_form(const Drive<T>& drive, const Mode& mode, const InputCurves<T>& inputs) {
     const auto bilinear = [](ContactState state, const Contact<T>& contact, int branch,
-                             const Line<T>& load) {
-      return is_slip(state) && load.rate != 0 && contact.branch(branch).slope != 0;
+                             const Curve<T>& load) {
+      return is_slip(state) && !load.steady() && contact.branch(branch).slope != 0;
     };
-    const auto curved = [](ContactState state, const Contact<T>& contact, const Line<T>& load,
+    const auto curved = [](ContactState state, const Contact<T>& contact, const Curve<T>& load,
                            bool still) {
-      return is_slip(state) && !contact.linear() && !(still && load.rate == 0);
+      return is_slip(state) && !contact.linear() && !(still && load.steady());
     };
+    const bool functions = !inputs.plate_velocity.straight() || !inputs.force.straight() ||
+                           (mode.plate != ContactState::absent && !inputs.plate_load.straight()) ||
+                           (mode.finger != ContactState::absent && !inputs.finger_load.straight());
+    if (functions) return false;
     const bool across = is_slip(mode.plate) && inputs.oblique();
-    const bool still = held(drive, mode) && inputs.plate_velocity.rate == 0;
-    const bool steady = across && still && inputs.across_velocity.rate == 0;
+    const bool still = held(drive, mode) && inputs.plate_velocity.steady();
+    const bool steady = across && still && inputs.across_velocity.steady();
     if (curved(mode.plate, drive.plate, inputs.plate_load, across ? steady : still) ||
         curved(mode.finger, drive.finger, inputs.finger_load, still))
       return false;
@@ -51,8 +55,10 @@ class SeriesMode {
   /// branch, the slider velocity.
   SeriesEquation<T> equation() const {
     SeriesEquation<T> e{drive_.mass, drive_.damping, drive_.stiffness};
-    e.force = inputs_.force;
+    e.force = inputs_.force.line();
     e.force.value += drive_.mass * inputs_.plate_velocity.rate;
+    e.force.rate += drive_.mass * inputs_.plate_velocity.second();
+    e.pushes = inputs_.force;
     e.plate_velocity = inputs_.plate_velocity;
     e.load = inputs_.plate_load;
     if (is_slip(mode_.plate)) {
@@ -63,14 +69,16 @@ class SeriesMode {
     e.side = sign(mode_.plate) < 0 ? -1 : 1;
     if (is_slip(mode_.plate) && inputs_.oblique()) {
       e.side = 0;
-      e.across = inputs_.across_velocity;
+      e.across = inputs_.across_velocity.line();
     }
     if (is_slip(mode_.finger)) {
       const T friction = along(mode_.finger, finger().intercept());
       e.force.value -= friction * inputs_.finger_load.value;
       e.force.rate -= friction * inputs_.finger_load.rate;
+      e.finger_force = friction;
+      e.finger_load = inputs_.finger_load;
     }
-    const Line<T>& load = inputs_.finger_load;
+    const Curve<T>& load = inputs_.finger_load;
     if (has_slider_state()) {
       e.skin_factor = {finger().slope * load.value, finger().slope * load.rate};
       e.skin_stiffness = e.skin_decay = drive_.finger.stiffness;
@@ -81,9 +89,9 @@ class SeriesMode {
     } else if (is_slip(mode_.finger)) {
       e.damping += finger().slope * load.value;
       e.damping_rate = finger().slope * load.rate;
+      e.finger_slope = finger().slope;
       e.finger_falling = finger().falling;
       e.finger_side = sign(mode_.finger);
-      e.finger_load = load;
     }
     e.held = held(drive_, mode_);
     if (in_contact(mode_.stop) && !drive_.stops.rigid()) {
@@ -162,14 +170,12 @@ class SeriesMode {
       const int end = stop_sign(mode_.stop);
       found.add(T(-end) * step.stick_force, at.push, ActiveGuard::push, false, end);
     } else if (mode_.stuck()) {
-      Line<T> most{T(0), T(0)};
+      Polynomial<T> most;
+      most.span = step.span();
       if (mode_.plate == ContactState::stick)
-        most = {drive_.plate.static_limit * inputs_.plate_load.value,
-                drive_.plate.static_limit * inputs_.plate_load.rate};
-      if (mode_.finger == ContactState::stick) {
-        most.value += drive_.finger.static_limit * inputs_.finger_load.value;
-        most.rate += drive_.finger.static_limit * inputs_.finger_load.rate;
-      }
+        most += drive_.plate.static_limit * polynomial_of(inputs_.plate_load, step.span());
+      if (mode_.finger == ContactState::stick)
+        most += drive_.finger.static_limit * polynomial_of(inputs_.finger_load, step.span());
       within(found, step.stick_force, most, at.limit, mode_.plate == ContactState::stick);
     }
     if (is_slip(mode_.plate))
@@ -184,9 +190,8 @@ class SeriesMode {
     if (mode_.finger == ContactState::elastic_stick) {
       const int limit = at.finger == ActiveGuard::none ? 0 : begins_with(step.skin);
       within(found, step.skin,
-             {drive_.finger.static_limit * inputs_.finger_load.value,
-              drive_.finger.static_limit * inputs_.finger_load.rate},
-             limit, false);
+             drive_.finger.static_limit * polynomial_of(inputs_.finger_load, step.span()), limit,
+             false);
     }
     if (drive_.stops.present() && !held_by_stop(drive_, mode_)) stops(found, step, at);
     return found;
@@ -247,7 +252,7 @@ class SeriesMode {
                          stops.damping * end * step.velocity.c[0]);
     found.add(push, at.push, ActiveGuard::push, false, end);
   }
-  void within(Guards& found, const Polynomial<T>& force, Line<T> most, int at_limit,
+  void within(Guards& found, const Polynomial<T>& force, const Polynomial<T>& most, int at_limit,
               bool is_plate) const {
     for (const int side : {1, -1}) {
       Polynomial<T> left = T(-side) * force;
@@ -258,7 +263,7 @@ class SeriesMode {
 
   const Drive<T>& drive_;
   Mode mode_;
-  InputLines<T> inputs_;
+  InputCurves<T> inputs_;
 };
 
 }  // namespace pindrive::detail

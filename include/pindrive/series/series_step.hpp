@@ -12,6 +12,7 @@
 #include "pindrive/numbers/limits.hpp"
 #include "pindrive/series/falling_series.hpp"
 #include "pindrive/series/series_equation.hpp"
+#include "pindrive/series/series_inputs.hpp"
 
 namespace pindrive::detail {
 
@@ -38,8 +39,13 @@ class SeriesStep {
  protected:
   static constexpr int N = series_order;
 
-  /// Sets all polynomials to order N over a length of time.
-  void begin(Real step) {
+  /// Sets all polynomials to order N over a length of time, and expands the inputs.
+  void begin(const SeriesEquation<T>& e, Real step) {
+    pushes_ = {e.pushes, step};
+    plate_velocity_ = {e.plate_velocity, step};
+    load_ = {e.load, step};
+    finger_load_ = {e.finger_load, step};
+    surface_ = {e.surface, step};
     each([&](Polynomial<T>& p) {
       p.span = step;
       p.degree = N;
@@ -66,6 +72,39 @@ class SeriesStep {
     each([&](Polynomial<T>& p) { p.rescale(part); });
     falling_plate.rescale(part);
     falling_finger.rescale(part);
+    for (InputSeries<T>* input : {&pushes_, &plate_velocity_, &load_, &finger_load_, &surface_})
+      input->rescale(part);
+  }
+
+  /// Order n of the inertial and given forces, N.
+  T given_force(const SeriesEquation<T>& e, int n, Real step) const {
+    if (n == 0) return e.force.value;
+    if (n == 1) return e.force.rate * step;
+    return pushes_[n] + e.mass * plate_velocity_.rate(n) - e.finger_force * finger_load_[n];
+  }
+  /// Order n of the forces of the damper and of the slope of friction at a rigid finger, N.
+  T damper_force(const SeriesEquation<T>& e, int n, Real step) const {
+    T force = e.damping * velocity.c[n];
+    if (e.damping_rate != 0 && n > 0) force += step * e.damping_rate * velocity.c[n - 1];
+    if (!e.finger_load.straight())
+      for (int i = 2; i <= n; ++i) force += e.finger_slope * finger_load_[i] * velocity.c[n - i];
+    return force;
+  }
+  /// Order n of the falling friction of a rigid finger, in the direction of x', N.
+  T falling_at_finger(const SeriesEquation<T>& e, int n) {
+    const T side = T(e.finger_side);
+    falling_finger.extend(e.finger_falling, velocity.c, side, n);
+    return side * finger_load_.times(falling_finger.friction().c, n);
+  }
+  /// Bound of the residual from the terms of the inputs beyond the last order, N.
+  Real missed_inputs(const SeriesEquation<T>& e) const {
+    Real missed = pushes_.missed() + plain(e.mass) * plate_velocity_.missed_rate();
+    missed += std::abs(plain(e.finger_force)) * finger_load_.missed();
+    if (!e.finger_load.straight()) {
+      const Sums v = sums_of(velocity.c);
+      missed += std::abs(plain(e.finger_slope)) * finger_load_.beyond(v);
+    }
+    return missed;
   }
 
   using Sums = detail::Sums<Real>;
@@ -107,6 +146,7 @@ class SeriesStep {
   }
 
   std::array<Polynomial<T>, 3> inner_;  // auxiliary series of the recurrences
+  InputSeries<T> pushes_, plate_velocity_, load_, finger_load_, surface_;
 
  private:
   template <class Visitor>

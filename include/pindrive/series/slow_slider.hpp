@@ -44,14 +44,17 @@ class SlowSliderFlow : public SeriesFlow<T> {
   SlowSliderFlow(SeriesEquation<T> e, const SeriesState<T>& start, T limit,
                  bool within_step = false) {
     this->eliminated = EliminatedPart::of_slider;
-    const Real step = 1 / slow_rate(e, start), left = plain(limit) / step;
+    const Real step = std::min(1 / slow_rate(e, start), e.input_reach());
+    const Real left = plain(limit) / step;
     e.stretching = stretching_.data();
     Real part{1}, last{0};
     bool converged = false;
     for (int round = 0;; ++round) {
       this->expand(e, start, step);
       follow(e, step);
-      part = within_step ? left : std::min({this->suggested_part(), left, Real(longest_step)});
+      part = within_step ? left
+                         : std::min({this->suggested_part(), left, Real(longest_step),
+                                     e.input_reach() / step});
       // Dual derivatives converge one iteration later.
       if (converged) break;
       const Real changed = change(part);
@@ -74,7 +77,7 @@ class SlowSliderFlow : public SeriesFlow<T> {
   bool is_valid() const { return holds_; }
 
  private:
-  using SeriesStep<T>::N;
+  using SeriesStep<T>::N, SeriesStep<T>::load_;
   using typename SeriesStep<T>::Sums;
 
   /// Estimate of the fastest rate of the slow motion, 1/s; the skin acts as a damper φ.
@@ -112,22 +115,20 @@ class SlowSliderFlow : public SeriesFlow<T> {
     const Real h = span(), m = plain(e.mass), k = plain(e.stiffness), b = plain(e.damping);
     const Real b_change = plain(e.damping_rate) * h, f = plain(e.skin_factor.value);
     const Real f_change = plain(e.skin_factor.rate) * h, most_f = max(f, f + f_change);
-    const Real S = plain(e.plate_slope), load = plain(e.load.value);
-    const Real load_change = plain(e.load.rate) * h, K = plain(e.skin_stiffness);
+    const Real S = plain(e.plate_slope), most_load = load_.most();
+    const Real load_change = load_.change(), K = plain(e.skin_stiffness);
     const auto last = [](const Polynomial<T>& p, int n) { return abs(plain(p.c[n])); };
     const auto turning = this->bound_turning(e);
     if (!turning.known || (e.held && turning.direction > direction_error<Real>)) return false;
     const Real missed =
-        e.held
-            ? Real(0)
-            : (max(abs(b), abs(b + b_change)) + max(abs(load), abs(load + load_change)) * abs(S)) *
-                      last(velocity, N) +
-                  (abs(b_change) + abs(load_change * S)) * last(velocity, N - 1) +
-                  k * (last(position, N) + last(position, N + 1)) + most_f * last(skin, N) +
-                  abs(f_change) * last(skin, N - 1) + turning.missed;
+        e.held ? Real(0)
+               : (max(abs(b), abs(b + b_change)) + most_load * abs(S)) * last(velocity, N) +
+                     (abs(b_change) + abs(load_change * S)) * last(velocity, N - 1) +
+                     k * (last(position, N) + last(position, N + 1)) + most_f * last(skin, N) +
+                     abs(f_change) * last(skin, N - 1) + turning.missed + this->missed_inputs(e);
     const Real stays = plain(e.skin_decay) + plain(e.skin_factor.rate);
-    const Real falls = min(b, b + b_change) + min({Real(0), S * load, S * (load + load_change)}) -
-                       max(load, load + load_change) * this->steepest_fall(e);
+    const Real falls =
+        min(b, b + b_change) + min(Real(0), S * most_load) - most_load * this->steepest_fall(e);
     const Real grown = h / m * (k * h + most_f * K / stays + max(Real(0), -falls));
     // May end with its load, within the time resolution.
     const Real ends =

@@ -1,5 +1,5 @@
 // The inputs as lines: at a later time, of a segment, and a transverse velocity that is within rounding of zero.
-#include "pindrive/model/input_lines.hpp"
+#include "pindrive/model/input_curves.hpp"
 
 #include "check.hpp"
 
@@ -15,7 +15,7 @@ void rounded() {
   pd::Inputs<double> inputs{0.1, 0, 0};
   inputs.across_velocity = falls;
   const auto lines = [&](double time, const Line& along) {
-    return pd::InputLines<double>::across_from(inputs, time, along, true);
+    return pd::InputCurves<double>::across_from(inputs, time, along, true);
   };
   const auto zero = lines(0.1 * (1 + 1e-16), {0.1, 0}), not_zero = lines(0.09, {0.1, 0});
   expect(zero.value == 0 && zero.rate == -1e-2 && near(not_zero.value, 1e-4, 1e-15),
@@ -32,15 +32,15 @@ void rounded() {
 }
 
 void later() {
-  const pd::InputLines<double> lines{{1, 2}, {3, 4}, {5, 6}, {7, 8}, {9, 10}};
+  const pd::InputCurves<double> lines{{1, 2}, {3, 4}, {5, 6}, {7, 8}, {9, 10}};
   const auto then = lines.from(0.5);
   expect(then.plate_velocity.value == 2 && then.plate_load.value == 5 &&
              then.across_velocity.value == 8 && then.force.value == 11 &&
              then.finger_load.value == 14 && then.force.rate == 8,
          "each line goes on at its rate");
-  expect(lines.oblique() && !pd::InputLines<double>{}.oblique(),
+  expect(lines.oblique() && !pd::InputCurves<double>{}.oblique(),
          "a loaded plate with a transverse velocity slides obliquely");
-  const pd::InputLines<double> unloaded{{1, 0}, {0, 0}, {5, 6}};
+  const pd::InputCurves<double> unloaded{{1, 0}, {0, 0}, {5, 6}};
   expect(!unloaded.oblique(), "an unloaded plate does not");
 }
 

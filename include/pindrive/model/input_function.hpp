@@ -1,0 +1,166 @@
+/// Inputs as piecewise functions of time (MODEL, section 11).
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "pindrive/flow/flow.hpp"
+#include "pindrive/numbers/functions.hpp"
+
+namespace pindrive {
+
+/// Term of an input: (cosine·cos Ωτ + sine·sin Ωτ) e^(−δτ).
+template <class T>
+struct InputTerm {
+  T cosine{0}, sine{0};
+  T decay{0};      ///< δ, 1/s; >= 0
+  T frequency{0};  ///< Ω, rad/s; >= 0
+};
+
+/// Piece of an input from a time on: p₀ + p₁ τ + … + p₅ τ⁵ and terms. Owns no memory.
+template <class T>
+struct InputPiece {
+  using Real = detail::Real<T>;
+  static constexpr int degree = 5;  ///< of the polynomial, at most
+
+  T begin{0};  ///< s
+  std::array<T, degree + 1> polynomial{};
+  const InputTerm<T>* terms{nullptr};
+  std::size_t count{0};
+
+  /// True if the piece is a line.
+  bool straight() const {
+    return count == 0 &&
+           std::all_of(polynomial.begin() + 2, polynomial.end(), [](const T& p) { return p == 0; });
+  }
+  T at(T tau) const {
+    std::array<T, 1> c;
+    expand(tau, T(1), c, 0);
+    return c[0];
+  }
+
+  /// Computes the Taylor coefficients at τ up to an order, in the time σ = (t − τ)/step.
+  template <std::size_t size>
+  void expand(T tau, T step, std::array<T, size>& c, int order) const {
+    using detail::cos, detail::exp, detail::sin;
+    std::array<T, degree + 1> p = polynomial;  // shifted to τ by repeated synthetic division
+    for (int k = 0; k < degree; ++k)
+      for (int i = degree - 1; i >= k; --i) p[i] += tau * p[i + 1];
+    T power{1};
+    for (int n = 0; n <= order; ++n, power *= step) c[n] = n <= degree ? p[n] * power : T(0);
+    for (std::size_t j = 0; j < count; ++j) {
+      const InputTerm<T>& term = terms[j];
+      const T phase = term.frequency * tau, part = exp(-term.decay * tau);
+      const T cosine = cos(phase) * part, sine = sin(phase) * part;
+      // Real part of (cosine − i·sine) e^((iΩ − δ)τ), whose n-th coefficient follows from the last.
+      T real = term.cosine * cosine + term.sine * sine;
+      T imaginary = term.cosine * sine - term.sine * cosine;
+      for (int n = 0; n <= order; ++n) {
+        c[n] += real;
+        const T next = step / T(n + 1);
+        const T turned = -(term.decay * real + term.frequency * imaginary) * next;
+        imaginary = (term.frequency * real - term.decay * imaginary) * next;
+        real = turned;
+      }
+    }
+  }
+
+  /// Largest rate of the terms, 1/s.
+  Real fastest() const {
+    Real rate{0};
+    for (std::size_t j = 0; j < count; ++j) rate = std::max(rate, rate_of(terms[j]));
+    return rate;
+  }
+  /// Smallest rate of the terms, 1/s; 0 without any.
+  Real slowest() const {
+    Real rate{0};
+    for (std::size_t j = 0; j < count; ++j)
+      for (const Real each : {Real(plain(terms[j].decay)), Real(plain(terms[j].frequency))})
+        if (each > 0) rate = rate > 0 ? std::min(rate, each) : each;
+    return rate;
+  }
+  /// Bound of the Taylor terms beyond an order >= `degree` at τ, over a step.
+  Real beyond(T tau, Real step, int order) const {
+    using std::abs, std::exp;
+    Real sum{0};
+    for (std::size_t j = 0; j < count; ++j) {
+      const InputTerm<T>& term = terms[j];
+      const Real s = rate_of(term) * step;
+      Real size = (abs(plain(term.cosine)) + abs(plain(term.sine))) *
+                  exp(s - plain(term.decay) * plain(tau));
+      for (int n = 1; n <= order + 1; ++n) size *= s / n;
+      sum += size;
+    }
+    return sum;
+  }
+
+ private:
+  static Real rate_of(const InputTerm<T>& term) {
+    return std::hypot(plain(term.decay), plain(term.frequency));
+  }
+};
+
+/// Input from an instant on, until the next breakpoint: a line, or a part of a piece.
+template <class T>
+struct Curve {
+  T value{0}, rate{0};
+  const InputPiece<T>* piece{nullptr};  ///< null for a line
+  T since{0};                           ///< time since the begin of the piece, s
+  T factor{1};                          ///< of the piece
+
+  Curve() = default;
+  constexpr Curve(T at, T change) noexcept : value(at), rate(change) {}
+  constexpr Curve(const Line<T>& line) noexcept  // NOLINT: a line is a curve
+      : value(line.value), rate(line.rate) {}
+  /// Part of a piece after a time from its begin.
+  Curve(const InputPiece<T>& of, T after) : since(after) {
+    std::array<T, 2> c;
+    of.expand(after, T(1), c, 1);
+    value = c[0];
+    rate = c[1];
+    if (!of.straight()) piece = &of;
+  }
+
+  bool straight() const { return piece == nullptr; }
+  /// True if the value does not change.
+  bool steady() const { return straight() && rate == 0; }
+  /// True if the value is and remains zero.
+  bool is_zero() const { return steady() && value == 0; }
+  /// Tangent at the instant.
+  Line<T> line() const { return {value, rate}; }
+  T at(T tau) const {
+    if (straight()) return value + rate * tau;
+    return value + factor * (piece->at(since + tau) - piece->at(since));
+  }
+  T rate_at(T tau) const { return straight() ? rate : factor * derivatives(tau)[1]; }
+  /// Second and third derivative at the instant.
+  T second() const { return straight() ? T(0) : factor * derivatives(T(0))[2]; }
+  T third() const { return straight() ? T(0) : factor * derivatives(T(0))[3]; }
+  friend Curve operator*(T times, Curve curve) {
+    curve.value *= times;
+    curve.rate *= times;
+    curve.factor *= times;
+    return curve;
+  }
+  /// The same input from τ on.
+  Curve from(T tau) const {
+    Curve later = *this;
+    later.value = at(tau);
+    later.rate = rate_at(tau);
+    later.since += tau;
+    return later;
+  }
+
+ private:
+  std::array<T, 4> derivatives(T tau) const {
+    std::array<T, 4> c;
+    piece->expand(since + tau, T(1), c, 3);
+    c[2] *= T(2);
+    c[3] *= T(6);
+    return c;
+  }
+};
+
+}  // namespace pindrive

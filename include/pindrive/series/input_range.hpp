@@ -1,0 +1,85 @@
+/// Lowest value and jumps of an input, for its checks.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "pindrive/flow/polynomial.hpp"
+#include "pindrive/model/model.hpp"
+#include "pindrive/numbers/limits.hpp"
+#include "pindrive/series/series_inputs.hpp"
+
+namespace pindrive {
+
+/// Input at a time, s.
+struct InputPoint {
+  double time, value;
+};
+
+/// Jump of an input at a time, s.
+struct InputJump {
+  double time, before, after;
+};
+
+/// Lowest value of a function in [0, until], or in the first 64 of its slowest time constants; within
+/// rounding of its largest value.
+///
+/// Bernstein coefficients of its series enclose the values between two steps.
+inline InputPoint lowest_value(const Profile<double>& input, double until) {
+  constexpr double never = std::numeric_limits<double>::infinity();
+  constexpr int most_steps = 1'000'000;
+  InputPoint lowest{0, input.from(0).value};
+  double time = 0;
+  for (int steps = 0; time < until && steps < most_steps; ++steps) {
+    const Curve<double> curve = input.from(time);
+    const double breakpoint = std::min(input.next_breakpoint(time), until);
+    double end = breakpoint;
+    if (!curve.straight()) {
+      const double fastest = curve.piece->fastest(), slowest = curve.piece->slowest();
+      if (fastest > 0) end = std::min(end, time + detail::longest_input / fastest);
+      if (!(end < never)) end = time + 1;  // a polynomial alone
+      if (!(breakpoint < never) && slowest > 0)
+        until = std::min(until, curve.piece->begin + 64 / slowest);
+    }
+    if (!(end < never)) {
+      if (curve.rate < 0) lowest = {never, -never};
+      break;
+    }
+    const double span = end - time;
+    auto polynomial = detail::polynomial_of(curve, span);
+    const double size = detail::largest_size(polynomial);
+    for (const double tau : {0.0, span}) {
+      const double value = polynomial.at(tau);
+      if (value < lowest.value) lowest = {time + tau, value};
+    }
+    // Lower values within the step, each found where the distance above the last one is negative.
+    polynomial.c[0] -= lowest.value;
+    const double known = 4 * detail::rounding<double> * size;
+    for (;;) {
+      const double least = detail::lowest(polynomial, known);
+      if (!(least < -known)) break;
+      lowest = {time + detail::first_zero(polynomial), lowest.value + least};
+      polynomial.c[0] -= least;
+    }
+    time = end;
+  }
+  return lowest;
+}
+
+/// First jump of a function, beyond rounding; none if `time` is infinite.
+inline InputJump first_jump(const Profile<double>& input) {
+  constexpr double never = std::numeric_limits<double>::infinity();
+  double time = -never;
+  for (;;) {
+    const double next = input.next_breakpoint(time);
+    if (!(next < never)) return {never, 0, 0};
+    const double before = time > -never ? input.from(time).at(next - time) : input.first();
+    const double after = input.from(next).value;
+    const double known = 64 * detail::rounding<double> * (std::abs(before) + std::abs(after));
+    if (std::abs(after - before) > known) return {next, before, after};
+    time = next;
+  }
+}
+
+}  // namespace pindrive

@@ -1,0 +1,106 @@
+/// Inputs of a mode as Taylor coefficients along a step of its series.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "pindrive/flow/polynomial.hpp"
+#include "pindrive/model/input_function.hpp"
+
+namespace pindrive::detail {
+
+/// Coefficients of an input in the time σ = τ/step: two for a line, else all up to the order of a
+/// series.
+template <class T>
+class InputSeries {
+ public:
+  using Real = detail::Real<T>;
+  static constexpr int N = series_order;
+
+  InputSeries() = default;
+  InputSeries(const Curve<T>& curve, Real step) : curve_(curve), step_(step) {
+    if (!curve.straight()) {
+      degree_ = N + 1;
+      curve.piece->expand(curve.since, T(step), c_, N + 1);
+      for (T& c : c_) c *= curve.factor;
+    }
+    c_[0] = curve.value;
+    c_[1] = curve.rate * step;
+  }
+
+  T operator[](int n) const { return n <= degree_ ? c_[n] : T(0); }
+  void add(int n, T value) { c_[n] += value; }
+  int degree() const { return degree_; }
+  const Curve<T>& curve() const { return curve_; }
+  void rescale(Real part) {
+    step_ *= part;
+    Real factor{1};
+    for (int n = 0; n <= degree_; ++n, factor *= part) c_[n] *= factor;
+  }
+
+  /// Order n of the derivative by time, per second.
+  T rate(int n) const {
+    if (n == 0) return curve_.rate;
+    return n + 1 <= degree_ ? T(n + 1) * c_[n + 1] / step_ : T(0);
+  }
+  /// Order n of the product with a series.
+  template <class Coefficients>
+  T times(const Coefficients& c, int n) const {
+    T sum = c_[0] * c[n];
+    for (int i = 1, last = std::min(n, degree_); i <= last; ++i) sum += c_[i] * c[n - i];
+    return sum;
+  }
+  /// Bound of the absolute value over the step.
+  Real most() const {
+    using std::abs;
+    const Real a = plain(c_[0]), b = plain(c_[1]);
+    return degree_ == 1 ? std::max(abs(a), abs(a + b)) : abs(a) + change();
+  }
+  /// Bound of the change over the step.
+  Real change() const {
+    using std::abs;
+    Real sum{0};
+    for (int n = 1; n <= degree_; ++n) sum += abs(plain(c_[n]));
+    return sum;
+  }
+  /// Bound of the smallest value over the step.
+  Real least() const {
+    const Real a = plain(c_[0]);
+    return degree_ == 1 ? std::min(a, a + plain(c_[1])) : a - change();
+  }
+  /// Bound of the terms from the last order on of the product with a series of known tail sums.
+  Real beyond(const Sums<Real>& sums) const {
+    using std::abs;
+    Real sum = most() * sums[N] + abs(plain(c_[1])) * (sums[N - 1] - sums[N]);
+    for (int n = 2; n <= std::min(degree_, N); ++n) sum += abs(plain(c_[n])) * sums[N - n];
+    return sum + missed() * sums[0];
+  }
+  /// Bound of the terms of the input beyond the last order, and of those of its derivative (1/s).
+  Real missed() const {
+    if (curve_.straight()) return Real(0);
+    return std::abs(plain(curve_.factor)) * curve_.piece->beyond(curve_.since, step_, N);
+  }
+  Real missed_rate() const {
+    return curve_.straight() ? Real(0) : curve_.piece->fastest() * missed();
+  }
+
+ private:
+  Curve<T> curve_{};
+  Real step_{1};
+  int degree_{1};
+  std::array<T, N + 2> c_;
+};
+
+/// Polynomial of an input over a step.
+template <class T>
+Polynomial<T> polynomial_of(const Curve<T>& curve, Real<T> span) {
+  const InputSeries<T> series(curve, span);
+  Polynomial<T> p;
+  p.span = span;
+  p.degree = std::min(series.degree(), series_order);
+  for (int n = 0; n <= p.degree; ++n) p.c[n] = series[n];
+  return p;
+}
+
+}  // namespace pindrive::detail
