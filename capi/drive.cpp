@@ -12,6 +12,7 @@
 #include "owned_motion.hpp"
 #include "pindrive.h"
 #include "pindrive/device/inputs.hpp"
+#include "pindrive/model/input_period.hpp"
 #include "pindrive/series/input_range.hpp"
 #include "wording.hpp"
 
@@ -197,8 +198,9 @@ pindrive_error check_pieces(const char* name, const std::vector<pd::PieceNumbers
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const pd::PieceNumbers& piece = pieces[i];
     if (!std::isfinite(piece.begin) || (i > 0 && !(piece.begin > pieces[i - 1].begin)))
-      return fail(PINDRIVE_BAD_VALUE, "piece %zu of %s must begin after the one before, not at %.17g",
-                  i, name, piece.begin);
+      return fail(PINDRIVE_BAD_VALUE,
+                  "piece %zu of %s must begin after the one before, not at %.17g", i, name,
+                  piece.begin);
     for (const double coefficient : piece.polynomial)
       if (!std::isfinite(coefficient))
         return fail(PINDRIVE_BAD_VALUE, "piece %zu of %s must have finite coefficients, not %.17g",
@@ -227,7 +229,8 @@ pindrive_error check_function(const char* name, const pd::InputNumbers& input, b
   if (!steps && jump.time < infinity)
     return fail(PINDRIVE_BAD_VALUE, "%s must be without a jump, not from %.17g to %.17g at %.17g s",
                 name, jump.before, jump.after, jump.time);
-  const pd::InputPoint lowest = negative ? pd::InputPoint{0, 0} : pd::lowest_value(profile, infinity);
+  const pd::InputPoint lowest =
+      negative ? pd::InputPoint{0, 0} : pd::lowest_value(profile, infinity);
   if (lowest.value < -1e-9)
     return fail(PINDRIVE_BAD_VALUE, "%s must not be negative, and is %.17g at %.17g s", name,
                 lowest.value, lowest.time);
@@ -341,12 +344,33 @@ pindrive_error pindrive_c::check(const pindrive_drive& drive, const pindrive_rel
                ", either way");
 }
 
+namespace {
+
+/// True if all inputs are constant at last or have a common period.
+bool ends_or_repeats(const pindrive_release& release) {
+  const auto owned = [](const pd::InputNumbers& input) {
+    return pd::OwnedInput<double>(input, input);
+  };
+  const auto velocity = owned(release.mouse_velocity), load = owned(release.plate_load);
+  const auto force = owned(release.force), touch = owned(release.finger_load);
+  const auto across = owned(release.across_velocity);
+  const pd::InputPeriod<double> found =
+      pd::period_of<double>({velocity.profile(), 0, 0, infinity, load.profile(), 0, force.profile(),
+                             across.profile(), touch.profile()});
+  return found.constant || found.repeats();
+}
+
+}  // namespace
+
 double pindrive_c::initial(const pd::InputNumbers& input) {
   return pd::OwnedInput<double>(input, input).profile().from(0).value;
 }
 
 pindrive_error pindrive_c::check_duration(const pindrive_release& release) {
   static constexpr auto duration = input("motion.duration");
+  if (release.duration == infinity && !ends_or_repeats(release))
+    return fail(PINDRIVE_BAD_VALUE,
+                "duration must be finite under functions that neither end nor repeat");
   return release.duration == infinity ? PINDRIVE_OK : check("duration", duration, release.duration);
 }
 

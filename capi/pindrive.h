@@ -218,7 +218,8 @@ enum {
   PINDRIVE_END_GRAZING = 4,    /* the same, touching the plate's velocity once a period */
   PINDRIVE_END_STICK_SLIP = 5, /* a cycle of carried and sliding phases */
   PINDRIVE_END_LIMIT_CYCLE = 6, /* a cycle sustained by falling friction, without a carried phase */
-  PINDRIVE_END_IRREGULAR = 7    /* chaotic or quasi-periodic: no return within 15 360 events */
+  PINDRIVE_END_DRIVEN = 7,      /* the periodic response to periodic inputs */
+  PINDRIVE_END_IRREGULAR = 8    /* chaotic or quasi-periodic: no return within 15 360 events */
 };
 
 typedef struct pindrive_outcome {

@@ -17,6 +17,10 @@ from .motion.drive import Contact as Contact
 from .motion.drive import HessSoom as HessSoom
 from .motion.drive import Stribeck as Stribeck
 from .motion.drive import Drive as Drive
+from .motion.function import Function as Function
+from .motion.function import exponential as exponential
+from .motion.function import harmonic as harmonic
+from .motion.function import minimum_jerk as minimum_jerk
 from .motion.profile import Profile as Profile
 from .motion.motion import Motion as Motion
 from .motion.release import Release as Release

@@ -25,6 +25,7 @@
 #include "interrupt.hpp"
 #include "owned_motion.hpp"
 #include "pindrive/certificate/certify.hpp"
+#include "pindrive/model/input_period.hpp"
 #include "pindrive/motion/crossings.hpp"
 #include "pindrive/motion/duration.hpp"
 #include "pindrive/motion/energy.hpp"
@@ -75,7 +76,8 @@ pd::InputNumbers input_of(Input&& input) {
 pd::Numbers numbers(double mass, double stiffness, double damping, ContactNumbers&& plate,
                     ContactNumbers&& finger, Input&& mouse_velocity, Input&& plate_load,
                     double displacement, double velocity, double skin_stretch, Input&& force,
-                    Input&& across, Input&& finger_load, const StopNumbers& stops, double duration) {
+                    Input&& across, Input&& finger_load, const StopNumbers& stops,
+                    double duration) {
   return {mass,
           stiffness,
           damping,
@@ -409,7 +411,8 @@ NB_MODULE(_core, m) {
       "Simulates one pin from its release until its ending is known or the duration is over. "
       "Contacts are (kinetic, static, stiffness, rows (speed, force) of the curve, (law, "
       "breakaway, Stribeck velocity, exponent, viscous)), inputs rows "
-      "(time, value), one row for a constant, or the pieces (begin, polynomial, terms (cosine, sine, "
+      "(time, value), one row for a constant, or the pieces (begin, polynomial, terms (cosine, "
+      "sine, "
       "decay, frequency)) of a function.");
   m.def(
       "function_range",
@@ -423,8 +426,27 @@ NB_MODULE(_core, m) {
                                std::make_tuple(jump.time, jump.before, jump.after));
       },
       "pieces"_a,
-      "The lowest value of a function (time, value), and its first jump (time, before, after), at an "
+      "The lowest value of a function (time, value), and its first jump (time, before, after), at "
+      "an "
       "infinite time without one.");
+  m.def(
+      "input_period",
+      [](std::vector<Input> inputs) {
+        const auto owned = [&](std::size_t i) {
+          const pd::InputNumbers input = input_of(std::move(inputs.at(i)));
+          return std::make_unique<pd::OwnedInput<double>>(input, input);
+        };
+        const auto velocity = owned(0), load = owned(1), force = owned(2), across = owned(3),
+                   touch = owned(4);
+        const pd::InputPeriod<double> found = pd::period_of<double>(
+            {velocity->profile(), 0, 0, std::numeric_limits<double>::infinity(), load->profile(), 0,
+             force->profile(), across->profile(), touch->profile()});
+        return std::make_tuple(found.since, found.period, found.constant);
+      },
+      "inputs"_a,
+      "The time of the last breakpoint of all inputs (in the order of a release), their period "
+      "from then "
+      "on, infinite without one, and whether they are constant.");
   m.def(
       "function_at",
       [](std::vector<Piece> pieces, const Times& times) {

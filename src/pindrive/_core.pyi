@@ -108,6 +108,11 @@ def function_range(pieces: Sequence[tuple[float, Sequence[float], Sequence[Seque
     The lowest value of a function (time, value), and its first jump (time, before, after), at an infinite time without one.
     """
 
+def input_period(inputs: Sequence[Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]]]) -> tuple[float, float, bool]:
+    """
+    The time of the last breakpoint of all inputs (in the order of a release), their period from then on, infinite without one, and whether they are constant.
+    """
+
 def function_at(pieces: Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], times: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]:
     """The values of a function at times (s)."""
 

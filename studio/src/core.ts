@@ -32,6 +32,7 @@ const ENDS = [
   "grazing",
   "stick_slip",
   "limit_cycle",
+  "driven",
   "irregular",
 ] as const;
 export type End = (typeof ENDS)[number];

@@ -13,6 +13,7 @@ const ENDINGS: Readonly<Record<string, string>> = {
   grazing: "oscillates, touching the plate's velocity once a period",
   stick_slip: "stick-slip, a cycle of carried and sliding phases",
   limit_cycle: "a limit cycle sustained by falling friction",
+  driven: "the periodic response to its inputs",
   irregular: "irregular, never repeats",
 };
 

@@ -3,60 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 import pindrive as pd
-from oracle import make_laws
+from oracle import law_motion, make_laws
 
 CASES = make_laws.load(Path(__file__).parents[1] / "oracle" / "law_cases.json.gz")
 
 
-def contact(law: dict[str, Any]) -> pd.Contact:
-    common = {name: law[name] for name in ("kinetic", "static", "viscous")}
-    if law["name"] == "coulomb":
-        return pd.Contact(**common)
-    common |= {"breakaway": law["breakaway"], "stribeck_velocity": law["velocity"]}
-    if law["name"] == "hess-soom":
-        return pd.HessSoom(**common)
-    return pd.Stribeck(**common, exponent=law["exponent"])
-
-
-def motion_of(case: dict[str, Any]) -> pd.Motion:
-    drive = pd.Drive(
-        **{name: case[name] for name in ("mass", "stiffness", "damping")},
-        plate=contact(case["laws"]["plate"]),
-        finger=contact(case["laws"]["finger"]),
-    )
-    inputs: dict[str, Any] = {
-        name: rows[0][1] if len(rows) == 1 else pd.Profile(*zip(*rows, strict=True))
-        for name, rows in case["inputs"].items()
-    }
-    release = pd.Release(**inputs, displacement=case["displacement"], velocity=case["velocity"])
-    return pd.simulate(drive, release, duration=case["times"][-1])
-
-
 @pytest.mark.parametrize("number", range(len(CASES)))
 def test_thirty_digits(number: int) -> None:
-    case = CASES[number]
-    motion = motion_of(case)
-    found = [
-        (event.time, event.contact, event.kind)
-        for event in motion.events
-        if event.contact in ("plate", "finger")
-    ]
-    expected = [tuple(event) for event in case["events"]]
-    assert [event[1:] for event in found] == [event[1:] for event in expected]
-    for (time, *_), (right, *_) in zip(found, expected, strict=True):
-        assert time == pytest.approx(right, rel=1e-11, abs=1e-11 * case["times"][-1])
-    length = max(abs(x) for x, _ in [*case["states"], (case["displacement"], 0.0)])
-    frequency = (case["stiffness"] / case["mass"]) ** 0.5
-    speed = max(frequency * length, *(abs(v) for _, v in case["states"]))
-    for t, (x, v) in zip(case["times"], case["states"], strict=True):
-        assert float(motion.position(t, side="left")) == pytest.approx(x, abs=1e-11 * length)
-        assert float(motion.velocity(t, side="left")) == pytest.approx(v, abs=1e-11 * speed)
-    assert motion.certificate().worst < 1e-10
+    law_motion.compare(CASES[number])
 
 
 BELT = {"kinetic": 1.0, "breakaway": 2.0, "stribeck_velocity": 0.05}

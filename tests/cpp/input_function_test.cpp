@@ -131,7 +131,7 @@ class Draw {
   std::mt19937 random_;
 };
 
-/// A motion of a case, with what it points to; with `rows`, under tables of so many breakpoints.
+/// Motion of a case under functions or, if `rows` is not 0, under tables with this number of rows.
 template <class T>
 class Followed {
   using F = Function<T>;

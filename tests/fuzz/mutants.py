@@ -104,8 +104,8 @@ MUTANTS = (
     Mutant(
         "parting surfaces never throw the pin ahead of both",
         "law/selection.hpp",
-        "if (other.stuck() ? relative != 0 :",
-        "if (other.stuck() ? false :",
+        "if (side.stuck()) return relative == 0 && second == 0 && third == 0;",
+        "if (side.stuck()) return true;",
     ),
     Mutant(
         "a guard at its zero is not asked by its derivatives",
@@ -225,9 +225,9 @@ MUTANTS = (
     ),
     Mutant(
         "the load of a series falls where it should rise",
-        "series/series.hpp",
-        "const T load_rate = e.load.rate * step;",
-        "const T load_rate = -e.load.rate * step;",
+        "series/series_inputs.hpp",
+        "c_[1] = curve.rate * step;",
+        "c_[1] = -curve.rate * step;",
     ),
     Mutant(
         "a step of a series begins without its acceleration",

@@ -1,6 +1,7 @@
-"""Draw random drives under named friction laws and answer them with thirty digits: COUNT SEED OUT.
+"""Draw random drives under laws and functions, answered with thirty digits: INPUTS COUNT SEED OUT.
 
-    cd tests && python -m oracle.make_laws 24 47 oracle/law_cases.json.gz
+    cd tests && python -m oracle.make_laws rows 24 47 oracle/law_cases.json.gz
+    cd tests && python -m oracle.make_laws functions 30 48 oracle/function_cases.json.gz
 
 A draw that takes longer than `PATIENCE` is left out.
 """
@@ -26,6 +27,9 @@ LAWS = (("stribeck", 1), ("stribeck", 2), ("hess-soom", 1), ("coulomb", 1))
 INPUTS = ("constant", "plate_load", "finger_load", "mouse_velocity", "force", "across_velocity")
 
 
+FUNCTIONS = ("sinusoid", "stroke", "pull", "push", "touch", "mixed")
+
+
 def load(path: Path) -> list[dict[str, Any]]:
     """The stored cases."""
     with gzip.open(path, "rt", encoding="utf-8") as file:
@@ -33,7 +37,7 @@ def load(path: Path) -> list[dict[str, Any]]:
     return found
 
 
-def draw(number: int, seed: int) -> dict[str, Any]:
+def draw(kinds: tuple[str, ...], number: int, seed: int) -> dict[str, Any]:
     """One drive, by its number: each law at the plate with each kind of input, in turn."""
     rng = random.Random(f"{seed}-{number}")
     digits = rng.choice([2, 3, 17])
@@ -50,11 +54,11 @@ def draw(number: int, seed: int) -> dict[str, Any]:
         found["static"] = rng.choice([rest, float(f"{rest * rng.uniform(1.05, 1.5):.{digits}g}")])
         return found
 
-    kind = INPUTS[number // len(LAWS) % len(INPUTS)]
+    kind = kinds[number // len(LAWS) % len(kinds)]
     mass, stiffness = of(2e-3, 0.05), of(30.0, 500.0)
     period = 2 * math.pi * math.sqrt(mass / stiffness)
     v_p = rng.choice([-1, 1]) * of(0.01, 0.15)
-    inputs = {
+    inputs: dict[str, Any] = {
         "mouse_velocity": [[0.0, v_p]],
         "plate_load": [[0.0, 1.0]],
         "finger_load": [[0.0, 1.0]],
@@ -70,6 +74,28 @@ def draw(number: int, seed: int) -> dict[str, Any]:
         inputs[kind] = [[0.0, 0.0], [time, rng.choice([-1, 1]) * of(0.005, 0.05)]]
     elif kind == "across_velocity":
         inputs[kind] = [[0.0, of(5e-3, 0.1)]]
+    elif kind in FUNCTIONS:
+        every = kind == "mixed"
+        rate = float(f"{2 * math.pi / period * of(0.2, 5.0):.{digits}g}")
+        if kind == "sinusoid" or every:
+            wave = [0.0, of(0.2, 2.0) * v_p, 0.0, rate]
+            inputs["mouse_velocity"] = {"pieces": [[0.0, [v_p], [wave]]]}
+        if kind == "stroke":
+            speed = 30 * v_p / 16
+            stroke = [v_p / 4, 0.0, speed / time**2, -2 * speed / time**3, speed / time**4]
+            inputs["mouse_velocity"] = {"pieces": [[0.0, stroke, []], [time, [v_p / 4], []]]}
+            v_p /= 4
+        if kind == "pull" or every:
+            held, decay = of(0.5, 3.0), 1 / (period * of(0.02, 0.5))
+            pull = [[held, 0.0, decay, 0.0], [-held / 2, 0.0, 2 * decay, 0.0]]
+            inputs["plate_load"] = {"pieces": [[0.0, [1.0], pull]]}
+        if kind == "push" or every:
+            dies = [of(5e-3, 0.05), of(5e-3, 0.05), rate / 10, rate]
+            inputs["force"] = {"pieces": [[0.0, [0.0, of(1e-3, 0.05)], [dies]]]}
+        if kind == "touch" or every:
+            inputs["finger_load"] = {
+                "pieces": [[0.0, [1.0], [[0.0, rng.uniform(0.1, 0.9), 0.0, 2 * rate]]]]
+            }
     duration = 2.5 * period
     return {
         "kind": kind,
@@ -95,13 +121,13 @@ def answered(case: dict[str, Any]) -> dict[str, Any]:
     return case | {"events": events, "states": states}
 
 
-def _one(task: tuple[int, int]) -> dict[str, Any] | None:
+def _one(task: tuple[tuple[str, ...], int, int]) -> dict[str, Any] | None:
     """The answered case; None where it takes too long."""
     signal.signal(signal.SIGALRM, _interrupt)
     signal.alarm(PATIENCE)
     try:
         return answered(draw(*task))
-    except TimeoutError:
+    except (TimeoutError, ArithmeticError):
         return None
     finally:
         signal.alarm(0)
@@ -111,10 +137,10 @@ def _interrupt(*_: object) -> None:
     raise TimeoutError
 
 
-def main(count: int, seed: int, out: Path) -> None:
+def main(kinds: tuple[str, ...], count: int, seed: int, out: Path) -> None:
     """Draw until there are enough, on all cores."""
     with multiprocessing.Pool() as pool:
-        made = pool.imap(_one, ((number, seed) for number in range(count)), 1)
+        made = pool.imap(_one, ((kinds, number, seed) for number in range(count)), 1)
         cases = [case for case in made if case]
     with gzip.GzipFile(out, "wb", mtime=0) as file:
         file.write(json.dumps(cases).encode())
@@ -122,4 +148,5 @@ def main(count: int, seed: int, out: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]), int(sys.argv[2]), Path(sys.argv[3]))
+    inputs = {"rows": INPUTS, "functions": FUNCTIONS}[sys.argv[1]]
+    main(inputs, int(sys.argv[2]), int(sys.argv[3]), Path(sys.argv[4]))

@@ -1,9 +1,10 @@
 """Thirty-digit oracle: a released pin under friction laws with a name, rigid contacts, in mpmath.
 
 Between events the equation of motion is integrated by extrapolation of the explicit midpoint rule
-(Gragg 1965), which evaluates the law itself: no series of the law, no closed form. Inputs are
-linear between breakpoints. A guard is tested at the ends of each step, a part of the natural
-period, and its zero is found by bisection and secants of steps from the same start.
+(Gragg 1965), which evaluates laws and inputs themselves: no series, no closed form. Inputs are
+rows, linear between them, or pieces of polynomials, exponentials and sinusoids. A guard is tested
+at the ends of each step, a part of the natural period, and its zero is found by bisection and
+secants of steps from the same start.
 """
 
 from __future__ import annotations
@@ -12,11 +13,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from mpmath import exp, mp, mpf, sqrt
+from mpmath import cos, exp, mp, mpf, sin, sqrt
 
 DIGITS = 30
 ROWS = 14  # of the extrapolation: order 28
-PARTS = 40  # steps in a natural period
+PARTS = 40  # steps in a natural period, and in one of the fastest input
 KNOWN = mpf("1e-22")  # relative change at which a zero is known
 
 State = tuple[mpf, mpf]
@@ -53,6 +54,43 @@ def line(rows: list[list[float]], t: mpf) -> tuple[mpf, mpf]:
     return y0 + rate * (t - t0), rate
 
 
+def piece(pieces: list[Any], t: mpf) -> Callable[[mpf], tuple[mpf, mpf]]:
+    """Value and rate of a function of pieces from a time on, as a function of time."""
+    begin, polynomial, terms = [each for each in pieces if each[0] <= t][-1]
+    powers = [(n, mpf(p)) for n, p in enumerate(polynomial)]
+    waves = [tuple(map(mpf, term)) for term in terms]
+
+    def at(time: mpf) -> tuple[mpf, mpf]:
+        tau = time - mpf(begin)
+        value = sum((p * tau**n for n, p in powers), mpf(0))
+        rate = sum((n * p * tau ** (n - 1) for n, p in powers if n), mpf(0))
+        for a, b, decay, frequency in waves:
+            part, c, s = exp(-decay * tau), cos(frequency * tau), sin(frequency * tau)
+            wave, turned = part * (a * c + b * s), part * frequency * (b * c - a * s)
+            value += wave
+            rate += turned - decay * wave
+        return value, rate
+
+    return at
+
+
+def straight(rows: list[list[float]], t: mpf) -> Callable[[mpf], tuple[mpf, mpf]]:
+    """Value and rate of rows from a time on, as a function of time."""
+    value, rate = line(rows, t)
+    return lambda time: (value + rate * (time - t), rate)
+
+
+def frequencies(case: dict[str, Any]) -> list[float]:
+    """Angular frequencies of the inputs, 0 among them."""
+    pieces = [g["pieces"] for g in case["inputs"].values() if isinstance(g, dict)]
+    return [0.0, *(term[3] for each in pieces for _, _, terms in each for term in terms)]
+
+
+def begins(given: Any) -> list[float]:
+    """Times at which an input changes its form."""
+    return [each[0] for each in (given["pieces"] if isinstance(given, dict) else given)]
+
+
 class Pin:
     """A pin between two breakpoints, in one mode: -1 or 1 slips, 0 sticks, None slips obliquely."""
 
@@ -71,12 +109,17 @@ class Pin:
 
     def begin(self, t: mpf) -> None:
         """Read the inputs from a time on."""
-        self.since = t
-        self.lines = {name: line(rows, t) for name, rows in self.case["inputs"].items()}
+        self.given = {
+            name: piece(given["pieces"], t) if isinstance(given, dict) else straight(given, t)
+            for name, given in self.case["inputs"].items()
+        }
 
     def at(self, name: str, t: mpf) -> mpf:
-        value, rate = self.lines[name]
-        return value + rate * (t - self.since)
+        return self.given[name](t)[0]
+
+    def drags(self, t: mpf) -> mpf:
+        """Acceleration of the plate."""
+        return self.given["mouse_velocity"](t)[1]
 
     def plate_force(self, t: mpf, v: mpf) -> mpf:
         u, w = v - self.at("mouse_velocity", t), self.at("across_velocity", t)
@@ -90,12 +133,12 @@ class Pin:
         return -self.at("finger_load", t) * self.finger * self.laws["finger"].at(self.finger * v)
 
     def other_forces(self, t: mpf, x: mpf, v: mpf) -> mpf:
-        inertia = self.mass * self.lines["mouse_velocity"][1]
+        inertia = self.mass * self.drags(t)
         return inertia + self.at("force", t) - self.damping * v - self.stiffness * x
 
     def acceleration(self, t: mpf, x: mpf, v: mpf) -> mpf:
         if self.plate == 0:
-            return self.lines["mouse_velocity"][1]
+            return self.drags(t)
         if self.finger == 0:
             return mpf(0)
         forces = self.plate_force(t, v) + self.finger_force(t, v) + self.other_forces(t, x, v)
@@ -104,7 +147,7 @@ class Pin:
     def needed(self, t: mpf, x: mpf, v: mpf) -> mpf:
         """Force of the contact that holds the pin."""
         at_plate = self.plate == 0
-        moves = self.mass * self.lines["mouse_velocity"][1] if at_plate else mpf(0)
+        moves = self.mass * self.drags(t) if at_plate else mpf(0)
         other = self.finger_force(t, v) if at_plate else self.plate_force(t, v)
         return moves - other - self.other_forces(t, x, v)
 
@@ -162,9 +205,7 @@ class Pin:
     def select(self, t: mpf, state: State, still: set[str]) -> State:
         """The mode at an instant; `still`: contacts with no sliding velocity."""
         x, v = state
-        across = self.lines["across_velocity"]
-        oblique = across != (0, 0)
-        if oblique:
+        if self.given["across_velocity"](t) != (0, 0):
             self.plate = None
             still = still - {"plate"}
         if "plate" in still:
@@ -197,9 +238,10 @@ def solve(case: dict[str, Any], stop: Callable[[int], bool] = lambda _: False) -
     mp.dps = DIGITS
     pin = Pin(case)
     x, v = mpf(case["displacement"]), mpf(case["velocity"])
-    breaks = sorted({mpf(t) for rows in case["inputs"].values() for t, _ in rows if t > 0})
+    breaks = sorted({mpf(t) for given in case["inputs"].values() for t in begins(given) if t > 0})
     times, asked = [mpf(t) for t in case["times"]], []
-    end, longest = times[-1], 2 * mp.pi * sqrt(pin.mass / pin.stiffness) / PARTS
+    fastest = max(sqrt(pin.stiffness / pin.mass), *map(mpf, frequencies(case)))
+    end, longest = times[-1], 2 * mp.pi / fastest / PARTS
     u = v - pin.at("mouse_velocity", mpf(0))
     pin.plate, pin.finger = (u > 0) - (u < 0), (v > 0) - (v < 0)
     still = {name for name, at in (("plate", u), ("finger", v)) if at == 0}
@@ -231,7 +273,19 @@ def solve(case: dict[str, Any], stop: Callable[[int], bool] = lambda _: False) -
                     events.append((t, contact, kind))
         if t in times:
             asked.append((x, v))
-    return {"events": events, "states": asked}
+    return {"events": lasting(events), "states": asked}
+
+
+def lasting(events: list[tuple[mpf, str, str]]) -> list[tuple[mpf, str, str]]:
+    """Events without a slip that ends at its begin, as a force beside it jumps."""
+    kept: list[tuple[mpf, str, str]] = []
+    for t, contact, kind in events:
+        ends = kind == "stick" and kept and kept[-1][1:] == (contact, "slip")
+        if ends and t - kept[-1][0] <= KNOWN * t:
+            kept.pop()
+        else:
+            kept.append((t, contact, kind))
+    return kept
 
 
 def _zero(pin: Pin, t: mpf, state: State, h: mpf, name: str) -> tuple[mpf, str]:
@@ -246,19 +300,18 @@ def _zero(pin: Pin, t: mpf, state: State, h: mpf, name: str) -> tuple[mpf, str]:
         at_low = value(low)
         if at_low <= 0:
             return mpf(0), name
+    last = 0  # side on which the zero was kept last
     for _ in range(200):
         tau = high - at_high * (high - low) / (at_high - at_low)
-        if not low < tau < high:
-            tau = (low + high) / 2
         here = value(tau)
         if here < 0:
-            if at_high < 0:
-                at_low /= 2
             high, at_high = tau, here
-            at_low = value(low) if at_low == 0 else at_low
+            at_low /= 2 if last < 0 else 1
+            last = -1
         else:
             low, at_low = tau, here
-            at_high /= 2
-        if high - low <= KNOWN * h or here == 0:
-            break
-    return (low + high) / 2, name
+            at_high /= 2 if last > 0 else 1
+            last = 1
+        if here == 0 or high - low <= KNOWN * h:
+            return tau, name
+    raise ArithmeticError(f"no zero of {name} after {t}")

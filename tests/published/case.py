@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from pindrive import Drive, ImplausibleValueWarning, Motion, Profile, Release, simulate
+from pindrive import Drive, Function, ImplausibleValueWarning, Motion, Profile, Release, simulate
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -100,7 +100,7 @@ def follow(
     displacement: float = 0.0,
     velocity: float | None = None,
     duration: float | None = None,
-    force: float = 0.0,
+    force: float | Function = 0.0,
 ) -> Motion:
     """The motion of a drive; the cases are larger and faster than any tactile device."""
     with warnings.catch_warnings():

@@ -77,10 +77,10 @@ def test_the_spring_of_the_source_explains_what_the_digits_do_not() -> None:
     assert own == pytest.approx(15.2671 * (1.0 - 2.2e-5), abs=2e-5)
 
 
-def test_twice_as_many_rows_make_the_error_of_a_sine_four_times_as_small() -> None:
-    exact = forced.closed_form(0.6, 0.5)
-    coarse, fine = (forced.den_hartog_amplitude(0.6, 0.5, rows) - exact for rows in (300, 600))
-    assert coarse / fine == pytest.approx(4.0, rel=0.05)
+def test_forced_vibration_repeats_with_the_force() -> None:
+    motion = forced.response(0.6, 0.5)
+    assert motion.ending.cycle == "driven"
+    assert motion.ending.period == pytest.approx(2.0 * np.pi / 0.6, rel=1e-12)
 
 
 def test_the_friction_curve_agrees_with_an_integration_of_the_curve_itself() -> None:

@@ -13,6 +13,7 @@
 #include "pindrive/law/oblique.hpp"
 #include "pindrive/law/pin.hpp"
 #include "pindrive/law/selection.hpp"
+#include "pindrive/model/input_period.hpp"
 #include "pindrive/model/model.hpp"
 #include "pindrive/numbers/limits.hpp"
 
@@ -36,6 +37,7 @@ class Evolution {
         plain_(drive.mass, drive.damping, drive.stiffness),
         half_period_(plain_.zeros(T(0), T(1)).first),
         half_turn_(plain_.oscillates() ? plain_.half_turn() : Propagator<T>{}) {
+    if (!inputs.straight()) repetition_ = period_of(inputs);
     look_ahead();
     const bool given = !isnan(inputs.skin_stretch);
     if (given) pin.state.skin = drive.finger.stiffness * inputs.skin_stretch;
@@ -201,6 +203,8 @@ class Evolution {
   SelectedMotion<T> selected;
   SeriesSegment<T> series;
   T time_error{0};  ///< rounding error of the time of the pin (Kahan 1965), s
+  /// True if the pin is at the begin of a period of the inputs.
+  bool begins_period() const { return begins_period_; }
   /// True if no input changes from now on.
   bool has_constant_inputs() const {
     return !(next_breakpoint < never) && pin.plate.surface.steady() && pin.plate.across.steady() &&
@@ -281,12 +285,24 @@ class Evolution {
       pin.force = inputs_.force.from(pin.time);
       pin.plate.across =
           InputCurves<T>::across_from(inputs_, pin.time, pin.plate.surface, pin.held());
-      next_breakpoint = inputs_.next_breakpoint(pin.time);
+      next_breakpoint = std::min(inputs_.next_breakpoint(pin.time), next_period());
       if (next_breakpoint - pin.time > rounding<T> * pin.time) return;
     }
   }
 
+  /// Begin of the next period of the inputs, s.
+  T next_period() {
+    begins_period_ = false;
+    if (!repetition_.repeats() || pin.time < repetition_.since) return never;
+    const auto begin = [&] { return repetition_.since + T(periods_) * repetition_.period; };
+    for (; begin() - pin.time <= rounding<T> * pin.time; ++periods_) begins_period_ = true;
+    return begin();
+  }
+
   const Inputs<T>& inputs_;
+  InputPeriod<T> repetition_;
+  long long periods_{0};  ///< periods of the inputs that have begun
+  bool begins_period_{false};
   Oscillator<T> plain_;      ///< oscillator of a pin on which contacts exert constant forces only
   T half_period_;            ///< time between two zeros of its velocity, s
   Propagator<T> half_turn_;  ///< propagator over this time

@@ -47,32 +47,43 @@ void end_with(const Segment<T>& last, Outcome<T>& outcome) {
 /// remaining distance by `approach_tolerance`.
 ///
 /// A motion that has not returned after many events may be irregular (irregularity.hpp).
+///
+/// Under periodic inputs, the events are the begins of their periods.
 template <class T>
 class CycleDetector {
  public:
   explicit CycleDetector(const Drive<T>& drive) : drive_(drive) {}
 
   /// Compares an event at time + time_error, between a segment and the mode and state after the event. Sets the
-  /// ending in the outcome if the event closes a cycle.
+  /// ending in the outcome if the event closes a cycle. `driven`: it begins a period of the inputs.
   void visit(const Segment<T>& ended, const Mode& mode, T time, T time_error, const State<T>& state,
-             Outcome<T>& outcome) {
+             Outcome<T>& outcome, bool driven = false) {
+    driven_ = driven;
     if (count_ < first_kept_event) {
       ++count_;
       return;
     }
     const Event now{time, time_error, mode, state};
+    const long long memory = driven ? 1 : short_memory;  // most responses repeat each period
     if (count_ > first_kept_event) {
+      if (driven && returns_to(recent_, ended, now, outcome)) return;
       if (returns_to(kept_, ended, now, outcome)) return;
-      if (count_ > short_memory && returns_to(recent_, ended, now, outcome)) return;
+      if (!driven && count_ > memory && returns_to(recent_, ended, now, outcome)) return;
       if (period_ > 0 && approaches(ended, now, outcome)) return;
     }
     if (count_ >= irregular_window) irregularity_.visit(ended, time, state, outcome);
-    if (count_ % short_memory == 0) keep(recent_, now);
+    if (count_ % memory == 0) keep(recent_, now);
     if (count_ == next_) {
       keep(kept_, now);
       next_ += std::max(next_ / 4, std::min(next_, short_memory)) + 1;
     }
     ++count_;
+  }
+
+  /// Includes a segment that ends without an event to be compared in the scales of the motion.
+  void pass(const Segment<T>& ended, const State<T>& state) {
+    if (count_ <= first_kept_event) return;
+    for (Visit* visit : {&kept_, &recent_, &followed_}) extend(*visit, ended, state);
   }
 
  private:
@@ -98,8 +109,8 @@ class CycleDetector {
     visit = {count_, now.time, now.time_error, now.mode, now.state, {}, T(0)};
   }
   /// Includes the segment that an event ends in the scales since a kept event.
-  static void extend(Visit& visit, const Segment<T>& ended, const Event& now) {
-    visit.extent.add(ended, now.state.x, now.state.v);
+  static void extend(Visit& visit, const Segment<T>& ended, const State<T>& state) {
+    visit.extent.add(ended, state.x, state.v);
     if (ended.mode.plate == ContactState::stick) visit.stuck += ended.end - ended.begin;
   }
 
@@ -108,7 +119,9 @@ class CycleDetector {
   T separation(const Visit& earlier, const Event& now) const {
     if (!same_mode(earlier.mode, now.mode) || !(now.time > earlier.time)) return never;
     const T length = earlier.extent.length();
-    if (!(length > T(rest_tolerance) * abs(now.state.x))) return never;
+    const bool moves = length > T(rest_tolerance) * abs(now.state.x);
+    if (!moves && driven_ && now.mode.stuck()) return T(0);  // periodic inputs that move no pin
+    if (!moves) return never;
     const T rounded = rounding<T> * std::max(abs(now.state.x), length);
     const auto apart = [](T one, T other, T known, T scale) {
       const T beyond = abs(one - other) - known;
@@ -133,7 +146,7 @@ class CycleDetector {
 
   /// Compares an event with a kept one. True if it closes a cycle; a near return is followed.
   bool returns_to(Visit& earlier, const Segment<T>& ended, const Event& now, Outcome<T>& outcome) {
-    extend(earlier, ended, now);
+    extend(earlier, ended, now.state);
     const T distance = separation(earlier, now);
     if (distance <= T(return_tolerance)) return close(earlier, now, outcome);
     if (distance < near_return && (period_ == 0 || distance < distance_)) {
@@ -149,7 +162,7 @@ class CycleDetector {
   /// series, stay within the tolerance, so that the cycle is closed.
   bool approaches(const Segment<T>& ended, const Event& now, Outcome<T>& outcome) {
     if (count_ == followed_.index) return false;
-    extend(followed_, ended, now);
+    extend(followed_, ended, now.state);
     if (count_ != followed_.index + period_) return false;
     const T distance = separation(followed_, now), ratio = distance / distance_;
     const T slower = std::max(ratio, ratio_);
@@ -157,7 +170,7 @@ class CycleDetector {
     distance_ = distance;
     if (!(ratio < 1)) period_ = 0;
     const bool within = slower < 1 && distance <= T(approach_step) &&
-                        distance / (1 - slower) <= T(approach_tolerance);
+                        distance / (1 - slower) <= T(approach_tolerance) && !driven_;
     if (within || distance <= T(return_tolerance)) return close(followed_, now, outcome);
     keep(followed_, now);
     return false;
@@ -166,7 +179,7 @@ class CycleDetector {
   bool close(const Visit& begin, const Event& now, Outcome<T>& outcome) const {
     outcome.period = (now.time - begin.time) + (now.time_error - begin.time_error);
     const bool sticks = begin.stuck > T(repeat_tolerance) * outcome.period;  // sticks, not grazes
-    outcome.end = sticks ? End::stick_slip : End::limit_cycle;
+    outcome.end = driven_ ? End::driven : sticks ? End::stick_slip : End::limit_cycle;
     outcome.cycle_begin = begin.time;
     return true;
   }
@@ -177,6 +190,7 @@ class CycleDetector {
   long long next_{first_kept_event};  ///< count at which the kept visit is renewed
   long long period_{0};               ///< period of the followed approach, in events; 0 without one
   T distance_{0}, ratio_{1};          ///< distance of its last return; ratio to the distance before
+  bool driven_{false};                ///< under periodic inputs
   IrregularityDetector<T> irregularity_;
 };
 

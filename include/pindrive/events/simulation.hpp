@@ -41,8 +41,12 @@ class Simulation {
         const Mode after = pin.mode();
         segment.event = evolution_.transitions(segment.mode);
         const bool changes = segment.event.any() || !same_mode(segment.mode, after);
-        if (evolution_.has_constant_inputs() && (changes || turn < event))
-          cycles_.visit(segment, after, pin.time, evolution_.time_error, pin.state, outcome_);
+        if (evolution_.begins_period() ||
+            (evolution_.has_constant_inputs() && (changes || turn < event)))
+          cycles_.visit(segment, after, pin.time, evolution_.time_error, pin.state, outcome_,
+                        evolution_.begins_period());
+        else
+          cycles_.pass(segment, pin.state);
       } else if (tau == never) {
         end_with(segment, outcome_);
       }

@@ -165,7 +165,7 @@ class Selection {
                              T& scale) const {
     const T a = on.surface.rate, spring = stiffness() * pin_.state.v, damper = damping() * a;
     const auto rate = other.force_rate(pin_.state.v, a);
-    // Of the inertial and external force and of the inertia of the pin on its surface.
+    // Derivatives of the inertial and external force less the inertia of the pin on its surface.
     const T applied = applied_rate() - pin_.drive.mass * on.surface.second();
     const T bend = damping() * on.surface.second() -
                    (applied_second_rate() - pin_.drive.mass * on.surface.third());

@@ -67,6 +67,27 @@ struct InputPiece {
     }
   }
 
+  /// Time after which its terms have decayed to 1e-18 of their amplitudes, s; infinite if a term lasts,
+  /// zero without terms.
+  T decayed() const {
+    T time{0};
+    for (std::size_t j = 0; j < count; ++j) time = std::max(time, 42 / terms[j].decay);
+    return time;
+  }
+  /// The polynomial alone.
+  InputPiece without_terms() const { return {begin, polynomial, nullptr, 0}; }
+
+  /// Sum of the sizes of the terms at τ, of which rounding is a part.
+  Real size(T tau) const {
+    using std::abs;
+    Real sum{0}, power{1};
+    for (int n = 0; n <= degree; ++n, power *= abs(plain(tau)))
+      sum += abs(plain(polynomial[n])) * power;
+    for (std::size_t j = 0; j < count; ++j)
+      sum += abs(plain(terms[j].cosine)) + abs(plain(terms[j].sine));
+    return sum;
+  }
+
   /// Largest rate of the terms, 1/s.
   Real fastest() const {
     Real rate{0};
@@ -135,6 +156,12 @@ struct Curve {
     return value + factor * (piece->at(since + tau) - piece->at(since));
   }
   T rate_at(T tau) const { return straight() ? rate : factor * derivatives(tau)[1]; }
+  /// Sum of the sizes of its terms after τ.
+  detail::Real<T> size(T tau) const {
+    using std::abs;
+    if (straight()) return abs(plain(value)) + abs(plain(rate * tau));
+    return abs(plain(factor)) * piece->size(since + tau);
+  }
   /// Second and third derivative at the instant.
   T second() const { return straight() ? T(0) : factor * derivatives(T(0))[2]; }
   T third() const { return straight() ? T(0) : factor * derivatives(T(0))[3]; }

@@ -222,8 +222,10 @@ class Profile {
     if (pieces_ != nullptr) {
       if (i == 0) return {first(), T(0)};
       const InputPiece<T>& piece = pieces_[i - 1];
-      const T after = t - piece.begin;
-      return {piece, after > detail::rounding<T> * t ? after : T(0)};
+      const T since = t - piece.begin, after = since > detail::rounding<T> * t ? since : T(0);
+      if (piece.count == 0 || t < piece.begin + piece.decayed()) return {piece, after};
+      const Curve<T> rest(piece.without_terms(), after);
+      return rest.straight() ? rest : Curve<T>(piece, after);
     }
     if (i == 0) return {first(), T(0)};
     if (i == count_) return {values_[count_ - 1], T(0)};
@@ -235,8 +237,12 @@ class Profile {
   T next_breakpoint(T t) const {
     if (count_ == 0) return held_.next_breakpoint(t);
     const std::size_t i = breakpoints_until(t);
-    if (i == count_) return std::numeric_limits<T>::infinity();
-    return pieces_ != nullptr ? pieces_[i].begin : times_[i];
+    constexpr T never = std::numeric_limits<T>::infinity();
+    if (pieces_ == nullptr) return i == count_ ? never : times_[i];
+    const T next = i == count_ ? never : pieces_[i].begin;
+    if (i == 0) return next;
+    const T decayed = pieces_[i - 1].begin + pieces_[i - 1].decayed();
+    return t < decayed ? std::min(next, decayed) : next;
   }
   bool constant() const { return constant_; }           ///< the input is one number and remains so
   bool straight() const { return pieces_ == nullptr; }  ///< linear between breakpoints
@@ -428,6 +434,7 @@ enum class End : signed char {
   grazing,      ///< undamped oscillation that touches the velocity of the plate once a period
   stick_slip,   ///< periodic alternation of stick and slip
   limit_cycle,  ///< periodic motion sustained by falling friction, without stick
+  driven,       ///< periodic response to periodic inputs
   irregular     ///< chaotic or quasi-periodic: no return within `irregular_windows` (limits.hpp)
 };
 
@@ -445,7 +452,9 @@ struct Outcome {
   /// True if the state is known at all times, not only as far as it was simulated.
   bool known() const { return end != End::moving && end != End::irregular; }
   bool steady() const { return cycles() || end == End::free || end == End::grazing; }
-  bool cycles() const { return end == End::stick_slip || end == End::limit_cycle; }
+  bool cycles() const {
+    return end == End::stick_slip || end == End::limit_cycle || end == End::driven;
+  }
 };
 
 /// Progress function that never interrupts. A progress function is called during long computations;

@@ -36,6 +36,7 @@ T duration_of(const Motion<T>& motion, T band, GoOn go_on = {}) {
       return last_begin + 3 * outcome.period;
     case End::stick_slip:
     case End::limit_cycle:
+    case End::driven:
       return outcome.until + 3 * outcome.period;
     case End::irregular:
     case End::moving:

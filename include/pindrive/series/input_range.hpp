@@ -74,9 +74,10 @@ inline InputJump first_jump(const Profile<double>& input) {
   for (;;) {
     const double next = input.next_breakpoint(time);
     if (!(next < never)) return {never, 0, 0};
-    const double before = time > -never ? input.from(time).at(next - time) : input.first();
-    const double after = input.from(next).value;
-    const double known = 64 * detail::rounding<double> * (std::abs(before) + std::abs(after));
+    const Curve<double> curve = time > -never ? input.from(time) : Curve<double>{input.first(), 0};
+    const double before = curve.at(next - time), after = input.from(next).value;
+    const double size = curve.size(next - time) + std::abs(after);
+    const double known = 64 * detail::rounding<double> * size;
     if (std::abs(after - before) > known) return {next, before, after};
     time = next;
   }

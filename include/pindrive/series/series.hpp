@@ -130,6 +130,7 @@ class SeriesFlow : public SeriesStep<T> {
     bool known{true};
     Real root{0}, direction{0}, missed{0};
     Real falling{0};  ///< error of the falling part of friction, N
+    Real falling_at_finger{0};
   };
   Turning bound_turning(const SeriesEquation<T>& e) {
     using std::max;
@@ -162,6 +163,7 @@ class SeriesFlow : public SeriesStep<T> {
       const Sums phi = sums_of(falling_finger.friction().c);
       const Real error = falling_finger.error(e.finger_falling, sums_of(velocity.c), Real(0));
       found.missed += finger_load_.beyond(phi) + finger_load_.most() * error;
+      found.falling_at_finger = error;
     }
     return found;
   }
@@ -284,7 +286,7 @@ class SeriesFlow : public SeriesStep<T> {
           r[n + 1] += d[0] * u[n + 1];
           d[n] += slope * u[n + 1];
         } else if (n < N) {
-          const T inertia = e.mass * plate_velocity_.rate(n);  // of a pin that moves with the plate
+          const T inertia = e.mass * plate_velocity_.rate(n);
           u[n + 1] = (forces - inertia) / (e.mass / part + strength * slope);
           r[n + 1] += d[0] * u[n + 1];
           d[n] += slope * u[n + 1];
@@ -348,9 +350,12 @@ class SeriesFlow : public SeriesStep<T> {
                       over(speed_bound, rounding_of(from_rest(speed.c)) + of_velocity));
     if (K != 0) excess = max(excess, over(skin_bound, rounding_of(sums_of(skin.c))));
     if (!e.held) return excess;
-    const Real rest = direction_error<Real> * plain(e.plate_falling.excess);
-    return max(
-        {excess, over(turning.direction, direction_error<Real>), over(turning.falling, rest)});
+    const auto known = [](const FallingFriction<T>& law) {
+      return direction_error<Real> * plain(law.excess);
+    };
+    return max({excess, over(turning.direction, direction_error<Real>),
+                over(turning.falling, known(e.plate_falling)),
+                over(turning.falling_at_finger, known(e.finger_falling))});
   }
 };
 

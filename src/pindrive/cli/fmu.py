@@ -45,7 +45,6 @@ def fmu(
     from pindrive.files.device import load_device
     from pindrive.files.fmu import COMMAND, LUMINANCE, inputs_of, variables_of, write_fmu
     from pindrive.files.output import FMU, Output, naming, writing
-    from pindrive.motion.profile import Profile
 
     with refusing():
         device = load_device(file, overrides or ())
@@ -55,7 +54,7 @@ def fmu(
             write_fmu(device, parts[target], fmi, control=control)
     for name in inputs_of(device):
         given = getattr(device.release, name)
-        if isinstance(given, Profile) and given.changes:
+        if not isinstance(given, float) and given.changes:
             typer.echo(
                 f"warning: {name} is an input and starts at {given(0.0):g}; its rows are left out",
                 err=True,

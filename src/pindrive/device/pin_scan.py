@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import nan
-from typing import Any, Final
+from typing import Any, Final, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -228,12 +228,12 @@ class PinScan:
     @property
     def load(self) -> float | Profile:
         """Factor on the plate's friction, over the time since `begin`."""
-        return self.release.plate_load
+        return cast("float | Profile", self.release.plate_load)
 
     @property
     def finger_load(self) -> float | Profile:
         """Factor on the finger's friction, over the time since `begin`: 0 where it is lifted."""
-        return self.release.finger_load
+        return cast("float | Profile", self.release.finger_load)
 
     @property
     def events(self) -> tuple[Event, ...]:

@@ -45,6 +45,7 @@ from pindrive.files.schema import (
 )
 from pindrive.motion.drive import Contact, Drive, law_values
 from pindrive.motion.friction import COEFFICIENTS
+from pindrive.motion.function import Function
 from pindrive.motion.profile import Profile
 from pindrive.motion.release import Release
 from pindrive.quantities.contradictions import problems_of
@@ -240,7 +241,12 @@ def _values_of(drive: Drive, release: Release) -> dict[str, float | Rows | None]
         of = release if table == "motion" else contacts[table] if quantity.name == key else drive
         law = isinstance(of, Contact) and name == "law"
         value = law_values(contacts[table])["law"] if law else getattr(of, name)
-        found[key] = value.rows if isinstance(value, Profile) else None if value == inf else value
+        if isinstance(value, Function):
+            found[key] = value(0.0)
+        else:
+            found[key] = (
+                value.rows if isinstance(value, Profile) else None if value == inf else value
+            )
     return found
 
 

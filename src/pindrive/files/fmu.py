@@ -22,8 +22,8 @@ from pindrive.device.electromagnet import DIRECT
 from pindrive.files.device import DeviceFile
 from pindrive.files.keys import NUMERIC_KEYS
 from pindrive.motion.friction import COEFFICIENTS
-from pindrive.motion.profile import Profile
 from pindrive.motion.release import INPUTS
+from pindrive.motion.release import initial as value_at_begin
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import DISPLAY, Quantity
 from pindrive.quantities.refusal import refusal
@@ -188,8 +188,7 @@ def inputs_of(device: DeviceFile) -> tuple[str, ...]:
 def _inputs(device: DeviceFile, control: bool) -> Iterator[FmuVariable]:
     for name in inputs_of(device):
         row = QUANTITIES[name]
-        given: float | Profile = getattr(device.release, name)
-        value = given(0.0) if isinstance(given, Profile) else given
+        value = value_at_begin(getattr(device.release, name))
         limits = row.limits
         yield FmuVariable(name, "input", row.meaning, row.unit, value, limits.lower, limits.upper)
         meaning = f"rate at which {name} continues until it is set again"

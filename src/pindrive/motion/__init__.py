@@ -14,6 +14,12 @@
 - `Ending`: how a motion ends, in numbers
 - `Event`: a change at a contact
 - `Extrema`: extrema of a quantity of a motion
+- `Function`: a quantity over time in pieces: polynomials, exponentials, sinusoids
+- `harmonic`: a sinusoid about a mean
+- `minimum_jerk`: the velocity of a stroke from rest to rest
+- `exponential`: an exponential approach of a value
+- `InputPiece`: a part of a function from a time on
+- `InputTerm`: an exponential or a sinusoid of a piece
 - `Ledger`: where the energy came from and where it went
 - `Motion`: what a pin does after its release
 - `Profile`: a quantity over time, linear between rows

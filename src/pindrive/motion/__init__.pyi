@@ -5,6 +5,12 @@ from .drive import Contact as Contact
 from .drive import HessSoom as HessSoom
 from .drive import Stribeck as Stribeck
 from .drive import Drive as Drive
+from .function import Function as Function
+from .function import InputPiece as InputPiece
+from .function import InputTerm as InputTerm
+from .function import exponential as exponential
+from .function import harmonic as harmonic
+from .function import minimum_jerk as minimum_jerk
 from .profile import Profile as Profile
 from .motion import Motion as Motion
 from .release import Release as Release

@@ -13,6 +13,7 @@ from pindrive import _core
 from pindrive.lazy import xr
 from pindrive.motion.drive import Drive
 from pindrive.motion.friction import COEFFICIENT_OF, COEFFICIENTS, PRESSED_BY, friction_force
+from pindrive.motion.function import Function
 from pindrive.motion.profile import Profile
 from pindrive.motion.release import Release, check_fits
 from pindrive.quantities.budgets import worker_count
@@ -280,7 +281,7 @@ def _constants(
         value, quantity = getattr(release, name), QUANTITIES[name]
         unit = "" if quantity.unit == "1" else f" {quantity.unit}"
         if value != quantity.absent:
-            given = "a Profile" if isinstance(value, Profile) else f"{value!r}{unit}"
+            given = f"{value!r}{unit}" if isinstance(value, float) else f"a {type(value).__name__}"
             required = f"{quantity.absent:g}{unit}; `simulate` follows another"
             raise ValueError(refusal(name, required, given))
     has = {
@@ -299,11 +300,11 @@ def _constants(
     for name, value in has.items():
         if value is None or varied.get(name) is not None:
             continue
-        if isinstance(value, Profile):
+        if isinstance(value, (Profile, Function)):
             if value.changes:
                 required = "constant; `simulate` follows one that changes"
-                raise ValueError(refusal(name, required, f"a Profile of {len(value.times)} rows"))
-            value = value.values[0]
+                raise ValueError(refusal(name, required, f"a {type(value).__name__}"))
+            value = value(0.0)
         found[name] = value
     return found
 

@@ -6,6 +6,9 @@ from collections.abc import Sequence
 from typing import Any, Final
 
 Rows = Sequence[tuple[float, float]]
+Pieces = Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]]
+"""Begin, polynomial and terms (cosine, sine, decay, frequency) of each piece of a function."""
+Input = Rows | Pieces
 
 
 LawNumbers = tuple[float, float, float, float, float]
@@ -26,14 +29,14 @@ CoreNumbers = tuple[
     float,
     ContactNumbers,
     ContactNumbers,
-    Rows,
-    Rows,
+    Input,
+    Input,
     float,
     float,
     float,
-    Rows,
-    Rows,
-    Rows,
+    Input,
+    Input,
+    Input,
     tuple[float, float, float],
     float,
 ]

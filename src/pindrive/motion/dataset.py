@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from pindrive.lazy import xr
 from pindrive.motion.motion import Motion
-from pindrive.motion.profile import Profile
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.results import SERIES
 from pindrive.quantities.status import outcome_attributes
@@ -23,7 +22,7 @@ def columns(motion: Motion, t: NDArray[np.float64]) -> dict[str, NDArray[np.floa
     """
     found = {"time": t, **motion.columns(t)}
     given = motion.release.mouse_velocity
-    if isinstance(given, Profile) and given.changes:
+    if not isinstance(given, float) and given.changes:
         found["plate_velocity"] = motion.plate_velocity(t)
     return found
 
@@ -54,11 +53,11 @@ def dataset(motion: Motion, t: NDArray[np.float64]) -> xr.Dataset:
     return xr.Dataset(data, coords={"time": ("time", t, SERIES["time"].attributes)}, attrs=origin)
 
 
-def _attributes(motion: Motion) -> dict[str, float | list[float]]:
+def _attributes(motion: Motion) -> dict[str, float | str | list[float]]:
     """The inputs; of rows one attribute for each column, as attributes have one dimension."""
-    flat: dict[str, float | list[float]] = {}
+    flat: dict[str, float | str | list[float]] = {}
     for name, value in motion.inputs().items():
-        if isinstance(value, float):
+        if isinstance(value, (float, str)):
             flat[name] = value
         else:
             names = (column.rpartition(".")[2] for column in COLUMNS[QUANTITIES[name].rows_of])

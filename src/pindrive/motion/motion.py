@@ -18,6 +18,7 @@ from pindrive.lazy import mpl_figure, xr
 from pindrive.motion.core_numbers import CoreNumbers
 from pindrive.motion.drive import Drive, law_values
 from pindrive.motion.friction import COEFFICIENTS, PRESSED_BY
+from pindrive.motion.function import Function
 from pindrive.motion.profile import Profile
 from pindrive.motion.release import INPUTS, Release, core_numbers
 from pindrive.motion.results import (
@@ -181,7 +182,7 @@ class Motion(lazy.NotebookHtml):
         """The plate's velocity v_p(t) in the housing, m/s, in the shape of t."""
         times = _times(t)
         given = self.release.mouse_velocity
-        return given(times) if isinstance(given, Profile) else np.full_like(times, given)
+        return np.full_like(times, given) if isinstance(given, float) else given(times)
 
     def _evaluate(
         self,
@@ -414,13 +415,14 @@ class Motion(lazy.NotebookHtml):
 
         return to_csv(self, path, rate)
 
-    def inputs(self) -> dict[str, float | tuple[tuple[float, float], ...]]:
+    def inputs(self) -> dict[str, float | str | tuple[tuple[float, float], ...]]:
         """Simulated inputs, SI, by the names of the table of quantities.
 
-        A curve or an input that changes is its rows: (speed, force) or (time, value).
+        A curve or a profile is its rows: (speed, force) or (time, value). A function is its
+        parameters, `mouse_velocity.amplitude`, or the text of its pieces, `mouse_velocity.pieces`.
         """
         drive = self.drive
-        values: dict[str, float | tuple[tuple[float, float], ...]] = {
+        values: dict[str, float | str | tuple[tuple[float, float], ...]] = {
             "mass": drive.mass,
             "stiffness": drive.stiffness,
             "damping": drive.damping,
@@ -439,7 +441,10 @@ class Motion(lazy.NotebookHtml):
             values["finger.stiffness"] = drive.finger.stiffness
         for name in INPUTS:
             given = getattr(self.release, name)
-            values[name] = given.rows if isinstance(given, Profile) else given
+            if isinstance(given, Function):
+                values |= {f"{name}.{part}": value for part, value in given.described.items()}
+            else:
+                values[name] = given.rows if isinstance(given, Profile) else given
         values["displacement"] = self.release.displacement
         values["velocity"] = self.release.initial_velocity
         if self.release.skin_stretch is not None:

@@ -52,7 +52,7 @@ class Profile:
 
     def __init__(self, times: Iterable[float | str], values: Iterable[float | str]) -> None:
         """Validate, and keep tuples of plain floats."""
-        unit, numbers = _in_si(_listed(values))
+        unit, numbers = in_si(_listed(values), "values")
         t = _column(_listed(times), "profile.time", "times")
         y = _column(numbers, "profile.value", "values")
         if not t:
@@ -107,7 +107,7 @@ def _listed(values: Iterable[float | str]) -> list[Any]:
         raise ValueError(refusal("a profile", "sequences of numbers", repr(values))) from None
 
 
-def _in_si(values: list[Any]) -> tuple[str, list[Any]]:
+def in_si(values: list[Any], label: str) -> tuple[str, list[Any]]:
     """Return the SI unit of texts among values, empty for numbers alone, and all values in SI."""
     if str not in set(map(type, values)):
         return "", values
@@ -119,7 +119,7 @@ def _in_si(values: list[Any]) -> tuple[str, list[Any]]:
             return unit, [to_si(y, unit, "") if isinstance(y, str) else y for y in values]
     usual = " or all like ".join(quoted(first[unit].usual) for unit in units)
     texts = ", ".join(quoted(y) for y in values if isinstance(y, str))
-    raise ValueError(refusal("values", f"numbers in SI, or text all like {usual}", texts))
+    raise ValueError(refusal(label, f"numbers in SI, or text all like {usual}", texts))
 
 
 def _column(values: list[Any], name: str, label: str) -> tuple[float, ...]:

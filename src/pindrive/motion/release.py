@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 from math import inf, nan
-from typing import Any, Final
+from typing import Any, Final, overload
 
-from pindrive.motion.core_numbers import ContactNumbers, CoreNumbers, DriveNumbers, Rows
+from pindrive import _core
+from pindrive.motion.core_numbers import ContactNumbers, CoreNumbers, DriveNumbers, Input, Rows
 from pindrive.motion.drive import Contact, Drive, values_of
+from pindrive.motion.function import Function
 from pindrive.motion.profile import Profile, check_continuous
 from pindrive.quantities.contradictions import refuse
 from pindrive.quantities.refusal import refusal
@@ -15,7 +17,7 @@ from pindrive.quantities.table import QUANTITIES, check, default
 from pindrive.quantities.value import concise
 
 INPUTS: Final = ("mouse_velocity", "plate_load", "force", "across_velocity", "finger_load")
-"""Inputs of a release over time: a number or a `Profile` each."""
+"""Inputs of a release over time: a number, a `Profile` or a `Function` each."""
 
 CONTINUOUS: Final = ("mouse_velocity", "across_velocity")
 """Inputs that may not have steps."""
@@ -50,25 +52,25 @@ class Release:
         ValueError: A value is not a number or out of its range, or the mouse velocity has a step.
     """
 
-    mouse_velocity: float | Profile
+    mouse_velocity: float | Profile | Function
     displacement: float
     velocity: float | None
-    plate_load: float | Profile
+    plate_load: float | Profile | Function
     skin_stretch: float | None
-    force: float | Profile
-    across_velocity: float | Profile
-    finger_load: float | Profile
+    force: float | Profile | Function
+    across_velocity: float | Profile | Function
+    finger_load: float | Profile | Function
 
     def __init__(
         self,
-        mouse_velocity: float | str | Profile,
+        mouse_velocity: float | str | Profile | Function,
         displacement: float | str = default("displacement"),
         velocity: float | str | None = None,
-        plate_load: float | str | Profile = default("plate_load"),
+        plate_load: float | str | Profile | Function = default("plate_load"),
         skin_stretch: float | str | None = None,
-        force: float | str | Profile = default("force"),
-        across_velocity: float | str | Profile = default("across_velocity"),
-        finger_load: float | str | Profile = default("finger_load"),
+        force: float | str | Profile | Function = default("force"),
+        across_velocity: float | str | Profile | Function = default("across_velocity"),
+        finger_load: float | str | Profile | Function = default("finger_load"),
     ) -> None:
         """Validate, and keep plain floats."""
         put = object.__setattr__
@@ -100,26 +102,48 @@ class Release:
         return initial(self.mouse_velocity)
 
 
-def initial(given: float | Profile) -> float:
+def initial(given: float | Profile | Function) -> float:
     """Return an input at t = 0."""
-    return given(0.0) if isinstance(given, Profile) else given
+    return given if isinstance(given, float) else given(0.0)
 
 
-def input_of(name: str, given: float | str | Profile) -> float | Profile:
-    """Return a constant or a profile, with each value checked."""
-    if not isinstance(given, Profile):
+@overload
+def input_of(name: str, given: float | str | Profile) -> float | Profile: ...
+@overload
+def input_of(name: str, given: float | str | Profile | Function) -> float | Profile | Function: ...
+def input_of(name: str, given: float | str | Profile | Function) -> float | Profile | Function:
+    """Return a constant, a profile or a function, with each value checked."""
+    if not isinstance(given, (Profile, Function)):
         return check(name, given)
     quantity = QUANTITIES[name]
     bounds, limits = quantity.bounds, quantity.limits
     if given.unit and given.unit != quantity.unit:
         other = "plain numbers" if given.unit == "1" else f"values in {given.unit}"
-        raise ValueError(refusal(name, f"a Profile of {quantity.kinds}", other))
+        raise ValueError(refusal(name, f"a {type(given).__name__} of {quantity.kinds}", other))
+    if isinstance(given, Function):
+        _check_function(name, given)
+        return given
     if name in CONTINUOUS:
         check_continuous(name, given)
     if not all(end in bounds and end in limits for end in (min(given.values), max(given.values))):
         for i, y in enumerate(given.values):
             check(name, y, label=f"{name} values[{i}]")
     return given
+
+
+def _check_function(name: str, given: Function) -> None:
+    """Refuse a function that the input cannot be: one that jumps, or is negative."""
+    if name == "across_velocity":
+        raise ValueError(refusal(name, "a number or a Profile", "a Function"))
+    (time, least), (jumps, before, after) = _core.function_range(given.core)
+    if name in CONTINUOUS and jumps < inf:
+        required = "without a step (a jump would take an infinite force)"
+        raise ValueError(
+            refusal(name, required, f"one from {before!r} to {after!r} at {jumps!r} s")
+        )
+    lower = QUANTITIES[name].bounds.lower
+    if least < lower - 1e-9:
+        raise ValueError(refusal(name, f">= {lower:g} at all times", f"{least!r} at {time!r} s"))
 
 
 def check_fits(drive: Drive, release: Release) -> None:
@@ -135,6 +159,9 @@ def check_fits(drive: Drive, release: Release) -> None:
         raise ValueError(refusal("release", "a Release", repr(release)))
     if not drive.plate.rigid:
         raise ValueError(refusal("plate stiffness", "infinite", f"{drive.plate.stiffness!r} N/m"))
+    if isinstance(release.finger_load, Function) and not drive.finger.rigid:
+        required = "a number or a Profile beside a finger stiffness"
+        raise ValueError(refusal("finger_load", required, "a Function"))
     if drive.travel is not None or release.skin_stretch is not None:
         refuse(values_of(drive) | _start_of(release))
 
@@ -157,14 +184,14 @@ def core_numbers(drive: Drive, release: Release, duration: float | None) -> Core
         damping,
         plate,
         finger,
-        rows_of(release.mouse_velocity),
-        rows_of(release.plate_load),
+        numbers_of(release.mouse_velocity),
+        numbers_of(release.plate_load),
         release.displacement,
         release.initial_velocity,
         nan if release.skin_stretch is None else release.skin_stretch,
-        rows_of(release.force),
-        rows_of(release.across_velocity),
-        rows_of(release.finger_load),
+        numbers_of(release.force),
+        numbers_of(release.across_velocity),
+        numbers_of(release.finger_load),
         stops,
         inf if duration is None else duration,
     )
@@ -200,6 +227,11 @@ def stop_numbers(drive: Drive) -> tuple[float, float, float]:
         inf if drive.stop_stiffness is None else drive.stop_stiffness,
         drive.stop_damping or 0.0,
     )
+
+
+def numbers_of(given: float | Profile | Function) -> Input:
+    """An input as rows (time, value), one row for a constant; or the pieces of a function."""
+    return given.core if isinstance(given, Function) else rows_of(given)
 
 
 def rows_of(given: float | Profile) -> Rows:

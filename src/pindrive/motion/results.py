@@ -164,7 +164,7 @@ def _mode(plate: int, finger: int, stop: int, still: bool) -> ModeName:
 
 
 EndKind = Literal["moving", "resting", "decaying", "steady", "irregular"]
-Cycle = Literal["free", "grazing", "stick-slip", "limit cycle"]
+Cycle = Literal["free", "grazing", "stick-slip", "limit cycle", "driven"]
 
 _KIND: dict[End, EndKind] = {
     End.moving: "moving",
@@ -177,6 +177,7 @@ _CYCLE: dict[End, Cycle] = {
     End.grazing: "grazing",
     End.stick_slip: "stick-slip",
     End.limit_cycle: "limit cycle",
+    End.driven: "driven",
 }
 
 
@@ -288,8 +289,9 @@ class Ending:
     def cycle(self) -> Cycle | None:
         """Kind of a steady oscillation.
 
-        `free` of any event, `grazing` the plate's velocity once a period, `stick-slip`, or a `limit
-        cycle` that falling friction sustains without a carried phase.
+        `free` of any event, `grazing` the plate's velocity once a period, `stick-slip`, a `limit
+        cycle` that falling friction sustains without a carried phase, or `driven` by inputs that
+        repeat, once in one or several of their periods.
         """
         return _CYCLE.get(self.end)
 

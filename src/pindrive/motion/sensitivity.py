@@ -15,9 +15,10 @@ from numpy.typing import ArrayLike, NDArray
 import pindrive
 from pindrive import _core, lazy
 from pindrive.lazy import mpl_figure, xr
-from pindrive.motion.core_numbers import PLACES, ROWS, CoreNumbers, Rows, entry
+from pindrive.motion.core_numbers import PLACES, ROWS, CoreNumbers, Input, Rows, entry
 from pindrive.motion.drive import Contact, Drive
 from pindrive.motion.friction import COEFFICIENTS, PRESSED_BY, normal_force
+from pindrive.motion.function import UNITS, Function, rates_of
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.refusal import refusal
@@ -45,6 +46,7 @@ _COEFFICIENTS = (
     *(name for parts in PRESSED_BY.values() for name in parts if name not in _PLACES),
 )
 """Parameters that the core knows by the forces that follow from them."""
+_INPUTS = tuple(name for name in ROWS if name in PLACES)
 _ROW = re.compile(
     r"(?:(plate_curve|finger_curve)\[(\d+)\]\.(speed|force)"
     r"|(mouse_velocity|plate_load|force|across_velocity|finger_load)\[(\d+)\]\.(time|value))"
@@ -178,7 +180,7 @@ class _Derivative:
     """
 
     def __init__(self, motion: pindrive.Motion, name: str) -> None:
-        numbers = motion.core_numbers
+        numbers, hand = motion.core_numbers, motion.release.mouse_velocity
         along, size = _direction(motion, name)
         self.name, self.size = name, size
         self._motion = motion
@@ -188,6 +190,8 @@ class _Derivative:
         self.course_until, self._same_ending, self.gap = inf, True, ""
         for step in (_STEP * size, -_STEP * size):
             there = _mapped(lambda x, d, h=step: x + h * d if d else x, numbers, along)
+            if motion.release.velocity is None and isinstance(hand, Function):
+                there = _replaced(there, (8,), _core.function_at(there[5], np.zeros(1))[0])
             if _in_range(there):
                 self._compare(step, _core.simulate(*there))
 
@@ -278,6 +282,8 @@ def _direction(motion: pindrive.Motion, given: str) -> tuple[CoreNumbers, float]
     numbers = motion.core_numbers
     if (name := _key_as_name(given)) in _COEFFICIENTS:
         return _along_friction(motion, name)
+    if along := _along_function(motion, name):
+        return along
     places = _places(numbers, given)
     size = max(abs(entry(numbers, place)) for place in places) or _natural_size(motion, places[0])
     for contact, (kinetic, static, _, curve, law) in ((3, numbers[3]), (4, numbers[4])):
@@ -295,8 +301,27 @@ def _direction(motion: pindrive.Motion, given: str) -> tuple[CoreNumbers, float]
     for place, slope in (dict.fromkeys(places, 1.0) | _friction_slopes(motion.drive, name)).items():
         along = _replaced(along, place, slope)
     if motion.release.velocity is None:
-        along = _replaced(along, (8,), _start_slope(numbers[5], along[5]) + along[8])
+        along = _replaced(
+            along, (8,), _start_slope(_rows_of(numbers[5]), _rows_of(along[5])) + along[8]
+        )
     return along, size
+
+
+def _along_function(motion: pindrive.Motion, given: str) -> tuple[CoreNumbers, float] | None:
+    """Return the derivative by a parameter of a function, as `mouse_velocity.amplitude`."""
+    name, _, parameter = given.partition(".")
+    function = getattr(motion.release, name, None) if name in _INPUTS else None
+    if not isinstance(function, Function) or not parameter:
+        return None
+    if parameter not in function.parameters:
+        known = ", ".join(f"{name}.{part}" for part in function.parameters) or "none of a sum"
+        raise ValueError(refusal("parameter", f"one of {known}", repr(given)))
+    rates = rates_of(function, parameter)
+    along = _replaced(_mapped(lambda _: 0.0, motion.core_numbers), PLACES[name], rates)
+    if name == "mouse_velocity" and motion.release.velocity is None:
+        begin = _rows_of(motion.core_numbers[5]), _rows_of(rates)
+        along = _replaced(along, (8,), _start_slope(*begin))
+    return along, abs(function.parameters[parameter]) or function.size or 1.0
 
 
 def _along_friction(motion: pindrive.Motion, name: str) -> tuple[CoreNumbers, float]:
@@ -359,6 +384,9 @@ def _unit(given: str) -> str:
     """The SI unit of a parameter."""
     name = re.sub(r"^(plate|finger)_", r"\1.", given)
     table, _, column = name.partition("[")
+    of_function, _, part = name.partition(".")
+    if of_function in _INPUTS and part:
+        return UNITS.get(part) or QUANTITIES[of_function].unit
     if not column:
         return QUANTITIES[name if name in QUANTITIES else given].unit
     part = column.partition("].")[2]
@@ -407,7 +435,8 @@ def _start_slope(rows: Rows, along: Rows) -> float:
 def _natural_size(motion: pindrive.Motion, place: Place) -> float:
     """A size, in this motion, for a parameter that is zero."""
     drive, omega = motion.drive, motion.drive.natural_frequency
-    at_first, speeds = motion.core_numbers[7:9], (abs(v) for _, v in motion.core_numbers[5])
+    at_first = motion.core_numbers[7:9]
+    speeds = (abs(v) for _, v in _rows_of(motion.core_numbers[5]))
     displacement, velocity = map(abs, at_first)
     length = max(displacement, max(velocity, *speeds) / omega) or 1e-3
     match place:
@@ -424,14 +453,25 @@ def _natural_size(motion: pindrive.Motion, place: Place) -> float:
     return length * drive.stiffness
 
 
+def _rows_of(given: Input) -> Rows:
+    """The rows of an input; of a function, its begins with the values there."""
+    return [
+        (row[0], row[1]) if len(row) == 2 else (row[0], row[1][0] + sum(t[0] for t in row[2]))
+        for row in given
+    ]
+
+
 def _in_range(numbers: CoreNumbers) -> bool:
     """Return True if the core can compute a motion; damping may be negative there."""
 
     def increase(rows: Rows) -> bool:
         return all(a[0] < b[0] for a, b in pairwise(rows))
 
-    mass, stiffness, _, plate, finger, mouse_velocity, plate_load, *_ = numbers
-    *_, stretch, force, across, finger_load, stops, _ = numbers
+    mass, stiffness, _, plate, finger, *_ = numbers
+    *_, stretch, _, _, _, stops, _ = numbers
+    mouse_velocity, plate_load, force, across, finger_load = (
+        _rows_of(entry(numbers, (i,))) for i in (5, 6, 10, 11, 12)
+    )
     contacts = all(
         static >= kinetic >= 0.0
         and give > 0.0
@@ -462,7 +502,7 @@ def _in_range(numbers: CoreNumbers) -> bool:
 # ---- nested numbers ------------------------------------------------------------------------------
 
 
-def _replaced(numbers: Any, place: Place, value: float) -> Any:
+def _replaced(numbers: Any, place: Place, value: Any) -> Any:
     if not place:
         return value
     i, *rest = place

@@ -9,11 +9,13 @@ import pindrive
 from pindrive import _core
 from pindrive.motion.core_numbers import CoreNumbers
 from pindrive.motion.drive import Drive
+from pindrive.motion.function import Function
 from pindrive.motion.motion import Motion, solve
-from pindrive.motion.release import Release, check_fits
+from pindrive.motion.release import INPUTS, Release, check_fits, numbers_of
 from pindrive.quantities.contradictions import refuse
 from pindrive.quantities.drive import DRIVE_QUANTITIES
-from pindrive.quantities.table import check, warn_of
+from pindrive.quantities.refusal import refusal
+from pindrive.quantities.table import QUANTITIES, check, warn_of
 
 _SEEN = {quantity.name: quantity.seen for quantity in DRIVE_QUANTITIES if quantity.seen}
 _GLANCE = (
@@ -67,7 +69,11 @@ def simulate(
         for name in ("velocity",) * (release.velocity is None) + ("duration",) * (duration is None):
             del given[name]
         for name, value in given.items():
-            warn_of(name, value, stacklevel=2)
+            if name in QUANTITIES and not isinstance(value, str):
+                warn_of(name, value, stacklevel=2)
+        for name in INPUTS:
+            if isinstance(function := getattr(release, name), Function):
+                warn_of(name, function.size, stacklevel=2)
     return motion
 
 
@@ -81,10 +87,22 @@ def simulated(
     """Simulate without warnings: for numbers that no person has written."""
     check_fits(drive, release)
     end = None if duration is None else check("duration", duration)
+    if end is None:
+        _check_end(release)
     if end is not None:
         keys = ("drive.mass", "drive.stiffness", "motion.duration")
         refuse(dict(zip(keys, (drive.mass, drive.stiffness, end), strict=True)))
     return solve(drive, release, end, check("settling_band", settling_band))
+
+
+def _check_end(release: Release) -> None:
+    """Refuse functions that neither end nor repeat: the motion would never be known."""
+    inputs = [getattr(release, name) for name in INPUTS]
+    if any(isinstance(given, Function) for given in inputs):
+        _, period, constant = _core.input_period([numbers_of(given) for given in inputs])
+        if not (constant or period < inf):
+            required = "given under functions that neither end nor repeat"
+            raise ValueError(refusal("duration", required, None))
 
 
 def motion_of(device: pindrive.DeviceFile) -> Motion:
@@ -111,6 +129,7 @@ def _plausible(numbers: CoreNumbers) -> bool:
         and (skin0 <= finger[2] <= skin1 or finger[2] == inf)
         and not (plate[3] or finger[3])
         and len(v_plate) == len(load) == len(force) == len(across) == len(finger_load) == 1
+        and len(v_plate[0]) == len(load[0]) == len(force[0]) == len(finger_load[0]) == 2
         and force[0][1] == across[0][1] == 0.0
         and finger_load[0][1] == 1.0
         and stops[0] == inf

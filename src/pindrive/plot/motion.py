@@ -17,6 +17,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from pindrive.motion.function import Function
 from pindrive.motion.profile import Profile
 from pindrive.plot.style import (
     GREY,
@@ -169,7 +170,7 @@ def _draw_portrait(motion: Motion, trace: Trace, axes: Axes) -> None:
         )
     axes.plot(trace.x, trace.v, color=PALETTE["curve"], gid="curve")
     _mark_events(trace, axes, [e.position * MM for e, _ in trace.events], "velocity")
-    if not isinstance(motion.release.mouse_velocity, Profile):
+    if isinstance(motion.release.mouse_velocity, float):
         _draw_plate(motion, axes, trace)
     _mark_ends(motion, trace, axes)
     for place in _stops_met(motion, trace):
@@ -252,9 +253,10 @@ def _draw_plate(motion: Motion, axes: Axes, trace: Trace) -> None:
         "gid": "plate",
     }
     level = float(motion.plate_velocity(trace.end)) * MM
-    if isinstance(motion.release.mouse_velocity, Profile):
-        rows = [t for t in motion.release.mouse_velocity.times if 0.0 < t < trace.end]
-        times = np.array([0.0, *rows, trace.end])
+    if not isinstance(motion.release.mouse_velocity, float):
+        hand = motion.release.mouse_velocity
+        places = hand.times if isinstance(hand, Profile) else np.linspace(0.0, trace.end, 401)
+        times = np.array([0.0, *(t for t in places if 0.0 < t < trace.end), trace.end])
         axes.plot(times * trace.scale, motion.plate_velocity(times) * MM, **dashed)
     else:
         axes.axhline(level, **dashed)
@@ -380,8 +382,12 @@ _MOST_TURNS: Final = 4
 """Largest number of values shown of a curve or a varying input."""
 
 
-def _values(given: float | Profile) -> Sequence[float]:
-    return given.values if isinstance(given, Profile) else (given,)
+def _course_of_input(motion: Motion, name: str) -> str:
+    """Return an input over time in words, as `_course` does."""
+    given = getattr(motion.release, name)
+    if isinstance(given, Function):
+        return _course(name, given(np.linspace(0.0, motion.duration, 1001)).tolist())
+    return _course(name, given.values if isinstance(given, Profile) else (given,))
 
 
 def _course(name: str, values: Sequence[float]) -> str:
@@ -396,7 +402,7 @@ def _course(name: str, values: Sequence[float]) -> str:
 def stuck_name(motion: Motion, mode: str) -> str:
     """Return the name of a stuck phase."""
     if mode == "resting" and (
-        isinstance(motion.release.mouse_velocity, Profile)
+        not isinstance(motion.release.mouse_velocity, float)
         or not motion.drive.finger.rigid
         or motion.drive.travel is not None
     ):
@@ -432,7 +438,7 @@ def outcome(motion: Motion) -> str:
 
 def parameters(motion: Motion) -> str:
     """The drive and its release."""
-    drive, v_plate = motion.drive, motion.release.mouse_velocity
+    drive = motion.drive
     words = [
         f"$m$ = {short('mass', drive.mass)}",
         f"$k$ = {short('stiffness', drive.stiffness)}",
@@ -451,17 +457,15 @@ def parameters(motion: Motion) -> str:
         for value in (getattr(drive, name),)
         if value is not None
     ]
-    if isinstance(motion.release.plate_load, Profile) or motion.release.plate_load != 1.0:
-        words.append(f"$λ$ = {_course('plate_load', _values(motion.release.plate_load))}")
-    if motion.release.finger_load != 1.0:
-        course = _course("finger_load", _values(motion.release.finger_load))
-        words.append(rf"$λ_\mathrm{{f}}$ = {course}")
-    if motion.release.across_velocity != 0.0:
-        across = _values(motion.release.across_velocity)
-        words.append(f"$w$ = {_course('across_velocity', across)}")
-    if motion.release.force != 0.0:
-        words.append(rf"$F_\mathrm{{e}}$ = {_course('force', _values(motion.release.force))}")
-    words.append(rf"$v_\mathrm{{p}}$ = {_course('mouse_velocity', _values(v_plate))}")
+    for name, symbol, usual in (
+        ("plate_load", "λ", 1.0),
+        ("finger_load", r"λ_\mathrm{f}", 1.0),
+        ("across_velocity", "w", 0.0),
+        ("force", r"F_\mathrm{e}", 0.0),
+        ("mouse_velocity", r"v_\mathrm{p}", None),
+    ):
+        if getattr(motion.release, name) != usual:
+            words.append(f"${symbol}$ = {_course_of_input(motion, name)}")
     words.append(f"$x_0$ = {short('displacement', motion.release.displacement)}")
     if motion.release.initial_velocity != float(motion.plate_velocity(0.0)):
         words.append(f"$v_0$ = {short('velocity', motion.release.initial_velocity)}")

@@ -116,7 +116,8 @@ class End(IntEnum):
     grazing = 4
     stick_slip = 5
     limit_cycle = 6
-    irregular = 7
+    driven = 7
+    irregular = 8
 
 
 OUTCOMES: dict[str, type[Status | End] | None] = {"status": Status, "ending": End, "events": None}

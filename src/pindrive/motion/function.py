@@ -1,0 +1,438 @@
+"""Inputs that are functions of time: sinusoids, strokes, exponentials, their sums and sequences.
+
+SI units. The motion under a function is as exact as under constant inputs: nothing is sampled.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from math import cos, exp, inf, isfinite, sin, tau
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, overload
+
+from pindrive import _core
+from pindrive.motion.profile import Profile, in_si
+from pindrive.quantities.refusal import quoted, refusal
+from pindrive.quantities.units import to_si
+from pindrive.quantities.value import concise
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+
+DEGREE: Final = 5
+"""Highest degree of the polynomial of a piece."""
+
+FASTEST: Final = 1e6
+"""Highest frequency of a function, Hz."""
+
+
+class InputTerm(NamedTuple):
+    """InputTerm of a piece: (cosine cos Ωτ + sine sin Ωτ) e^(−δτ), with τ the time since its begin.
+
+    Attributes:
+        cosine: Amplitude of the cosine, SI.
+        sine: Amplitude of the sine, SI.
+        decay: δ, 1/s, from 0 to 1e7; 0: the term lasts.
+        frequency: Ω, rad/s, from 0 to 1e7.
+    """
+
+    cosine: float = 0.0
+    sine: float = 0.0
+    decay: float = 0.0
+    frequency: float = 0.0
+
+
+class InputPiece(NamedTuple):
+    """Part of a function from a time on: a polynomial and terms.
+
+    Attributes:
+        begin: Time at which it begins, s. It ends where the next begins.
+        polynomial: Coefficients p₀, p₁, … of p₀ + p₁ τ + …, SI; at most six.
+        terms: Terms to be added.
+    """
+
+    begin: float = 0.0
+    polynomial: tuple[float, ...] = ()
+    terms: tuple[InputTerm, ...] = ()
+
+    @property
+    def core(self) -> tuple[float, tuple[float, ...], tuple[InputTerm, ...]]:
+        """The piece as the core has it."""
+        missing = (0.0,) * (DEGREE + 1 - len(self.polynomial))
+        return self.begin, self.polynomial + missing, self.terms
+
+    def from_time(self, time: float) -> InputPiece:
+        """The same function with its begin at a time, s."""
+        return self._replace(begin=time)
+
+
+@concise
+@dataclass(frozen=True, slots=True, init=False)
+class Function:
+    """A quantity over time in pieces, each a polynomial, exponentials and sinusoids.
+
+    Made by `harmonic`, `minimum_jerk`, `exponential`; `f + g` is their sum, also with a number or a
+    `Profile`, and `f.then(time, g)` their sequence. Before the first piece the value is that at its
+    begin.
+
+    Args:
+        pieces: At least one, begins increasing.
+        unit: The SI unit of its values; empty: that of the input to which it is given.
+
+    Raises:
+        ValueError: No pieces, begins that do not increase, more than six coefficients, or a number
+            that is not finite or out of range.
+    """
+
+    pieces: tuple[InputPiece, ...]
+    unit: str = field(compare=False, repr=False)
+    kind: str = field(compare=False, repr=False)
+    numbers: tuple[tuple[str, float], ...] = field(compare=False, repr=False)
+
+    def __init__(self, pieces: tuple[InputPiece, ...] | list[InputPiece], unit: str = "") -> None:
+        """Validate, and keep tuples."""
+        _check(tuple(pieces))
+        object.__setattr__(self, "pieces", tuple(pieces))
+        object.__setattr__(self, "unit", unit)
+        object.__setattr__(self, "kind", "")
+        object.__setattr__(self, "numbers", ())
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """Numbers from which a `harmonic`, `minimum_jerk` or `exponential` was made, by name."""
+        return dict(self.numbers)
+
+    @property
+    def changes(self) -> bool:
+        """True if the function takes more than one value."""
+        return (
+            any(any(p.polynomial[1:]) or p.terms for p in self.pieces)
+            or len({p.polynomial[:1] for p in self.pieces}) > 1
+        )
+
+    @property
+    def size(self) -> float:
+        """Bound of the absolute value at the begins of the pieces, SI."""
+        return max(
+            sum(map(abs, p.polynomial[:1])) + sum(abs(t.cosine) + abs(t.sine) for t in p.terms)
+            for p in self.pieces
+        )
+
+    @property
+    def described(self) -> dict[str, float | str]:
+        """The parameters by name or, without any, the text of the pieces."""
+        if self.parameters:
+            return dict(self.numbers)
+        return {"pieces": "; ".join(str(piece.core) for piece in self.pieces)}
+
+    @property
+    def core(self) -> list[tuple[float, tuple[float, ...], tuple[InputTerm, ...]]]:
+        """The pieces as the core has them."""
+        return [piece.core for piece in self.pieces]
+
+    @overload
+    def __call__(self, t: float) -> float: ...
+    @overload
+    def __call__(self, t: ArrayLike) -> NDArray[np.float64]: ...
+    def __call__(self, t: ArrayLike) -> float | NDArray[np.float64]:
+        """Return the value at time t (s): a float for a float, else an array of equal shape."""
+        import numpy as np
+
+        times = np.asarray(t, dtype=np.float64)
+        values = _core.function_at(self.core, np.ascontiguousarray(times.ravel()))
+        if not isinstance(t, (float, int)):
+            return values.reshape(times.shape)
+        return float(values[0])
+
+    def __add__(self, other: float | str | Profile | Function) -> Function:
+        """Return the sum with a number, a profile or a function."""
+        added = as_function(other, self.unit)
+        if self.unit and added.unit and self.unit != added.unit:
+            raise ValueError(refusal("a sum", f"of values in {self.unit}", f"one in {added.unit}"))
+        begins = sorted({piece.begin for f in (self, added) for piece in f.pieces})
+        parts = [[_piece_at(f.pieces, begin) for f in (self, added)] for begin in begins]
+        summed = [_sum(begin, *each) for begin, each in zip(begins, parts, strict=True)]
+        return Function(summed, self.unit or added.unit)
+
+    __radd__ = __add__
+
+    def then(self, time: float | str, other: float | str | Profile | Function) -> Function:
+        """Return this function until a time, and from then on another, whose own time begins there.
+
+        Args:
+            time: s, or text with a unit; after the begin of this function.
+            other: A number, a profile or a function.
+
+        Raises:
+            ValueError: The time is not after the begin.
+        """
+        since = _number("time", "s", time)
+        if not since > self.pieces[0].begin:
+            required = f"after the begin of the function, {self.pieces[0].begin!r} s"
+            raise ValueError(refusal("time", required, f"{since!r} s"))
+        following = as_function(other, self.unit)
+        kept = [piece for piece in self.pieces if piece.begin < since]
+        # The value of a piece that begins before time 0 is that at time 0.
+        first = _piece_at(following.pieces, 0.0)
+        later = [
+            piece.from_time(piece.begin + since) for piece in following.pieces if piece.begin > 0
+        ]
+        return Function([*kept, first.from_time(since), *later], self.unit or following.unit)
+
+
+def harmonic(
+    mean: float | str, amplitude: float | str, frequency: float | str, phase: float | str = 0.0
+) -> Function:
+    """Return mean + amplitude sin(2π frequency t + phase).
+
+    Args:
+        mean: SI, or text with a unit, such as "60 mm/s".
+        amplitude: SI, or text with a unit.
+        frequency: Hz, > 0 and at most 1e6.
+        phase: rad.
+
+    Returns:
+        The function, with `parameters` of these names.
+
+    Raises:
+        ValueError: A number is out of range.
+    """
+    unit, (middle, size) = _in_one_unit({"mean": mean, "amplitude": amplitude})
+    rate = _number("frequency", "Hz", frequency)
+    if not 0 < rate <= FASTEST:
+        raise ValueError(refusal("frequency", f"> 0 Hz and <= {FASTEST:g} Hz", f"{rate!r} Hz"))
+    angle = _number("phase", "rad", phase)
+    return _made("harmonic", unit, mean=middle, amplitude=size, frequency=rate, phase=angle)
+
+
+def minimum_jerk(
+    distance: float | str, duration: float | str, begin: float | str = 0.0
+) -> Function:
+    """Return the velocity of a stroke of minimum jerk, zero before and after.
+
+    With s = (t − begin)/duration it is 30 distance/duration (s² − 2 s³ + s⁴): the smoothest way
+    from rest to rest, as hands move (Flash and Hogan 1985, doi:10.1523/JNEUROSCI.05-07-01688.1985).
+
+    Args:
+        distance: m, or text with a unit; its sign is the direction.
+        duration: s, > 0.
+        begin: s, >= 0.
+
+    Returns:
+        The function, with `parameters` of these names.
+
+    Raises:
+        ValueError: A number is out of range.
+    """
+    way = _number("distance", "m", distance)
+    lasts, start = _number("duration", "s", duration), _number("begin", "s", begin)
+    if not lasts > 0:
+        raise ValueError(refusal("duration", "> 0 s", f"{lasts!r} s"))
+    if not start >= 0:
+        raise ValueError(refusal("begin", ">= 0 s", f"{start!r} s"))
+    return _made("minimum_jerk", "m/s", distance=way, duration=lasts, begin=start)
+
+
+def exponential(
+    start: float | str, end: float | str, time_constant: float | str, begin: float | str = 0.0
+) -> Function:
+    """Return end + (start − end) e^(−(t − begin)/time_constant), and `start` before its begin.
+
+    Args:
+        start: SI, or text with a unit.
+        end: SI, or text with a unit.
+        time_constant: s, from 1e-7 on.
+        begin: s, >= 0.
+
+    Returns:
+        The function, with `parameters` of these names.
+
+    Raises:
+        ValueError: A number is out of range.
+    """
+    unit, (first, last) = _in_one_unit({"start": start, "end": end})
+    constant, since = _number("time_constant", "s", time_constant), _number("begin", "s", begin)
+    if not constant >= 1e-7:
+        raise ValueError(refusal("time_constant", ">= 1e-7 s", f"{constant!r} s"))
+    if not since >= 0:
+        raise ValueError(refusal("begin", ">= 0 s", f"{since!r} s"))
+    return _made("exponential", unit, start=first, end=last, time_constant=constant, begin=since)
+
+
+def as_function(given: float | str | Profile | Function, unit: str) -> Function:
+    """Return a number, a profile or a function as a function."""
+    if isinstance(given, Function):
+        return given
+    if not isinstance(given, Profile):
+        value = _number("a value", unit, given)
+        return Function((InputPiece(polynomial=(value,)),), unit)
+    last = len(given.times) - 1
+    pieces = []
+    for i, (time, value) in enumerate(given.rows):
+        if i < last and given.times[i + 1] == time:
+            continue  # the later value of a step holds
+        rate = 0.0 if i == last else (given.values[i + 1] - value) / (given.times[i + 1] - time)
+        pieces.append(InputPiece(time, (value, rate)))
+    return Function(pieces, given.unit)
+
+
+def rates_of(function: Function, parameter: str) -> list[Any]:
+    """Return the derivatives of the pieces by a parameter, as the core has them.
+
+    A step along the imaginary axis differences no numbers, so that the derivative is exact.
+    """
+    step = 1e-30
+    values = {**function.parameters}
+    values[parameter] += step * 1j  # type: ignore[assignment]
+    parts = [piece.core for piece in _MAKERS[function.kind](**values)]
+
+    def rate(number: Any) -> float:
+        return complex(number).imag / step
+
+    return [
+        (rate(begin), tuple(map(rate, polynomial)), [tuple(map(rate, term)) for term in terms])
+        for begin, polynomial, terms in parts
+    ]
+
+
+def _harmonic(mean: Any, amplitude: Any, frequency: Any, phase: Any) -> list[InputPiece]:
+    circular = cmath if isinstance(phase, complex) else math
+    sine, cosine = circular.sin(phase), circular.cos(phase)
+    return [
+        InputPiece(
+            0.0, (mean,), (InputTerm(amplitude * sine, amplitude * cosine, 0.0, tau * frequency),)
+        )
+    ]
+
+
+def _minimum_jerk(distance: Any, duration: Any, begin: Any) -> list[InputPiece]:
+    speed = 30 * distance / duration
+    stroke = (0.0, 0.0, *(part * speed / duration**n for n, part in ((2, 1), (3, -2), (4, 1))))
+    rest = [] if begin == 0 else [InputPiece(0.0, (0.0,))]
+    return [*rest, InputPiece(begin, stroke), InputPiece(begin + duration, (0.0,))]
+
+
+def _exponential(start: Any, end: Any, time_constant: Any, begin: Any) -> list[InputPiece]:
+    rest = [] if begin == 0 else [InputPiece(0.0, (start,))]
+    return [*rest, InputPiece(begin, (end,), (InputTerm(start - end, 0.0, 1 / time_constant),))]
+
+
+UNITS: Final[Mapping[str, str]] = {
+    "frequency": "Hz",
+    "phase": "rad",
+    "distance": "m",
+    "duration": "s",
+    "time_constant": "s",
+    "begin": "s",
+}
+"""SI units of the parameters of functions; other parameters are in that of the input."""
+
+_MAKERS: Final[Mapping[str, Callable[..., list[InputPiece]]]] = {
+    "harmonic": _harmonic,
+    "minimum_jerk": _minimum_jerk,
+    "exponential": _exponential,
+}
+
+
+def _made(kind: str, unit: str, **parameters: float) -> Function:
+    function = Function(_MAKERS[kind](**parameters), unit)
+    object.__setattr__(function, "kind", kind)
+    object.__setattr__(function, "numbers", tuple(parameters.items()))
+    return function
+
+
+def _in_one_unit(given: Mapping[str, float | str]) -> tuple[str, list[float]]:
+    """Return the SI unit of texts among numbers, empty for numbers alone, and all values in SI."""
+    unit, values = in_si(list(given.values()), " and ".join(given))
+    return unit, [_number(name, "", value) for name, value in zip(given, values, strict=True)]
+
+
+_EXAMPLES: Final = {"s": "20 ms", "Hz": "8 Hz", "rad": "90 deg", "m": "10 mm"}
+
+
+def _number(name: str, unit: str, given: object) -> float:
+    """Return a finite number, or the SI value of a text with a unit."""
+    if isinstance(given, str) and unit:
+        try:
+            return to_si(given, unit, _EXAMPLES.get(unit, f"1 {unit}"))
+        except ValueError as error:
+            raise ValueError(refusal(name, str(error), quoted(given))) from None
+    try:
+        if isinstance(given, (bytes, bool, str)):
+            raise TypeError
+        number = float(given)  # type: ignore[arg-type]
+    except (TypeError, ValueError, OverflowError):
+        raise ValueError(refusal(name, "a number", repr(given))) from None
+    if not abs(number) <= 1e12:
+        raise ValueError(refusal(name, "from -1e12 to 1e12", f"{number!r} {unit}".rstrip()))
+    return number
+
+
+def _piece_at(pieces: tuple[InputPiece, ...], time: float) -> InputPiece:
+    """Return the function at a time as a piece that begins there."""
+    before = [piece for piece in pieces if piece.begin <= time]
+    if not before:
+        return InputPiece(time, (_value_at(pieces[0], 0.0),))
+    piece = before[-1]
+    after = time - piece.begin
+    return piece if after == 0 else _shifted(piece, after)._replace(begin=time)
+
+
+def _shifted(piece: InputPiece, after: float) -> InputPiece:
+    """Return a piece with its time counted from a time after its begin."""
+    p = list(piece.polynomial)
+    for k in range(len(p) - 1):
+        for i in range(len(p) - 2, k - 1, -1):
+            p[i] += after * p[i + 1]
+    terms = []
+    for cosine, sine, decay, frequency in piece.terms:
+        part, c, s = exp(-decay * after), cos(frequency * after), sin(frequency * after)
+        turned = (part * (cosine * c + sine * s), part * (sine * c - cosine * s))
+        terms.append(InputTerm(*turned, decay, frequency))
+    return InputPiece(0.0, tuple(p), tuple(terms))
+
+
+def _value_at(piece: InputPiece, after: float) -> float:
+    shifted = _shifted(piece, after)
+    return sum(shifted.polynomial[:1]) + sum(term.cosine for term in shifted.terms)
+
+
+def _sum(begin: float, one: InputPiece, other: InputPiece) -> InputPiece:
+    size = max(len(one.polynomial), len(other.polynomial))
+    padded = [each.polynomial + (0.0,) * (size - len(each.polynomial)) for each in (one, other)]
+    return InputPiece(
+        begin,
+        tuple(a + b for a, b in zip(*padded, strict=True)),
+        one.terms + other.terms,
+    )
+
+
+def _check(pieces: tuple[InputPiece, ...]) -> None:
+    """Refuse pieces that the core cannot follow."""
+    if not pieces:
+        raise ValueError(refusal("pieces", "at least one", "none"))
+    before = -inf
+    for i, piece in enumerate(pieces):
+        begin, polynomial, terms = piece
+        if not (isfinite(begin) and begin > before):
+            required = "finite" if before == -inf else f"greater than {before!r}: pieces overlap"
+            raise ValueError(refusal(f"pieces[{i}].begin", required, repr(begin)))
+        before = begin
+        if len(polynomial) > DEGREE + 1:
+            required, given = f"at most {DEGREE + 1} coefficients", len(polynomial)
+            raise ValueError(refusal(f"pieces[{i}].polynomial", required, given))
+        for n, p in enumerate(polynomial):
+            if not isfinite(p):
+                raise ValueError(refusal(f"pieces[{i}].polynomial[{n}]", "finite", repr(p)))
+        for j, term in enumerate(terms):
+            for name, value in term._asdict().items():
+                lower, upper = (0.0, 1e7) if name in ("decay", "frequency") else (-1e12, 1e12)
+                if not lower <= value <= upper:
+                    label, required = (
+                        f"pieces[{i}].terms[{j}].{name}",
+                        f"from {lower:g} to {upper:g}",
+                    )
+                    raise ValueError(refusal(label, required, repr(value)))
