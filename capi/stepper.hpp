@@ -120,7 +120,8 @@ class Followed final : public Following {
       return fail(PINDRIVE_DERIVATIVE, "a direction is set of derivatives, not of a stepper");
     else
       return set_input(input, [&](pd::Curve<T>& line) {
-        line = {{line.value.value, value}, {line.rate.value, rate}};
+        line.value = {line.value.value, value};
+        line.rate = {line.rate.value, rate};
       });
   }
   const pd::Stepper<double>* values() const override {

@@ -18,6 +18,8 @@ from .motion.drive import HessSoom as HessSoom
 from .motion.drive import Stribeck as Stribeck
 from .motion.drive import Drive as Drive
 from .motion.function import Function as Function
+from .motion.function import InputPiece as InputPiece
+from .motion.function import InputTerm as InputTerm
 from .motion.function import exponential as exponential
 from .motion.function import harmonic as harmonic
 from .motion.function import minimum_jerk as minimum_jerk

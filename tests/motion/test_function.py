@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import pindrive as pd
-from pindrive.motion import InputPiece, InputTerm
+from pindrive import InputPiece, InputTerm
 
 DRIVE = pd.Drive(
     mass="10 g",

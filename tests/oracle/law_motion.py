@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 import pindrive as pd
-from pindrive.motion import InputPiece, InputTerm
+from pindrive import InputPiece, InputTerm
 
 
 def contact(law: dict[str, Any]) -> pd.Contact:
