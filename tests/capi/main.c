@@ -216,7 +216,7 @@ static void mistakes(void) {
     refuses(pindrive_drive_set_curve(drive, "thumb", speeds, forces, 2), PINDRIVE_BAD_NAME,
             "the contacts plate and finger");
     refuses(pindrive_release_set_profile(release, "displacement", speeds, forces, 2),
-            PINDRIVE_BAD_NAME, "the profiles mouse_velocity, plate_load, force, across_velocity and finger_load");
+            PINDRIVE_BAD_NAME, "the inputs mouse_velocity, plate_load, force, across_velocity and finger_load");
     refuses(pindrive_simulate(NULL, release, NULL, NULL, &motion), PINDRIVE_NULL, "drive");
     pindrive_drive_free(drive);
     pindrive_release_free(release);
@@ -633,11 +633,77 @@ static void a_device(void) {
   pindrive_device_free(device);
 }
 
+/* Inputs as functions of time: a sinusoid has a periodic response. */
+static void functions(void) {
+  const pindrive_term wave = {0, 0.1, 0, 75}, along = {0, 1, 0, 0}, fast = {0, 1, 0, 1e8};
+  const pindrive_term deep = {1.5, 0, 0, 75}, grows = {0, 0.1, 0, 40.0 * sqrt(2)};
+  const pindrive_piece hand = {0, {0.02}, &wave, 1}, rate = {0, {0}, &along, 1};
+  const pindrive_piece load = {0, {1}, &deep, 1}, too_fast = {0, {0}, &fast, 1};
+  const pindrive_piece other = {0, {0}, &grows, 1};
+  const pindrive_piece jumps[] = {{0, {0.02}, NULL, 0}, {0.1, {0.05}, NULL, 0}};
+  const pindrive_piece overlap[] = {{0.1, {0.02}, NULL, 0}, {0.1, {0.02}, NULL, 0}};
+  pindrive_drive *drive = the_drive();
+  pindrive_release *release = the_release(), *more = the_release(), *direction, *bad = the_release();
+  pindrive_drive *still = pindrive_drive_rate_new(drive);
+  pindrive_motion *motion, *derivative = NULL, *greater;
+  pindrive_outcome outcome;
+  const double t = 0.05, h = 1e-7;
+  pindrive_term wider = wave;
+  pindrive_piece hand_after = hand;
+  double x, y, slope;
+  expect(pindrive_release_set_function(release, "mouse_velocity", &hand, 1) == PINDRIVE_OK,
+         "a sinusoid");
+  motion = run(drive, release);
+  expect(pindrive_outcome_of(motion, &outcome) == PINDRIVE_OK &&
+             outcome.end == PINDRIVE_END_DRIVEN && fabs(outcome.period * 75 / 6.283185307179586 - 1) < 1e-12,
+         "its response repeats with it");
+  direction = pindrive_release_rate_new(release);
+  pindrive_release_set_function(direction, "mouse_velocity", &rate, 1);
+  expect(pindrive_differentiate(drive, release, still, direction, NULL, NULL, &derivative) ==
+             PINDRIVE_OK,
+         "the derivative by its amplitude");
+  wider.sine += h;
+  hand_after.terms = &wider;
+  pindrive_release_set_function(more, "mouse_velocity", &hand_after, 1);
+  greater = run(drive, more);
+  pindrive_evaluate(motion, PINDRIVE_POSITION, &t, 1, PINDRIVE_RIGHT, &x);
+  pindrive_evaluate(greater, PINDRIVE_POSITION, &t, 1, PINDRIVE_RIGHT, &y);
+  pindrive_evaluate(derivative, PINDRIVE_POSITION, &t, 1, PINDRIVE_RIGHT, &slope);
+  expect(fabs((y - x) / h - slope) < 1e-4 * fabs(slope) + 1e-9, "is that of the difference");
+  refuses(pindrive_release_set_function(bad, "velocity", &hand, 1), PINDRIVE_BAD_NAME, "the inputs");
+  refuses(pindrive_release_set_function(bad, "force", &hand, 0), PINDRIVE_BAD_VALUE, "at least one piece");
+  pindrive_release_set_function(bad, "mouse_velocity", jumps, 2);
+  refuses(pindrive_simulate(drive, bad, NULL, NULL, &motion), PINDRIVE_BAD_VALUE, "without a jump");
+  pindrive_release_set_function(bad, "mouse_velocity", overlap, 2);
+  refuses(pindrive_simulate(drive, bad, NULL, NULL, &motion), PINDRIVE_BAD_VALUE, "begin after");
+  pindrive_release_set_function(bad, "mouse_velocity", &too_fast, 1);
+  refuses(pindrive_simulate(drive, bad, NULL, NULL, &motion), PINDRIVE_BAD_VALUE, "a rate of mouse_velocity");
+  pindrive_release_set_function(bad, "mouse_velocity", &hand, 1);
+  pindrive_release_set_function(bad, "force", &other, 1);
+  refuses(pindrive_simulate(drive, bad, NULL, NULL, &motion), PINDRIVE_BAD_VALUE, "neither end nor repeat");
+  pindrive_release_set(bad, "force", 0);
+  pindrive_release_set_function(bad, "plate_load", &load, 1);
+  refuses(pindrive_simulate(drive, bad, NULL, NULL, &motion), PINDRIVE_BAD_VALUE, "must not be negative");
+  pindrive_release_set(bad, "plate_load", 1);
+  pindrive_release_set_function(bad, "across_velocity", &hand, 1);
+  refuses(pindrive_simulate(drive, bad, NULL, NULL, &motion), PINDRIVE_UNSUPPORTED, "across_velocity");
+  pindrive_motion_free(motion);
+  pindrive_motion_free(derivative);
+  pindrive_motion_free(greater);
+  pindrive_drive_free(drive);
+  pindrive_drive_free(still);
+  pindrive_release_free(release);
+  pindrive_release_free(more);
+  pindrive_release_free(direction);
+  pindrive_release_free(bad);
+}
+
 int main(void) {
   expect(pindrive_interface() == PINDRIVE_INTERFACE, "the header is that of the library");
   a_motion();
   derivatives();
   mistakes();
+  functions();
   stopping();
   a_batch();
   stepping();

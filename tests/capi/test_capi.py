@@ -201,6 +201,9 @@ OF_THE_EXTENSION = {
     "elementary",
     "settling_band",
     "event_limit",
+    "function_range",
+    "function_at",
+    "input_period",
 } | OF_THE_DEVICE
 """Names of the extension without a function in C."""
 
