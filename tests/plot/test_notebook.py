@@ -67,6 +67,7 @@ PUBLIC = [
 ]
 NO_RESULTS = {
     "Contact",
+    "Function",
     *(
         "DeviceFile",
         "Study",

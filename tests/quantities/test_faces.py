@@ -86,8 +86,8 @@ def literal_defaults(text: str) -> list[str]:
     return [ast.unparse(part) for part in numbers]
 
 
-AT_REST = ("CoilState", "PinState", "Scene", "Bounds")
-"""Classes whose zeros are no device's: a state at rest, the corner of the page, no bound."""
+AT_REST = ("CoilState", "PinState", "Scene", "Bounds", "InputPiece", "InputTerm")
+"""Classes whose zeros are no device's: a state at rest, a corner of the page, no bound or term."""
 
 
 def test_no_default_is_written_outside_of_the_table() -> None:
@@ -96,9 +96,9 @@ def test_no_default_is_written_outside_of_the_table() -> None:
         for path in (SOURCE / package).glob("*.py"):
             if found := literal_defaults(path.read_text("utf-8")):
                 written[path.name] = found
-    # Strokes without a pause, a pin in the array's middle, and a coil's current at one moment.
-    files = ("hand.py", "pin_array.py")
-    assert written == {file: ["0.0", "0.0"] for file in files}
+    # Strokes without a pause, a pin in the array's middle, functions without a phase or a delay.
+    counts = {"hand.py": 2, "pin_array.py": 2, "function.py": 3}
+    assert written == {file: ["0.0"] * count for file, count in counts.items()}
     assert literal_defaults("class A:\n    x: float = 2e-3 * 2") == ["0.002"]
     assert literal_defaults("def f(x=1.5, *, y=PART): pass") == ["1.5", "PART"]
 
