@@ -210,10 +210,12 @@ pindrive_error check_pieces(const char* name, const std::vector<pd::PieceNumbers
         if (!in_range(amplitude, true))
           return fail(PINDRIVE_BAD_VALUE, "an amplitude of %s must be %s, not %.17g", name,
                       range_of(true), amplitude);
-      for (const double rate : {decay, frequency})
-        if (!(rate >= 0 && rate <= largest_rate))
+      for (const double rate : {decay, frequency}) {
+        const bool within = rate >= 0 && rate <= largest_rate;
+        if (!within)
           return fail(PINDRIVE_BAD_VALUE, "a rate of %s must be from 0 to %g 1/s, not %.17g", name,
                       largest_rate, rate);
+      }
     }
   }
   return PINDRIVE_OK;
