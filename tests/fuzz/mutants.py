@@ -104,8 +104,8 @@ MUTANTS = (
     Mutant(
         "parting surfaces never throw the pin ahead of both",
         "law/selection.hpp",
-        "if (side.stuck()) return relative == 0 && second == 0 && third == 0;",
-        "if (side.stuck()) return true;",
+        "if (relative != 0) return !side.stuck() && side",
+        "if (relative != 0) return side.stuck() || side",
     ),
     Mutant(
         "a guard at its zero is not asked by its derivatives",

@@ -278,9 +278,10 @@ class Selection {
   /// True if a contact may stick or slip while the pin moves as a surface does.
   bool is_admissible_beside(const Curve<T>& surface, const ContactPoint& side) const {
     const T relative = surface.rate - side.surface.rate;
+    if (relative != 0) return !side.stuck() && side.is_admissible(pin_.state, relative);
     const T second = surface.second() - side.surface.second();
     const T third = surface.third() - side.surface.third();
-    if (side.stuck()) return relative == 0 && second == 0 && third == 0;
+    if (side.stuck()) return second == 0 && third == 0;
     return side.is_admissible(pin_.state, relative, second, third);
   }
 

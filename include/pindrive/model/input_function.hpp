@@ -129,7 +129,6 @@ struct Curve {
   T value{0}, rate{0};
   const InputPiece<T>* piece{nullptr};  ///< null for a line
   T since{0};                           ///< time since the begin of the piece, s
-  T factor{1};                          ///< of the piece
 
   Curve() = default;
   constexpr Curve(T at, T change) noexcept : value(at), rate(change) {}
@@ -153,24 +152,18 @@ struct Curve {
   Line<T> line() const { return {value, rate}; }
   T at(T tau) const {
     if (straight()) return value + rate * tau;
-    return value + factor * (piece->at(since + tau) - piece->at(since));
+    return value + (piece->at(since + tau) - piece->at(since));
   }
-  T rate_at(T tau) const { return straight() ? rate : factor * derivatives(tau)[1]; }
+  T rate_at(T tau) const { return straight() ? rate : derivatives(tau)[1]; }
   /// Sum of the sizes of its terms after τ.
   detail::Real<T> size(T tau) const {
     using std::abs;
     if (straight()) return abs(plain(value)) + abs(plain(rate * tau));
-    return abs(plain(factor)) * piece->size(since + tau);
+    return piece->size(since + tau);
   }
   /// Second and third derivative at the instant.
-  T second() const { return straight() ? T(0) : factor * derivatives(T(0))[2]; }
-  T third() const { return straight() ? T(0) : factor * derivatives(T(0))[3]; }
-  friend Curve operator*(T times, Curve curve) {
-    curve.value *= times;
-    curve.rate *= times;
-    curve.factor *= times;
-    return curve;
-  }
+  T second() const { return straight() ? T(0) : derivatives(T(0))[2]; }
+  T third() const { return straight() ? T(0) : derivatives(T(0))[3]; }
   /// The same input from τ on.
   Curve from(T tau) const {
     Curve later = *this;
@@ -181,7 +174,7 @@ struct Curve {
   }
 
  private:
-  std::array<T, 4> derivatives(T tau) const {
+  [[gnu::noinline]] std::array<T, 4> derivatives(T tau) const {
     std::array<T, 4> c;
     piece->expand(since + tau, T(1), c, 3);
     c[2] *= T(2);

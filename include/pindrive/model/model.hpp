@@ -219,14 +219,7 @@ class Profile {
   Curve<T> from(T t) const {
     if (count_ == 0) return held_.from(t);
     const std::size_t i = breakpoints_until(t);
-    if (pieces_ != nullptr) {
-      if (i == 0) return {first(), T(0)};
-      const InputPiece<T>& piece = pieces_[i - 1];
-      const T since = t - piece.begin, after = since > detail::rounding<T> * t ? since : T(0);
-      if (piece.count == 0 || t < piece.begin + piece.decayed()) return {piece, after};
-      const Curve<T> rest(piece.without_terms(), after);
-      return rest.straight() ? rest : Curve<T>(piece, after);
-    }
+    if (pieces_ != nullptr) return part_of_function(i, t);
     if (i == 0) return {first(), T(0)};
     if (i == count_) return {values_[count_ - 1], T(0)};
     const T rate = (values_[i] - values_[i - 1]) / (times_[i] - times_[i - 1]);
@@ -257,6 +250,15 @@ class Profile {
   const Held<T>& held() const { return held_; }
 
  private:
+  /// Function from time t on, after i of its begins.
+  [[gnu::noinline]] Curve<T> part_of_function(std::size_t i, T t) const {
+    if (i == 0) return {first(), T(0)};
+    const InputPiece<T>& piece = pieces_[i - 1];
+    const T since = t - piece.begin, after = since > detail::rounding<T> * t ? since : T(0);
+    if (piece.count == 0 || t < piece.begin + piece.decayed()) return {piece, after};
+    const Curve<T> rest(piece.without_terms(), after);
+    return rest.straight() ? rest : Curve<T>(piece, after);
+  }
   std::size_t breakpoints_until(T t) const {
     if (pieces_ != nullptr) {
       const auto later = [](T time, const InputPiece<T>& piece) { return time < piece.begin; };

@@ -23,7 +23,6 @@ class InputSeries {
     if (!curve.straight()) {
       degree_ = N + 1;
       curve.piece->expand(curve.since, T(step), c_, N + 1);
-      for (T& c : c_) c *= curve.factor;
     }
     c_[0] = curve.value;
     c_[1] = curve.rate * step;
@@ -79,7 +78,7 @@ class InputSeries {
   /// Bound of the terms of the input beyond the last order, and of those of its derivative (1/s).
   Real missed() const {
     if (curve_.straight()) return Real(0);
-    return std::abs(plain(curve_.factor)) * curve_.piece->beyond(curve_.since, step_, N);
+    return curve_.piece->beyond(curve_.since, step_, N);
   }
   Real missed_rate() const {
     return curve_.straight() ? Real(0) : curve_.piece->fastest() * missed();
