@@ -29,9 +29,7 @@ class InputSeries {
   }
 
   T operator[](int n) const { return n <= degree_ ? c_[n] : T(0); }
-  void add(int n, T value) { c_[n] += value; }
   int degree() const { return degree_; }
-  const Curve<T>& curve() const { return curve_; }
   void rescale(Real part) {
     step_ *= part;
     Real factor{1};
@@ -62,11 +60,6 @@ class InputSeries {
     Real sum{0};
     for (int n = 1; n <= degree_; ++n) sum += abs(plain(c_[n]));
     return sum;
-  }
-  /// Bound of the smallest value over the step.
-  Real least() const {
-    const Real a = plain(c_[0]);
-    return degree_ == 1 ? std::min(a, a + plain(c_[1])) : a - change();
   }
   /// Bound of the terms from the last order on of the product with a series of known tail sums.
   Real beyond(const Sums<Real>& sums) const {
