@@ -235,6 +235,20 @@ void by_certificate(int count) {
   expect(worst < 1e-11, "every law holds");
 }
 
+/// A stroke that starts without speed or acceleration parts two surfaces that hold a pin.
+void smooth_start() {
+  const Function<double> stroke({{0, {0, 0, 3, -2}, {}}});
+  const pd::Drive<double> drive{0.01, 100, 0.4, {0.02, 0.03}, {0.005, 0.0075}};
+  const pd::Inputs<double> inputs{stroke.profile(), 0, 0, 0.5};
+  std::vector<pd::Segment<double>> segments;
+  const auto outcome =
+      pd::simulate(drive, inputs, [&](const pd::Segment<double>& s) { segments.push_back(s); });
+  const pd::Motion<double> motion(drive, inputs, segments.data(), segments.size(), outcome);
+  expect(!segments[0].mode.both_stuck() &&
+             pd::Certifier<double>(motion, 0.5).certify().worst() < 1e-12,
+         "two surfaces that part smoothly do not both hold a pin");
+}
+
 /// The distance to a table falls with the square of its breakpoints.
 void beside_tables() {
   Draw draw(11);
@@ -290,6 +304,7 @@ void derivatives() {
 int main(int argc, char** argv) {
   values();
   by_certificate(argc > 1 ? static_cast<int>(std::strtol(argv[1], nullptr, 10)) : cases(500));
+  smooth_start();
   beside_tables();
   derivatives();
   return check::status();
