@@ -156,8 +156,8 @@ class OwnedInput {
 
  private:
   void add(const PieceNumbers& at, const PieceNumbers& along) {
-    InputPiece<T> piece{number<T>(at.begin, along.begin), {}, terms_.data() + terms_.size(),
-                        at.terms.size()};
+    InputPiece<T> piece{
+        number<T>(at.begin, along.begin), {}, terms_.data() + terms_.size(), at.terms.size()};
     for (std::size_t n = 0; n < at.polynomial.size(); ++n)
       piece.polynomial[n] = number<T>(at.polynomial[n], along.polynomial[n]);
     for (std::size_t j = 0; j < at.terms.size(); ++j) {

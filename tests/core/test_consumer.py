@@ -61,7 +61,7 @@ PUBLIC = {
     },
     "events": {"simulate", "stepper", "stepper_state"},
     "flow": {"flow", "oscillator"},
-    "model": {"input_curves", "model"},
+    "model": {"input_curves", "input_function", "input_period", "model"},
     "motion": {
         "batch",
         "contact_use",
@@ -77,6 +77,7 @@ PUBLIC = {
         "transient_numbers",
     },
     "numbers": {"dual", "functions", "limits", "named_number"},
+    "series": {"input_range"},
 }
 """Headers with names for users of the core; all further headers are in `pindrive::detail`."""
 PATH = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])

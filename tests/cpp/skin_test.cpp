@@ -163,8 +163,8 @@ void lifts() {
   const double rising_from = pd::detail::defer_first_grip(rises, level.v, 1.0, 2.0);
   expect(rising_from > 1 && rising_from < 1 + 1e-9 && rises.load.rate == 0,
          "at the speed at which a curve begins to rise it waits no longer than it carries nothing");
-  const pd::Branch<double> flat[] = {{0, never, 1.4e-6, 0, 0}};
-  ContactPoint even(pd::Contact<double>{1.4e-6, 1.4e-6, 11.200000000000001, flat, 1});
+  const pd::Branch<double> flat[] = {{0, 1, 1.4e-6, 0, 0}, {1, never, 1.4e-6, 0, 0}};
+  ContactPoint even(pd::Contact<double>{1.4e-6, 1.4e-6, 11.200000000000001, flat, 2});
   even.load = {0, 800};  // its limit grows as fast as a pin of 0.1 mm/s stretches it, to rounding
   State as_fast = at(-1e-4, 0);
   even.enumerate_candidates(as_fast);

@@ -68,7 +68,7 @@ class InputSeries {
     for (int n = 2; n <= std::min(degree_, N); ++n) sum += abs(plain(c_[n])) * sums[N - n];
     return sum + missed() * sums[0];
   }
-  /// Bound of the terms of the input beyond the last order, and of those of its derivative (1/s).
+  /// Bounds beyond the last order: of the terms of the input, and of the terms of its rate (1/s).
   Real missed() const {
     if (curve_.straight()) return Real(0);
     return curve_.piece->beyond(curve_.since, step_, N);
