@@ -17,8 +17,9 @@ from typer.main import get_command
 from typer.testing import CliRunner
 
 from pindrive.cli.app import app
-from pindrive.files.keys import NUMERIC_KEYS
+from pindrive.files.keys import FILE_KEYS, usual_function
 from pindrive.files.keys import template as device_template
+from pindrive.quantities.functions import FUNCTIONS, FUNCTIONS_OF
 from pindrive.quantities.quantity import Quantity
 from pindrive.quantities.results import DESIGNED, LINE, LINE_COUNTS, OUTPUTS, SCANNED, SERIES
 from pindrive.quantities.status import End, Status
@@ -53,7 +54,7 @@ def commands() -> str:
 def device_file() -> str:
     """Each key of a device file, by its table."""
     groups: dict[str, list[Quantity]] = {}
-    for key, quantity in NUMERIC_KEYS.items():
+    for key, quantity in FILE_KEYS.items():
         groups.setdefault(key.partition(".")[0], []).append(quantity)
     headings = ("key", "unit", "meaning", "values", "unless given", "source")
     parts = []
@@ -74,8 +75,49 @@ def device_file() -> str:
             for q in quantities
         )
         parts += [f"## `[{name}]`", table(headings, rows)]
+    parts += ["## Inputs as functions of time", functions_of_time()]
     parts += ["## The file that `pindrive init --device` writes"]
     parts += [code(device_template(whole=True), "toml")]
+    return "\n\n".join(parts)
+
+
+_FORMULAS = {
+    "harmonic": "A sinusoid, mean + amplitude · sin(2π · frequency · t + phase):",
+    "minimum_jerk": "The velocity of a stroke of minimum jerk, zero before and after:",
+    "exponential": "An exponential, end + (start − end) e^(−(t − begin)/time_constant), and start "
+    "before its begin:",
+}
+
+
+def functions_of_time() -> str:
+    """The functions that an input of [motion] may be, with their parameters."""
+    inputs = ", ".join(f"`{name}`" for name in FUNCTIONS_OF)
+    speed = FILE_KEYS["motion.mouse_velocity"]
+    parts = [
+        f"{inputs} may be a table of parameters, or a list of such tables, which are added. Each "
+        "parameter is a key of its own: `motion.mouse_velocity.amplitude` in an override, a study "
+        "or a fit."
+    ]
+    for kind, parameters in FUNCTIONS.items():
+        rows = (
+            (
+                f"`{q.name}`",
+                q.unit or "that of the input",
+                q.meaning,
+                q.bounds.words(""),
+                "must be given" if q.absent is None else q.written(q.absent),
+            )
+            for q in parameters
+        )
+        example = f"mouse_velocity = {usual_function(speed, kind)}"
+        parts += [_FORMULAS[kind], code(example, "toml")]
+        parts += [table(("parameter", "unit", "meaning", "values", "unless given"), rows)]
+    parts.append(
+        "Any function of pieces, as `pindrive.Function` has it, in SI numbers, each term with "
+        "cosine, sine, decay and frequency (rad/s):"
+    )
+    pieces = '{ begin = "0 s", polynomial = [0.06, 0.1], terms = [[0, 0.01, 0, 50]] }'
+    parts.append(code(f"mouse_velocity = {{ pieces = [{pieces}] }}", "toml"))
     return "\n\n".join(parts)
 
 

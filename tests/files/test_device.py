@@ -128,7 +128,7 @@ def test_every_commented_line_of_the_template_works(write: Write, table: str, li
         ]
     lines.insert(lines.index(f"[{table}]") + 1, line)
     device = load_device(write(new="\n".join(lines)))
-    if table != "device":
+    if table != "device" and " = {" not in line:  # of functions see test_functions.py
         quantity = NUMERIC_KEYS[f"{table}.{name}"]
         given = quantity.rows if " = [" in line else quantity.example
         assert device.values()[quantity.key] == given

@@ -18,7 +18,7 @@ from pindrive import Page, Profile, Release, Scan, load_device, scan, simulate
 from pindrive.device.current import CoilState, Commands
 from pindrive.files.device import DeviceFile
 from pindrive.files.fmu import ELSEWHERE, inputs_of, variables_of
-from pindrive.files.keys import NUMERIC_KEYS
+from pindrive.files.keys import FILE_KEYS
 from pindrive.motion.release import INPUTS
 
 READER = Path(__file__).resolve().parents[2] / "examples" / "tactile-reader.toml"
@@ -317,7 +317,7 @@ def test_every_key_of_the_table_is_a_variable(tmp_path: Path) -> None:
         device = load_device(path)
         variables = {v.name: v for v in variables_of(device)}
         values = device.values()
-        for key in NUMERIC_KEYS:
+        for key in FILE_KEYS:
             table, _, name = key.partition(".")
             value = values.get(key)
             if table == "motion" and name in inputs_of(device):
@@ -343,10 +343,8 @@ def test_every_key_of_the_table_is_a_variable(tmp_path: Path) -> None:
                     or values.get(f"{table}.curve")
                 ), key
     assert {f"motion.{name}" for name in INPUTS} <= seen
-    left_out = {
-        key for key in NUMERIC_KEYS if key in ELSEWHERE or key.partition(".")[0] in ELSEWHERE
-    }
-    assert seen == NUMERIC_KEYS.keys() - left_out
+    left_out = {key for key in FILE_KEYS if key in ELSEWHERE or key.partition(".")[0] in ELSEWHERE}
+    assert seen == FILE_KEYS.keys() - left_out
 
 
 @pytest.mark.parametrize("version", [2, 3])

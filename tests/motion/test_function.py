@@ -70,13 +70,25 @@ def test_function_is_equal_to_its_copy() -> None:
 @pytest.mark.parametrize(
     ("made", "message"),
     [
-        (lambda: pd.harmonic(1, 2, 0), "frequency must be > 0 Hz and <= 1e.06 Hz, got 0.0 Hz"),
-        (lambda: pd.harmonic(1, 2, 2e6), "frequency must be > 0 Hz and <= 1e.06 Hz"),
+        (
+            lambda: pd.harmonic(1, 2, 0),
+            "frequency must be finite and greater than 0 Hz",
+        ),
+        (
+            lambda: pd.harmonic(1, 2, 2e6),
+            "at most 1e6 Hz, got 2000000.0 Hz",
+        ),
         (lambda: pd.harmonic(1, 2, "8 s"), "frequency must be"),
         (lambda: pd.harmonic("1 mm/s", "1 N", 3), "mean and amplitude must be"),
-        (lambda: pd.harmonic(1, math.nan, 3), "amplitude must be from -1e12 to 1e12, got nan"),
-        (lambda: pd.minimum_jerk(0.1, 0.0), "duration must be > 0 s, got 0.0 s"),
-        (lambda: pd.exponential(1, 2, 0), "time_constant must be >= 1e-7 s, got 0.0 s"),
+        (lambda: pd.harmonic(1, math.nan, 3), "amplitude must be finite, got nan"),
+        (
+            lambda: pd.minimum_jerk(0.1, 0.0),
+            "duration must be finite and greater than 0 s",
+        ),
+        (
+            lambda: pd.exponential(1, 2, 0),
+            "time_constant must be finite and at least 1e-7 s",
+        ),
         (lambda: pd.Function(()), "pieces must be at least one, got none"),
         (
             lambda: pd.Function((InputPiece(1.0), InputPiece(0.5))),

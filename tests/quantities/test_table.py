@@ -10,12 +10,21 @@ from pindrive._core import settling_band
 from pindrive.quantities.drive import DRIVE_QUANTITIES, PARTS
 from pindrive.quantities.quantity import Bounds, Quantity, significant
 from pindrive.quantities.results import CERTIFICATE, DESIGNED, FINAL, OUTPUTS, RATE
-from pindrive.quantities.table import DEVICE, QUANTITIES, check
+from pindrive.quantities.table import DEVICE, FUNCTION_PARAMETERS, QUANTITIES, check
 
 
 def test_names_are_unique() -> None:
     assert len(QUANTITIES) == len(
-        (*DRIVE_QUANTITIES, *PARTS, *OUTPUTS, *FINAL, RATE, *DEVICE, *DESIGNED)
+        (
+            *DRIVE_QUANTITIES,
+            *FUNCTION_PARAMETERS,
+            *PARTS,
+            *OUTPUTS,
+            *FINAL,
+            RATE,
+            *DEVICE,
+            *DESIGNED,
+        )
     )
 
 

@@ -14,6 +14,7 @@ from rich.text import Text
 from pindrive.device.geometry import COPPER, IRON, doubts, heaviest
 from pindrive.motion.coefficients import Coefficients
 from pindrive.motion.drive import Contact
+from pindrive.motion.function import Function
 from pindrive.motion.profile import Profile
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import Rows, counted, significant
@@ -72,6 +73,8 @@ def device_report(device: DeviceFile) -> RenderableType:
         name = key if key in QUANTITIES else key.partition(".")[2]
         if isinstance(value, tuple):
             _add_rows(table, name, value, key)
+        elif isinstance(value, Function):
+            table.add_row(key, QUANTITIES[name].symbol, "", "", function_words(value))
         elif value is not None:
             _add_number(table, name, value, key)
     _add_number(table, "natural_frequency", drive.natural_frequency, "")
@@ -231,6 +234,16 @@ def _add_number(table: Table, name: str, value: float, *before: str, meaning: st
     table.add_row(
         *before, quantity.symbol, shown, quantity.display_unit, meaning or quantity.meaning
     )
+
+
+def function_words(function: Function) -> str:
+    """Return what an input over time is, in words; its parameters have rows of their own."""
+    kinds = {
+        "harmonic": "a sinusoid",
+        "minimum_jerk": "a stroke of minimum jerk",
+        "exponential": "an exponential",
+    }
+    return kinds.get(function.kind) or f"a function of {counted(len(function.pieces), 'piece')}"
 
 
 def _add_rows(table: Table, name: str, rows: Rows, key: str) -> None:

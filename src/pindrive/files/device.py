@@ -23,15 +23,19 @@ from pindrive.files.keys import (
     DRIVE,
     KEYS,
     NAMES,
+    NUMERIC_KEYS,
+    PARAMETERS,
     STUDY_KEYS,
     TABLES,
+    Given,
     Tables,
+    Value,
     names_in_file,
     unknown_in_file,
     written,
 )
 from pindrive.files.overrides import ConfigError, Setting, set_in_tables, settings_of
-from pindrive.files.ratios import Given, with_set
+from pindrive.files.ratios import GivenValues, with_set
 from pindrive.files.recording import files_named, recording_words, with_files_read
 from pindrive.files.schema import (
     Place,
@@ -49,7 +53,7 @@ from pindrive.motion.function import Function
 from pindrive.motion.profile import Profile
 from pindrive.motion.release import Release
 from pindrive.quantities.contradictions import problems_of
-from pindrive.quantities.quantity import Rows, counted
+from pindrive.quantities.quantity import counted
 from pindrive.quantities.refusal import quoted, refusal
 from pindrive.quantities.table import warn_of
 from pindrive.quantities.value import equal_by_value
@@ -72,7 +76,7 @@ class DeviceFile:
     release: Release
     duration: float | None
     settling_band: float
-    given: Given
+    given: GivenValues
     """Value of each key that the file gives, SI, with the values that were set otherwise."""
     tables: Mapping[str, Any]
     """The same as the file has them: text with units, and the names of CSV files."""
@@ -135,7 +139,9 @@ class DeviceFile:
     @property
     def touch(self) -> float | Profile | None:
         """Touch force over the time of a scan, N; None: that of the drive."""
-        return over_time(self._whole.values["scan.touch"])
+        value = over_time(self._whole.values["scan.touch"])
+        assert not isinstance(value, Function)  # read_function refuses it
+        return value
 
     @property
     def criteria(self) -> Criteria:
@@ -156,7 +162,7 @@ class DeviceFile:
         """Return the file with `whole`, also for a file without that table."""
         return self if self.whole else _assembled(self, self.given, self.tables, whole=True)
 
-    def with_values(self, values: Mapping[str, float | Rows], *, whole: bool = False) -> DeviceFile:
+    def with_values(self, values: Mapping[str, Given], *, whole: bool = False) -> DeviceFile:
         """Return the file with some values set otherwise.
 
         Values that follow them keep their ratio, as in `load_device`.
@@ -168,8 +174,13 @@ class DeviceFile:
         Raises:
             ConfigError: The values contradict each other or the values of the file.
         """
-        changed = {k: v if isinstance(v, tuple) else float(v) for k, v in values.items()}
-        given = with_set(self.given, changed)
+        changed = {
+            k: v if isinstance(v, (tuple, Function)) else float(v) for k, v in values.items()
+        }
+        try:
+            given = with_set(self.given, changed)
+        except ValueError as error:
+            raise ConfigError([f"{self.path}: {error}"]) from None
         tables = {name: dict(table) for name, table in self.tables.items()}
         for key in self.given.keys() | given.keys():
             if key not in given:
@@ -197,20 +208,25 @@ class DeviceFile:
         """
         derived = _derived(drive, by_ratio=False)
         values = _values_of(drive, release).items()
-        given = {key: v for key, v in values if v is not None and key not in derived}
+        given = {
+            key: v
+            for key, v in values
+            if v is not None and key not in derived and key not in PARAMETERS
+        }
         tables: dict[str, dict[str, Any]] = {table: {} for table in TABLES}
         for key, value in given.items():
             _write(tables, key, value)
         return _assembled(_Source(Path("<drive>"), name, ""), given, tables, whole=False)
 
-    def values(self) -> dict[str, float | Rows | None]:
+    def values(self) -> dict[str, Value]:
         """The value of every key that holds a quantity, in SI; None where it was left out.
 
-        Values over time or speed are rows: (speed, force) or (time, value).
+        Values over time or speed are rows, (speed, force) or (time, value), or a `Function`, whose
+        parameters have keys of their own: "motion.mouse_velocity.amplitude".
         """
         return self.values_of_drive() | (self.whole.in_si() if self.whole else {})
 
-    def values_of_drive(self) -> dict[str, float | Rows | None]:
+    def values_of_drive(self) -> dict[str, Value]:
         """Return the values of the drive and its motion alone."""
         own = {"motion.duration": self.duration, "motion.settling_band": self.settling_band}
         return _values_of(self.drive, self.release) | own
@@ -230,10 +246,10 @@ def _derived(drive: Drive, *, by_ratio: bool) -> tuple[str, ...]:
     )
 
 
-def _values_of(drive: Drive, release: Release) -> dict[str, float | Rows | None]:
+def _values_of(drive: Drive, release: Release) -> dict[str, Value]:
     """Return the value of every key of a drive and its release, SI; None for no value."""
     contacts = {"plate": drive.plate, "finger": drive.finger}
-    found: dict[str, float | Rows | None] = {}
+    found: dict[str, Value] = {}
     for key, quantity in DRIVE.items():
         table, _, name = key.partition(".")
         if name in ("duration", "settling_band"):
@@ -241,12 +257,9 @@ def _values_of(drive: Drive, release: Release) -> dict[str, float | Rows | None]
         of = release if table == "motion" else contacts[table] if quantity.name == key else drive
         law = isinstance(of, Contact) and name == "law"
         value = law_values(contacts[table])["law"] if law else getattr(of, name)
+        found[key] = value.rows if isinstance(value, Profile) else None if value == inf else value
         if isinstance(value, Function):
-            found[key] = value(0.0)
-        else:
-            found[key] = (
-                value.rows if isinstance(value, Profile) else None if value == inf else value
-            )
+            found |= {f"{key}.{part}": number for part, number in value.parameters.items()}
     return found
 
 
@@ -351,7 +364,7 @@ def device_of(
     )
 
 
-def _write(tables: Mapping[str, dict[str, Any]], key: str, value: float | Rows) -> None:
+def _write(tables: Mapping[str, dict[str, Any]], key: str, value: Given) -> None:
     """Write a value, SI, into the tables of a device file."""
     table, _, name = key.partition(".")
     tables[table][name] = written(key, value)
@@ -359,7 +372,7 @@ def _write(tables: Mapping[str, dict[str, Any]], key: str, value: float | Rows) 
 
 def _read(
     tables: Tables, folder: Path, place: Place
-) -> tuple[dict[str, float | Rows], dict[str, str], list[str]]:
+) -> tuple[dict[str, Given], dict[str, str], list[str]]:
     """Return the given values, SI, the malformed ones, and the errors of the CSV files."""
     read, unread = with_files_read({name: dict(tables[name]) for name in TABLES}, folder, place)
     given, malformed = read_given(read, place)
@@ -387,7 +400,7 @@ class _Source(NamedTuple):
 
 def _assembled(
     source: _Source | DeviceFile,
-    given: Given,
+    given: GivenValues,
     tables: Mapping[str, Any],
     settings: Iterable[Setting] = (),
     *,
@@ -407,7 +420,10 @@ def _assembled(
     values, found = complete(given, malformed, names, place, {*meant, *left_out})
     if hand:  # a single release is at the hand's speed then
         values["motion.mouse_velocity"] = values.get("scan.hand_speed")
-    known = {**given, **dict.fromkeys(malformed)}
+    known = {
+        **{key: v(0.0) if isinstance(v, Function) else v for key, v in given.items()},
+        **dict.fromkeys(malformed),
+    }
     found += [problem.at(place) for problem in problems_of(known, whole=whole)]
     if problems := [*problems, *found]:
         raise ConfigError(problems)
@@ -525,5 +541,5 @@ def _text_problems(given: Mapping[str, Any], place: Place) -> list[str]:
 def _warn(device: DeviceFile, place: Place) -> None:
     """Warn of values that no such device has, with the place where each was written."""
     for key, value in device.values_of_drive().items():
-        if value is not None:
-            warn_of(DRIVE[key].name, value, label=f"{place(key)}: {key}", stacklevel=4)
+        if value is not None and not isinstance(value, Function):
+            warn_of(NUMERIC_KEYS[key].name, value, label=f"{place(key)}: {key}", stacklevel=4)

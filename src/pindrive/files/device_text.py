@@ -48,13 +48,22 @@ def device_text(
         lines += ["", f"[{name}]"]
         for key, value in tables[name].items():
             lines += [f"# {_plain(text)}" for text in comments.get(f"{name}.{key}", ())]
-            lines.append(f"{key} = {json.dumps(value, ensure_ascii=False)}")
+            lines.append(f"{key} = {_toml(value)}")
     return "\n".join(lines) + "\n"
 
 
 def _plain(text: str) -> str:
     """Text that stays in its line."""
     return re.sub(r"[\x00-\x1f\x7f]", " ", text)
+
+
+def _toml(value: Any) -> str:
+    """A value as TOML has it in a line."""
+    if isinstance(value, dict):
+        return f"{{ {', '.join(f'{name} = {_toml(inner)}' for name, inner in value.items())} }}"
+    if isinstance(value, list):
+        return f"[{', '.join(map(_toml, value))}]"
+    return json.dumps(value, ensure_ascii=False)
 
 
 def _put(tables: dict[str, dict[str, Any]], key: str, value: Any) -> None:

@@ -23,6 +23,7 @@ from pindrive.device.pin_scan import PinScan
 from pindrive.device.scanning import Scan
 from pindrive.files.dataset import finite
 from pindrive.files.device import DeviceFile
+from pindrive.files.functions import plain
 from pindrive.files.output import (
     EVENT_HEADINGS,
     EVENTS_CSV,
@@ -200,7 +201,7 @@ def write_json(motion: Motion, device: DeviceFile, path: Path) -> None:
             "name": device.name,
             "description": device.description,
         },
-        "config": device.values(),
+        "config": {key: plain(value) for key, value in device.values().items()},
         "status": motion.status.name,
         "inputs": inputs,
         "ending": {"kind": motion.ending.kind, "cycle": motion.ending.cycle},

@@ -20,8 +20,9 @@ from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
 from pindrive.device.electromagnet import DIRECT
 from pindrive.files.device import DeviceFile
-from pindrive.files.keys import NUMERIC_KEYS
+from pindrive.files.keys import NUMERIC_KEYS, PARAMETERS
 from pindrive.motion.friction import COEFFICIENTS
+from pindrive.motion.function import Function
 from pindrive.motion.release import INPUTS
 from pindrive.motion.release import initial as value_at_begin
 from pindrive.quantities.drive import COLUMNS
@@ -161,6 +162,8 @@ def _parameters(device: DeviceFile, control: bool) -> Iterator[FmuVariable]:
         left_out.update(f"magnet.{name}" for name in DIRECT)
     for key, value in values.items():
         if value is None or key in left_out or key.partition(".")[0] in elsewhere:
+            continue
+        if key in PARAMETERS or isinstance(value, Function):  # in favour of the input
             continue
         row = NUMERIC_KEYS[key]
         if not isinstance(value, tuple):

@@ -5,35 +5,45 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from textwrap import wrap
-from typing import Any, Final, cast
+from typing import TYPE_CHECKING, Any, Final, Union, cast
 
 from pindrive.motion.friction import COEFFICIENT_OF, PRESSED_BY
 from pindrive.quantities.device import READER
 from pindrive.quantities.drive import COLUMNS, DRIVE_QUANTITIES
+from pindrive.quantities.functions import FUNCTIONS, FUNCTIONS_OF
 from pindrive.quantities.names import Names
 from pindrive.quantities.quantity import Quantity, Rows
 from pindrive.quantities.refusal import quoted, refusal
-from pindrive.quantities.table import DEVICE_INPUTS, QUANTITIES, check
+from pindrive.quantities.table import DEVICE_INPUTS, FUNCTION_PARAMETERS, QUANTITIES, check
 from pindrive.quantities.units import UnitError, to_si
+
+if TYPE_CHECKING:
+    from pindrive.motion.function import Function
 
 Tables = Mapping[str, Any]
 """The tables of a device file as TOML has them: text with units."""
-Value = float | Rows | None
+Given = Union[float, Rows, "Function"]
+"""Value of a key, SI."""
+Value = Union[float, Rows, "Function", None]
 """Value of a key, SI; None for a missing key without a default."""
 
 DRIVE: Final[dict[str, Quantity]] = {quantity.key: quantity for quantity in DRIVE_QUANTITIES}
 """The keys of a device file that describe the drive and its motion, in their order."""
 WHOLE: Final[dict[str, Quantity]] = {quantity.key: quantity for quantity in DEVICE_INPUTS}
 """The keys that describe the whole device around it, in their order."""
-NUMERIC_KEYS: Final[dict[str, Quantity]] = DRIVE | WHOLE
-"""The keys of a device file that hold a quantity."""
+FILE_KEYS: Final[dict[str, Quantity]] = DRIVE | WHOLE
+"""The keys in the tables of a device file that hold a quantity."""
+PARAMETERS: Final[dict[str, Quantity]] = {q.key: q for q in FUNCTION_PARAMETERS}
+"""Parameters of inputs that are functions of time: "motion.mouse_velocity.amplitude"."""
+NUMERIC_KEYS: Final[dict[str, Quantity]] = FILE_KEYS | PARAMETERS
+"""The keys that hold a quantity, a parameter of a function among them."""
 
 STUDY_KEYS: Final = (
     *("base", "set", "page", "outputs", "zip", "chunk"),
     *("axes", "sample", "tolerances", "specification"),
 )
 """Top-level keys of a study file beside the tables of a device and the name."""
-KEYS: Final = ("device.name", "device.description", *NUMERIC_KEYS)
+KEYS: Final = ("device.name", "device.description", *FILE_KEYS)
 AROUND: Final = ("magnet", "control", "array", "scan", "criteria")
 ALONE: Final = ("device", "drive", "plate", "finger", "motion")
 TABLES: Final = (*ALONE, *AROUND)
@@ -47,7 +57,7 @@ def _spellings(key: str) -> tuple[str, ...]:
 
 
 _LISTED: Final = "docs/reference/device-file.md"
-NAMES: Final = Names("key", {key: _spellings(key) for key in KEYS}, listed=_LISTED)
+NAMES: Final = Names("key", {key: _spellings(key) for key in (*KEYS, *PARAMETERS)}, listed=_LISTED)
 """The keys as a user may write them: plate.kinetic, plate_kinetic, mass."""
 _WITH_TABLES: Final = Names("key", {n: _spellings(n) for n in (*TABLES, *KEYS)}, listed=_LISTED)
 
@@ -100,20 +110,33 @@ def is_file(key: str, value: object) -> bool:
     return over_time and isinstance(value, str) and value.strip().lower().endswith(SUFFIX)
 
 
-def written(key: str, value: float | Rows) -> Any:
+def written(key: str, value: Given) -> Any:
     """Return a value in SI as a device file has it, to the last bit."""
     if isinstance(value, tuple):
         across = QUANTITIES[COLUMNS[NUMERIC_KEYS[key].rows_of][0]]
         return [[f"{x!r} {across.unit}", written(key, y)] for x, y in value]
+    if not isinstance(value, (float, int)):
+        return written_function(key, value)
     if NUMERIC_KEYS[key].choices:
         return NUMERIC_KEYS[key].choices[int(value)]
     unit = NUMERIC_KEYS[key].unit
     return value if unit == "1" else f"{value!r} {unit}"
 
 
+def written_function(key: str, function: Function) -> dict[str, Any]:
+    """Return a function as a device file has it: its parameters or, without any, its pieces."""
+    if function.parameters:
+        return {name: written(f"{key}.{name}", x) for name, x in function.parameters.items()}
+    pieces = [
+        {"begin": f"{begin!r} s", "polynomial": [*polynomial], "terms": [[*term] for term in terms]}
+        for begin, polynomial, terms in function.pieces
+    ]
+    return {"pieces": pieces}
+
+
 def has_part(key: str, scans: bool) -> bool:
     """Return True if a key of the device file affects scans, or otherwise releases."""
-    return not key.startswith("motion.") if scans else key in DRIVE
+    return not key.startswith("motion.") if scans else key in DRIVE or key in PARAMETERS
 
 
 def variable(key: str) -> str:
@@ -137,6 +160,19 @@ def usual_rows(quantity: Quantity) -> str:
     across = QUANTITIES[COLUMNS[quantity.rows_of][0]]
     rows = (f"[{_quoted(across, t)}, {_quoted(quantity, y)}]" for t, y in quantity.rows)
     return f"[{', '.join(rows)}]"
+
+
+def usual_function(quantity: Quantity, kind: str) -> str:
+    """A function of an input with usual values: { mean = "60 mm/s", amplitude = "20 mm/s", … }."""
+    parameters = (PARAMETERS[f"{quantity.key}.{p.name}"] for p in FUNCTIONS[kind])
+    shown = (f"{p.name.rpartition('.')[2]} = {_quoted(p, p.example or 0.0)}" for p in parameters)
+    return f"{{ {', '.join(shown)} }}"
+
+
+def _usual_functions(quantity: Quantity) -> list[str]:
+    """The lines of an input as each function that it may be."""
+    kinds = FUNCTIONS_OF.get(quantity.name, ())
+    return [f"{quantity.name} = {usual_function(quantity, kind)}" for kind in kinds]
 
 
 def line(quantity: Quantity) -> str:
@@ -168,7 +204,7 @@ def template(whole: bool = False) -> str:
         '# description = "what is special about it"',
     ]
     table = "device"
-    for key, usual_one in (NUMERIC_KEYS if whole else DRIVE).items():
+    for key, usual_one in (FILE_KEYS if whole else DRIVE).items():
         quantity = replace(usual_one, **READER.get(key, {})) if whole else usual_one
         if key.partition(".")[0] != table:
             table = key.partition(".")[0]
@@ -183,4 +219,5 @@ def template(whole: bool = False) -> str:
         lines.append(("# " if quantity.default is None else "") + line(quantity))
         if quantity.rows and quantity.may_be_constant:
             lines.append(f"# {key.partition('.')[2]} = {usual_rows(quantity)}")
+        lines += [f"# {line}" for line in _usual_functions(quantity)]
     return "\n".join(lines) + "\n"

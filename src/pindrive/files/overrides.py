@@ -8,7 +8,9 @@ from numbers import Real
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from pindrive.files.functions import set_in_function
 from pindrive.files.keys import NAMES, NUMERIC_KEYS, is_file, written
+from pindrive.motion.function import Function
 from pindrive.quantities.refusal import quoted, refusal
 
 
@@ -54,10 +56,10 @@ def settings_of(
             len(keys) == 1
             and keys[0] in NUMERIC_KEYS
             and NUMERIC_KEYS[keys[0]].rows
-            and text[:1] == "["
+            and text[:1] in ("[", "{")
         ):
             try:
-                value = _rows_as_toml(text)
+                value = _as_toml(text)
             except (ValueError, RecursionError) as error:
                 problems.append(f"{place}: {keys[0]} is not valid TOML: {error}")
                 continue
@@ -68,14 +70,14 @@ def settings_of(
 def _setting(given: str, value: object) -> Setting:
     """A value from Python: a number is SI."""
     keys = NAMES.matches(given)
-    if len(keys) == 1 and keys[0] in NUMERIC_KEYS and isinstance(value, Real):
-        value = written(keys[0], float(value))
+    if len(keys) == 1 and keys[0] in NUMERIC_KEYS and isinstance(value, (Real, Function)):
+        value = written(keys[0], value if isinstance(value, Function) else float(value))
     elif len(keys) == 1 and is_file(keys[0], value):
         value = str(Path(str(value)).absolute())
     return Setting(given, value, f"overrides[{quoted(given)}]")
 
 
-def _rows_as_toml(text: str) -> object:
+def _as_toml(text: str) -> object:
     given = tomllib.loads(f"rows = {text}")
     if len(given) > 1:
         raise ValueError("more than one value")
@@ -101,8 +103,18 @@ def set_in_tables(
             problems.append(str(error))
             continue
         table, _, name = key.partition(".")
+        owner, _, parameter = name.partition(".")
+        if isinstance(value, dict) and not parameter:
+            tables[table][name] = set_in_function(tables[table].get(name), value)
+        elif not parameter:
+            tables[table][name] = value
+        elif isinstance(tables[table].get(owner), dict):
+            tables[table][owner] = {**tables[table][owner], parameter: value}
+            key = f"{table}.{owner}"
+        else:
+            problems.append(f"{place}: {key} cannot be set: {table}.{owner} is no function")
+            continue
         places[key] = place
-        tables[table][name] = value
     for one, other in (("damping", "damping_ratio"), ("damping_ratio", "damping")):
         if f"drive.{one}" in places and f"drive.{other}" not in places:
             tables["drive"].pop(other, None)

@@ -5,18 +5,20 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final
 
-from pindrive.files.keys import DRIVE, friction_parts
+from pindrive.files.functions import with_parameters
+from pindrive.files.keys import DRIVE, Given, friction_parts
 from pindrive.motion.friction import COEFFICIENT_OF, COEFFICIENTS, friction_force
+from pindrive.motion.function import Function
 from pindrive.quantities.quantity import Rows
 from pindrive.quantities.table import QUANTITIES
 
 _DAMPING: Final = ("drive.damping", "drive.damping_ratio")
 
-Given = Mapping[str, float | Rows]
+GivenValues = Mapping[str, Given]
 """Value of each key that a device file gives, SI."""
 
 
-def with_set(given: Given, changed: Given) -> dict[str, float | Rows]:
+def with_set(given: GivenValues, changed: GivenValues) -> dict[str, Given]:
     """Return the values of a device file with some set otherwise.
 
     Damping replaces the damping ratio, and vice versa. A value that follows others
@@ -25,8 +27,12 @@ def with_set(given: Given, changed: Given) -> dict[str, float | Rows]:
 
     Args:
         given: Value of each key that the file gives, SI.
-        changed: Value of each key that is set, SI.
+        changed: Value of each key that is set, SI; of a parameter of a function, too.
+
+    Raises:
+        ValueError: A parameter is set of an input that is no function with it.
     """
+    changed = with_parameters(given, changed)
     replaced = {key for key in _DAMPING if key not in changed} if changed.keys() & _DAMPING else ()
     after = {key: value for key, value in given.items() if key not in replaced} | dict(changed)
     moved = {key for key in DRIVE if key in changed}
@@ -40,7 +46,8 @@ def with_set(given: Given, changed: Given) -> dict[str, float | Rows]:
         old, new = (_quotient(each, quantity.follows) for each in (given, after))
         if value is None or not old or new is None:
             continue
-        after[key] = value / old * new if isinstance(value, float) else scaled_rows(value, new)
+        if not isinstance(value, Function):  # no input follows another value
+            after[key] = value / old * new if isinstance(value, float) else scaled_rows(value, new)
     return after
 
 
@@ -51,7 +58,7 @@ def scaled_rows(rows: Rows, first: float) -> Rows:
     return tuple((place, value / rows[0][1] * first) for place, value in rows)
 
 
-def _quotient(given: Given, keys: tuple[str, ...]) -> float | None:
+def _quotient(given: GivenValues, keys: tuple[str, ...]) -> float | None:
     """Return the value of the first key, over that of the second if there is one."""
     values = [_value(given, key) for key in keys]
     if not all(values[1:]) or values[0] is None:
@@ -59,7 +66,7 @@ def _quotient(given: Given, keys: tuple[str, ...]) -> float | None:
     return values[0] / values[1] if len(values) > 1 and values[1] else values[0]
 
 
-def _value(given: Given, key: str) -> float | None:
+def _value(given: GivenValues, key: str) -> float | None:
     """Return the value of a key, or the value that holds for a missing key; None without one."""
     if key in given:
         found = given[key]

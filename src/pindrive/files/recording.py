@@ -8,7 +8,7 @@ from typing import Any, Final
 
 from pindrive.device.hand import RECORDED, HandPath
 from pindrive.device.recording import read_csv
-from pindrive.files.keys import NUMERIC_KEYS, OVER_TIME, Tables, is_file, number
+from pindrive.files.keys import FILE_KEYS, OVER_TIME, Tables, is_file, number
 from pindrive.motion.release import CONTINUOUS
 from pindrive.quantities.csv_table import CsvTable
 from pindrive.quantities.quantity import Quantity, Rows, counted
@@ -48,7 +48,7 @@ def with_files_read(
 def files_named(tables: Tables, folder: Path) -> dict[str, Path]:
     """The CSV that each key names instead of a value or rows, by the key."""
     found = {}
-    for key in NUMERIC_KEYS:
+    for key in FILE_KEYS:
         table, _, name = key.partition(".")
         value = tables.get(table, {}).get(name)
         if is_file(key, value):
@@ -62,7 +62,7 @@ def recording_words(tables: Tables, folder: Path) -> str:
     The tables have been read without a problem.
     """
     file = files_named(tables, folder).get(SPEED)
-    if file is None or NUMERIC_KEYS[SPEED].name in CsvTable.read(file, "rows", ""):
+    if file is None or FILE_KEYS[SPEED].name in CsvTable.read(file, "rows", ""):
         return ""
     return _path(file, tables).about
 
@@ -73,8 +73,8 @@ def profile_words(file: Path) -> str:
     Raises:
         ValueError: The file cannot be read, or its rows are malformed; file and row are named.
     """
-    table = CsvTable.read(file, "a CSV", profile_header(NUMERIC_KEYS[SPEED]))
-    for key, quantity in NUMERIC_KEYS.items():
+    table = CsvTable.read(file, "a CSV", profile_header(FILE_KEYS[SPEED]))
+    for key, quantity in FILE_KEYS.items():
         if quantity.rows_of in OVER_TIME and quantity.name in table:
             rows = _profile(table, key)
             lasts = duration(rows[-1][0] - rows[0][0])
@@ -92,8 +92,8 @@ def profile_header(quantity: Quantity) -> str:
 
 def _rows(file: Path, key: str, tables: Tables) -> Rows:
     """The rows of a CSV that stands for a key, SI."""
-    name = NUMERIC_KEYS[key].name
-    table = CsvTable.read(file, f"a CSV of {name}", profile_header(NUMERIC_KEYS[key]))
+    name = FILE_KEYS[key].name
+    table = CsvTable.read(file, f"a CSV of {name}", profile_header(FILE_KEYS[key]))
     if name not in table and key == SPEED and ("x" in table or "dx" in table):
         path = _path(file, tables)
         return path.plate_velocity(_given(tables, "array.axis")).rows
@@ -102,7 +102,7 @@ def _rows(file: Path, key: str, tables: Tables) -> Rows:
 
 def _profile(table: CsvTable, key: str) -> Rows:
     """The rows of a CSV that gives a key over time, SI."""
-    quantity = NUMERIC_KEYS[key]
+    quantity = FILE_KEYS[key]
     name = quantity.name
     also = f", or {quoted(RECORDED)} of a recorded hand" if key == SPEED else ""
     required = f"like {quoted(profile_header(quantity))}{also}"
@@ -135,7 +135,7 @@ def _path(file: Path, tables: Tables) -> HandPath:
 def _given(tables: Tables, key: str) -> float:
     """The value of a key, SI; the usual one where it is left out or malformed."""
     table, _, name = key.partition(".")
-    quantity, value = NUMERIC_KEYS[key], tables.get(table, {}).get(name)
+    quantity, value = FILE_KEYS[key], tables.get(table, {}).get(name)
     try:
         if value is not None:
             return number(value, quantity, quantity.usual, key, "")

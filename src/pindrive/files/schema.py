@@ -14,10 +14,13 @@ from typing import Any, Final
 from pindrive.device.coil import COIL, COIL_NEEDS, Coil
 from pindrive.device.electromagnet import DIRECT, Electromagnet
 from pindrive.device.pin_array import PinArray
+from pindrive.files.functions import is_function, read_function
 from pindrive.files.keys import (
     DRIVE,
-    NUMERIC_KEYS,
+    FILE_KEYS,
+    OVER_TIME,
     WHOLE,
+    Given,
     Value,
     line,
     number,
@@ -25,8 +28,9 @@ from pindrive.files.keys import (
 )
 from pindrive.motion.drive import Contact, Drive, law_name
 from pindrive.motion.friction import normal_force
+from pindrive.motion.function import Function
 from pindrive.motion.profile import Profile
-from pindrive.motion.release import INPUTS, Release
+from pindrive.motion.release import INPUTS, Release, input_of
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import Quantity, Rows
 from pindrive.quantities.refusal import quoted, refusal
@@ -40,16 +44,16 @@ Place = Callable[..., str]
 
 def read_given(
     tables: Mapping[str, Mapping[str, Any]], place: Place
-) -> tuple[dict[str, float | Rows], dict[str, str]]:
+) -> tuple[dict[str, Given], dict[str, str]]:
     """Return the value of each key in the tables, SI, and a line for each that is malformed.
 
     Args:
         tables: Tables of a device file, with the rows of the CSV files that it names.
         place: Place of keys.
     """
-    given: dict[str, float | Rows] = {}
+    given: dict[str, Given] = {}
     malformed = {}
-    for key in NUMERIC_KEYS:
+    for key in FILE_KEYS:
         table, _, name = key.partition(".")
         if name in tables[table]:
             try:
@@ -77,7 +81,7 @@ def complete(
     """
     values: dict[str, Value] = {}
     problems = []
-    for key, quantity in NUMERIC_KEYS.items():
+    for key, quantity in FILE_KEYS.items():
         if key.partition(".")[0] not in names:
             continue
         if key in malformed:
@@ -94,13 +98,20 @@ def complete(
     return values, problems
 
 
-def read_value(value: object, key: str, place: str) -> float | Rows:
-    """Return the TOML value of a key in SI: a number, or rows.
+def read_value(value: object, key: str, place: str) -> Given:
+    """Return the TOML value of a key in SI: a number, rows, or a function of time.
 
     Raises:
         ValueError: The value is malformed or out of the bounds of the key.
     """
-    quantity = NUMERIC_KEYS[key]
+    quantity = FILE_KEYS[key]
+    if quantity.rows_of in OVER_TIME and is_function(value):
+        function = read_function(value, key, place)
+        try:
+            input_of(quantity.name, function)
+        except ValueError as error:
+            raise ValueError(f"{place}: {key.removesuffix(quantity.name)}{error}") from None
+        return function
     if quantity.rows and (isinstance(value, list | tuple) or not quantity.may_be_constant):
         return _rows(value, quantity, key, place)
     return number(value, quantity, quantity.usual, key, place)
@@ -140,9 +151,7 @@ def table_of(values: Mapping[str, Value], table: str) -> dict[str, Any]:
 @cache
 def _names_of(table: str) -> tuple[tuple[str, str], ...]:
     """The keys of one table, with their names in it."""
-    return tuple(
-        (key, key.partition(".")[2]) for key in NUMERIC_KEYS if key.startswith(f"{table}.")
-    )
+    return tuple((key, key.partition(".")[2]) for key in FILE_KEYS if key.startswith(f"{table}."))
 
 
 def contact_of(values: Mapping[str, Value], table: str) -> Contact:
@@ -182,8 +191,8 @@ def release_of(values: Mapping[str, Value]) -> Release:
     return Release(**given)
 
 
-def over_time(value: Value) -> float | Profile | None:
-    """A constant, or rows (time, value) as a profile."""
+def over_time(value: Value) -> float | Profile | Function | None:
+    """A constant, a function, or rows (time, value) as a profile."""
     return Profile(*zip(*value, strict=True)) if isinstance(value, tuple) else value
 
 

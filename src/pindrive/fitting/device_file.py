@@ -50,6 +50,8 @@ def _values(device: DeviceFile, found: Fit) -> dict[str, Any]:
         values[f"{name}.kinetic"] = contact.kinetic
         values[f"{name}.static"] = contact.static
         values[f"{name}.curve"] = contact.curve
+        law = ("breakaway", "stribeck_velocity", "viscous")
+        values |= {f"{name}.{part}": getattr(contact, part) for part in law}
         if name == "finger" and not contact.rigid:
             values[f"{name}.stiffness"] = contact.stiffness
     values["motion.displacement"] = release.displacement
@@ -66,7 +68,7 @@ def _values(device: DeviceFile, found: Fit) -> dict[str, Any]:
         value = value.rows if isinstance(value, Profile) else value
         if value is None or value == before.get(key):
             continue
-        changed[key] = written(key, value if isinstance(value, tuple) else float(value))
+        changed[key] = written(key, value)
     return changed
 
 

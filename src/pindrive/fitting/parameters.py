@@ -19,14 +19,15 @@ from pindrive.fitting.recording import Recording
 from pindrive.motion.core_numbers import PLACES, ROWS, CoreNumbers, entry
 from pindrive.motion.drive import Contact, Drive
 from pindrive.motion.friction import FALLING
+from pindrive.motion.function import STEP, Function, at_begin, core_of
 from pindrive.motion.profile import Profile
-from pindrive.motion.release import Release, core_numbers
+from pindrive.motion.release import INPUTS, Release, core_numbers
 from pindrive.quantities.drive import COLUMNS, FRICTION_LAWS
 from pindrive.quantities.names import Names
 from pindrive.quantities.quantity import DISPLAY, Bounds, Quantity, counted
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.results import CHANNELS
-from pindrive.quantities.table import QUANTITIES, check
+from pindrive.quantities.table import FUNCTION_PARAMETERS, QUANTITIES, check
 
 DRIVE: Final = (
     *("mass", "stiffness", "damping", "damping_ratio", "plate.kinetic", "plate.static"),
@@ -40,11 +41,18 @@ DRIVE: Final = (
 """Parameters of the drive, which all recordings share."""
 START: Final = ("displacement", "velocity", "skin_stretch", "mouse_velocity", "plate_load")
 """Parameters of each release."""
+OF_FUNCTIONS: Final = tuple(
+    q.name for q in FUNCTION_PARAMETERS if q.name.partition(".")[0] in START
+)
+"""Parameters of the functions of time in a release."""
 SENSOR: Final = ("time_offset", *(f"{channel}_offset" for channel in CHANNELS))
 """Parameters of each recording: its time of the release, and what its sensors add."""
 _NAMES: Final = Names(
     "parameter",
-    {name: (QUANTITIES[name].key, QUANTITIES[name].variable) for name in (*DRIVE, *START)}
+    {
+        name: (QUANTITIES[name].key, QUANTITIES[name].variable)
+        for name in (*DRIVE, *START, *OF_FUNCTIONS)
+    }
     | dict.fromkeys(SENSOR, ()),
     listed="docs/fitting.md",
 )
@@ -62,8 +70,6 @@ FALLING_NUMBERS: Final = tuple(float(FRICTION_LAWS.index(law)) for law in FALLIN
 """Numbers of the laws by which friction falls."""
 DECADE: Final = 10.0
 """A positive parameter is searched from its tenth to its tenfold unless bounds are given."""
-_STEP: Final = 1e-30
-"""Imaginary step of a complex-step derivative (Squire and Trapp, 1998): exact to rounding."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,6 +145,8 @@ def key_of(name: str) -> str:
     """The key of a device file in which a parameter stands."""
     if name == "damping_ratio":  # written as the damping
         return QUANTITIES["damping"].key
+    if name in OF_FUNCTIONS:
+        name = name.partition(".")[0]
     match = ROW.fullmatch(name)
     return QUANTITIES[_TABLES[match[1]] if match else name].key
 
@@ -185,7 +193,7 @@ def _parameter(
     else:
         assert quantity
         unit, allowed = quantity.unit, quantity.limits
-        start = _start(key, core_numbers(drive, release, None), quantity, release)
+        start = _start(key, core_numbers(drive, release, None), release)
         ends = _searched(start, quantity, drive, recordings if r is None else [recording], key)
     if bounds is not None:
         of = "profile.time" if unit == "s" else "profile.value"
@@ -199,8 +207,18 @@ def _parameter(
     return [Parameter(name, key, r, unit, min(max(start, ends[0]), ends[1]), *ends)]
 
 
-def _start(key: str, numbers: CoreNumbers, quantity: Quantity, release: Release) -> float:
+def _start(key: str, numbers: CoreNumbers, release: Release) -> float:
     """The value that drive and release have."""
+    name, part = key.partition("[")[0].partition(".")[0], key.partition(".")[2]
+    given = getattr(release, name, None)
+    if key in OF_FUNCTIONS:
+        if not isinstance(given, Function) or part not in given.parameters:
+            required = "a parameter of a function that the release has"
+            raise ValueError(refusal("free", required, key))
+        return given.parameters[part]
+    if isinstance(given, Function):
+        known = ", ".join(f"{name}.{part}" for part in given.parameters) or "left out"
+        raise ValueError(refusal("free", known, key))
     if match := ROW.fullmatch(key):
         rows = _rows(numbers, match[1])
         if int(match[2]) >= len(rows):
@@ -302,6 +320,14 @@ class Assembly:
             for r in range(len(releases))
         ]
         self._drive = drive
+        self._functions = [
+            {
+                name: given
+                for name in INPUTS
+                if isinstance(given := getattr(release, name), Function)
+            }
+            for release in releases
+        ]
         self._base = [core_numbers(drive, release, inf) for release in releases]
         self._durations = durations
         self._carried = [release.velocity is None for release in releases]
@@ -315,7 +341,7 @@ class Assembly:
         """The core's numbers; with arrays in `theta` arrays in their place."""
         values = {key: theta[i] for key, i in self._own[r].items()}
         end = self._durations[r] if duration is None else duration
-        return _assembled(values, self._base[r], self._carried[r], end)
+        return _assembled(values, self._base[r], self._functions[r], self._carried[r], end)
 
     def drive(self, theta: Any) -> Drive:
         """The drive with these parameters."""
@@ -340,28 +366,34 @@ class Assembly:
 
     def release(self, theta: Any, r: int) -> Release:
         """The release of a recording with these parameters."""
-        plate_velocity, load, x, v, stretch, force, across, touch = self.numbers(theta, r)[5:13]
+        _, _, x, v, stretch, *_ = self.numbers(theta, r)[5:13]
         carried = self._carried[r] and "velocity" not in self._own[r]
         return Release(
-            _made_input(plate_velocity),
-            float(x),
-            None if carried else float(v),
-            _made_input(load),
-            None if isnan(stretch) else float(stretch),
-            _made_input(force),
-            _made_input(across),
-            _made_input(touch),
+            displacement=float(x),
+            velocity=None if carried else float(v),
+            skin_stretch=None if isnan(stretch) else float(stretch),
+            **{name: self._made_input(theta, r, name) for name in INPUTS},
         )
+
+    def _made_input(self, theta: Any, r: int, name: str) -> float | Profile | Function:
+        function = self._functions[r].get(name)
+        if function is None:
+            rows = entry(self.numbers(theta, r), PLACES[name])
+            if len(rows) == 1:
+                return float(rows[0][1])
+            return Profile([float(t) for t, _ in rows], [float(y) for _, y in rows])
+        own = _own_of(name, {key: float(theta[i]) for key, i in self._own[r].items()})
+        return function.replace(**own) if own else function
 
     def along(self, theta: Sequence[float], i: int, r: int) -> CoreNumbers:
         """The derivative of the core's numbers with respect to parameter i."""
         values: dict[str, Any] = {key: float(theta[j]) for key, j in self._own[r].items()}
         key = next(key for key, j in self._own[r].items() if j == i)
-        values[key] = complex(values[key], _STEP)
-        numbers = _assembled(values, self._base[r], self._carried[r], 0.0)
+        values[key] = complex(values[key], STEP)
+        numbers = _assembled(values, self._base[r], self._functions[r], self._carried[r], 0.0)
         base, still = self._base[r], self._still[r]
         found = [
-            still[j] if part is base[j] else _mapped(lambda y: y.imag / _STEP, part)
+            still[j] if part is base[j] else _mapped(lambda y: y.imag / STEP, part)
             for j, part in enumerate(numbers)
         ]
         return tuple(found)
@@ -384,13 +416,32 @@ def _made_contact(numbers: Any, given: Contact, static_free: bool) -> Contact:
     )
 
 
-def _made_input(rows: Any) -> float | Profile:
-    if len(rows) == 1:
-        return float(rows[0][1])
-    return Profile([float(t) for t, _ in rows], [float(y) for _, y in rows])
+def _own_of(name: str, values: Mapping[str, Any]) -> dict[str, Any]:
+    """The parameters of the function of an input among values."""
+    return {
+        key.partition(".")[2]: value
+        for key, value in values.items()
+        if key in OF_FUNCTIONS and key.startswith(f"{name}.")
+    }
 
 
-def _assembled(values: Mapping[str, Any], base: Any, carried: bool, duration: float) -> Any:
+def _input(
+    values: Mapping[str, Any], name: str, base: Any, functions: Mapping[str, Function]
+) -> Any:
+    """The rows or pieces of an input."""
+    if name not in functions:
+        return _table(values, name, base)
+    own = _own_of(name, values)
+    return core_of(functions[name], own) if own else base
+
+
+def _assembled(
+    values: Mapping[str, Any],
+    base: Any,
+    functions: Mapping[str, Function],
+    carried: bool,
+    duration: float,
+) -> Any:
     mass, stiffness, damping, plate, finger, plate_velocity, load, x, v, stretch, *others, _ = base
     mass = values.get("mass", mass)
     stiffness = values.get("stiffness", stiffness)
@@ -401,13 +452,14 @@ def _assembled(values: Mapping[str, Any], base: Any, carried: bool, duration: fl
     for name, contact in (("plate", plate), ("finger", finger)):
         touched = any(key.startswith((f"{name}.", f"{name}_curve")) for key in values)
         contacts.append(_contact(values, name, contact) if touched else contact)
-    plate_velocity = _table(values, "mouse_velocity", plate_velocity)
-    load = _table(values, "plate_load", load)
+    plate_velocity = _input(values, "mouse_velocity", plate_velocity, functions)
+    load = _input(values, "plate_load", load, functions)
     x = values.get("displacement", x)
     if "velocity" in values:
         v = values["velocity"]
     elif carried:
-        v = _at_zero(plate_velocity)
+        smooth = "mouse_velocity" in functions
+        v = at_begin(plate_velocity) if smooth else _at_zero(plate_velocity)
     if "skin_stretch" in values:
         stretch = values["skin_stretch"]
     elif stretch == stretch and contacts[1] is not finger:  # follows the largest

@@ -15,6 +15,7 @@ from pindrive.fitting.model import Model
 from pindrive.lazy import qmc
 from pindrive.motion.batch import simulate_batch
 from pindrive.motion.core_numbers import LAW_PLACE, PLACES, ROWS, entry
+from pindrive.motion.function import Function
 from pindrive.quantities.table import ImplausibleValueWarning
 
 Array = NDArray[np.float64]
@@ -250,6 +251,10 @@ def _plain(model: Model) -> bool:
     left_alone = all(
         release.force == release.across_velocity == 0.0 and release.finger_load == 1.0
         for release in model.releases
+    ) and not any(
+        isinstance(given, Function)
+        for release in model.releases
+        for given in (release.mouse_velocity, release.plate_load)
     )
     measured = channels <= {"position", "velocity"}
     return measured and rigid and unbounded and free and constant and coulomb and left_alone

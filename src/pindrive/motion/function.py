@@ -7,16 +7,17 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import cos, exp, inf, isfinite, sin, tau
 from typing import TYPE_CHECKING, Any, Final, NamedTuple, overload
 
 from pindrive import _core
 from pindrive.motion.profile import Profile, in_si
+from pindrive.quantities.functions import FUNCTIONS, OWN_UNIT
+from pindrive.quantities.part import Part
 from pindrive.quantities.refusal import quoted, refusal
 from pindrive.quantities.units import to_si
-from pindrive.quantities.value import concise
 
 if TYPE_CHECKING:
     import numpy as np
@@ -25,12 +26,9 @@ if TYPE_CHECKING:
 DEGREE: Final = 5
 """Highest degree of the polynomial of a piece."""
 
-FASTEST: Final = 1e6
-"""Highest frequency of a function, Hz."""
-
 
 class InputTerm(NamedTuple):
-    """InputTerm of a piece: (cosine cos Ωτ + sine sin Ωτ) e^(−δτ), with τ the time since its begin.
+    """Term of a piece: (cosine cos Ωτ + sine sin Ωτ) e^(−δτ), with τ the time since its begin.
 
     Attributes:
         cosine: Amplitude of the cosine, SI.
@@ -69,8 +67,7 @@ class InputPiece(NamedTuple):
         return self._replace(begin=time)
 
 
-@concise
-@dataclass(frozen=True, slots=True, init=False)
+@dataclass(frozen=True, slots=True, init=False, repr=False)
 class Function:
     """A quantity over time in pieces, each a polynomial, exponentials and sinusoids.
 
@@ -105,6 +102,20 @@ class Function:
         """Numbers from which a `harmonic`, `minimum_jerk` or `exponential` was made, by name."""
         return dict(self.numbers)
 
+    def replace(self, **parameters: float | str) -> Function:
+        """Return the function with other values of some of its `parameters`.
+
+        Raises:
+            ValueError: A parameter is unknown, or its value out of range.
+        """
+        for name in parameters:
+            if name not in self.parameters:
+                known = ", ".join(self.parameters) or "none of a sum or a sequence"
+                raise ValueError(refusal("parameter", known, quoted(name)))
+        changed = of_parameters(self.kind, {**self.parameters, **parameters})
+        object.__setattr__(changed, "unit", changed.unit or self.unit)
+        return changed
+
     @property
     def changes(self) -> bool:
         """True if the function takes more than one value."""
@@ -132,6 +143,13 @@ class Function:
     def core(self) -> list[tuple[float, tuple[float, ...], tuple[InputTerm, ...]]]:
         """The pieces as the core has them."""
         return [piece.core for piece in self.pieces]
+
+    def __repr__(self) -> str:
+        """Return the call that makes the function; without parameters, its pieces."""
+        if self.parameters:
+            given = ", ".join(f"{name}={value:.6g}" for name, value in self.parameters.items())
+            return f"{self.kind}({given})"
+        return f"Function({', '.join(map(str, self.pieces[:2]))}{', …' * (len(self.pieces) > 2)})"
 
     @overload
     def __call__(self, t: float) -> float: ...
@@ -200,12 +218,8 @@ def harmonic(
     Raises:
         ValueError: A number is out of range.
     """
-    unit, (middle, size) = _in_one_unit({"mean": mean, "amplitude": amplitude})
-    rate = _number("frequency", "Hz", frequency)
-    if not 0 < rate <= FASTEST:
-        raise ValueError(refusal("frequency", f"> 0 Hz and <= {FASTEST:g} Hz", f"{rate!r} Hz"))
-    angle = _number("phase", "rad", phase)
-    return _made("harmonic", unit, mean=middle, amplitude=size, frequency=rate, phase=angle)
+    given = {"mean": mean, "amplitude": amplitude, "frequency": frequency, "phase": phase}
+    return of_parameters("harmonic", given)
 
 
 def minimum_jerk(
@@ -227,13 +241,8 @@ def minimum_jerk(
     Raises:
         ValueError: A number is out of range.
     """
-    way = _number("distance", "m", distance)
-    lasts, start = _number("duration", "s", duration), _number("begin", "s", begin)
-    if not lasts > 0:
-        raise ValueError(refusal("duration", "> 0 s", f"{lasts!r} s"))
-    if not start >= 0:
-        raise ValueError(refusal("begin", ">= 0 s", f"{start!r} s"))
-    return _made("minimum_jerk", "m/s", distance=way, duration=lasts, begin=start)
+    given = {"distance": distance, "duration": duration, "begin": begin}
+    return of_parameters("minimum_jerk", given)
 
 
 def exponential(
@@ -253,13 +262,25 @@ def exponential(
     Raises:
         ValueError: A number is out of range.
     """
-    unit, (first, last) = _in_one_unit({"start": start, "end": end})
-    constant, since = _number("time_constant", "s", time_constant), _number("begin", "s", begin)
-    if not constant >= 1e-7:
-        raise ValueError(refusal("time_constant", ">= 1e-7 s", f"{constant!r} s"))
-    if not since >= 0:
-        raise ValueError(refusal("begin", ">= 0 s", f"{since!r} s"))
-    return _made("exponential", unit, start=first, end=last, time_constant=constant, begin=since)
+    given = {"start": start, "end": end, "time_constant": time_constant, "begin": begin}
+    return of_parameters("exponential", given)
+
+
+def of_parameters(kind: str, given: Mapping[str, float | str]) -> Function:
+    """Return a function by the name of its kind, a key of `FUNCTIONS`, and all its parameters.
+
+    Raises:
+        ValueError: A number is out of range.
+    """
+    part = _PARTS[kind]
+    own = {name: value for name, value in given.items() if part.rows[name].unit == OWN_UNIT}
+    unit, values = in_si([*own.values()], " and ".join(own)) if own else ("m/s", [])
+    si = {**given, **dict(zip(own, values, strict=True))}
+    numbers = {name: part.check(name, value) for name, value in si.items()}
+    function = Function(_MAKERS[kind](**numbers), unit)
+    object.__setattr__(function, "kind", kind)
+    object.__setattr__(function, "numbers", tuple(numbers.items()))
+    return function
 
 
 def as_function(given: float | str | Profile | Function, unit: str) -> Function:
@@ -279,28 +300,54 @@ def as_function(given: float | str | Profile | Function, unit: str) -> Function:
     return Function(pieces, given.unit)
 
 
-def rates_of(function: Function, parameter: str) -> list[Any]:
-    """Return the derivatives of the pieces by a parameter, as the core has them.
+STEP: Final = 1e-30
+"""Imaginary step of a complex-step derivative (Squire and Trapp, 1998): exact to rounding."""
+
+
+def core_of(function: Function, parameters: Mapping[str, Any]) -> list[Any]:
+    """Return the pieces, as the core has them, with some parameters set otherwise.
+
+    A parameter may be complex, with an imaginary part of `STEP`.
+    """
+    made = _MAKERS[function.kind](**{**function.parameters, **parameters})
+    return [piece.core for piece in made]
+
+
+def at_begin(pieces: Sequence[Any]) -> Any:
+    """Return the value at t = 0 of pieces as the core has them; to first order in `STEP`."""
+    begin, polynomial, terms = next(
+        (piece for piece in reversed(pieces) if piece[0].real <= 0.0), pieces[0]
+    )
+    after = -begin if begin.real <= 0.0 else 0.0
+    value = sum(p * after**n for n, p in enumerate(polynomial))
+    for cosine, sine, decay, frequency in terms:
+        phase = frequency * after
+        by = cmath if isinstance(phase + decay * after, complex) else math
+        value += (cosine * by.cos(phase) + sine * by.sin(phase)) * by.exp(-decay * after)
+    return value
+
+
+def rates_of(function: Function, parameter: str) -> tuple[list[Any], float]:
+    """Return the derivatives by a parameter: of the pieces as the core has them, and at t = 0.
 
     A step along the imaginary axis differences no numbers, so that the derivative is exact.
     """
-    step = 1e-30
-    values = {**function.parameters}
-    values[parameter] += step * 1j  # type: ignore[assignment]
-    parts = [piece.core for piece in _MAKERS[function.kind](**values)]
+    step = STEP * 1j
+    parts = core_of(function, {parameter: function.parameters[parameter] + step})
 
     def rate(number: Any) -> float:
-        return complex(number).imag / step
+        return complex(number).imag / STEP
 
-    return [
+    pieces = [
         (rate(begin), tuple(map(rate, polynomial)), [tuple(map(rate, term)) for term in terms])
         for begin, polynomial, terms in parts
     ]
+    return pieces, rate(at_begin(parts))
 
 
 def _harmonic(mean: Any, amplitude: Any, frequency: Any, phase: Any) -> list[InputPiece]:
-    circular = cmath if isinstance(phase, complex) else math
-    sine, cosine = circular.sin(phase), circular.cos(phase)
+    by = cmath if isinstance(phase, complex) else math
+    sine, cosine = by.sin(phase), by.cos(phase)
     return [
         InputPiece(
             0.0, (mean,), (InputTerm(amplitude * sine, amplitude * cosine, 0.0, tau * frequency),)
@@ -311,24 +358,14 @@ def _harmonic(mean: Any, amplitude: Any, frequency: Any, phase: Any) -> list[Inp
 def _minimum_jerk(distance: Any, duration: Any, begin: Any) -> list[InputPiece]:
     speed = 30 * distance / duration
     stroke = (0.0, 0.0, *(part * speed / duration**n for n, part in ((2, 1), (3, -2), (4, 1))))
-    rest = [] if begin == 0 else [InputPiece(0.0, (0.0,))]
+    rest = [] if begin.real == 0 else [InputPiece(0.0, (0.0,))]
     return [*rest, InputPiece(begin, stroke), InputPiece(begin + duration, (0.0,))]
 
 
 def _exponential(start: Any, end: Any, time_constant: Any, begin: Any) -> list[InputPiece]:
-    rest = [] if begin == 0 else [InputPiece(0.0, (start,))]
+    rest = [] if begin.real == 0 else [InputPiece(0.0, (start,))]
     return [*rest, InputPiece(begin, (end,), (InputTerm(start - end, 0.0, 1 / time_constant),))]
 
-
-UNITS: Final[Mapping[str, str]] = {
-    "frequency": "Hz",
-    "phase": "rad",
-    "distance": "m",
-    "duration": "s",
-    "time_constant": "s",
-    "begin": "s",
-}
-"""SI units of the parameters of functions; other parameters are in that of the input."""
 
 _MAKERS: Final[Mapping[str, Callable[..., list[InputPiece]]]] = {
     "harmonic": _harmonic,
@@ -337,27 +374,14 @@ _MAKERS: Final[Mapping[str, Callable[..., list[InputPiece]]]] = {
 }
 
 
-def _made(kind: str, unit: str, **parameters: float) -> Function:
-    function = Function(_MAKERS[kind](**parameters), unit)
-    object.__setattr__(function, "kind", kind)
-    object.__setattr__(function, "numbers", tuple(parameters.items()))
-    return function
-
-
-def _in_one_unit(given: Mapping[str, float | str]) -> tuple[str, list[float]]:
-    """Return the SI unit of texts among numbers, empty for numbers alone, and all values in SI."""
-    unit, values = in_si(list(given.values()), " and ".join(given))
-    return unit, [_number(name, "", value) for name, value in zip(given, values, strict=True)]
-
-
-_EXAMPLES: Final = {"s": "20 ms", "Hz": "8 Hz", "rad": "90 deg", "m": "10 mm"}
+_PARTS: Final = {kind: Part(parameters) for kind, parameters in FUNCTIONS.items()}
 
 
 def _number(name: str, unit: str, given: object) -> float:
     """Return a finite number, or the SI value of a text with a unit."""
     if isinstance(given, str) and unit:
         try:
-            return to_si(given, unit, _EXAMPLES.get(unit, f"1 {unit}"))
+            return to_si(given, unit, f"1 {unit}")
         except ValueError as error:
             raise ValueError(refusal(name, str(error), quoted(given))) from None
     try:

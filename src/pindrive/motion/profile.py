@@ -8,10 +8,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import pairwise
 from math import isnan
-from typing import Any, Final, overload
-
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from typing import TYPE_CHECKING, Any, Final, overload
 
 from pindrive.quantities.drive import DRIVE_QUANTITIES, PARTS
 from pindrive.quantities.part import Part
@@ -19,6 +16,10 @@ from pindrive.quantities.refusal import quoted, refusal
 from pindrive.quantities.rows import check_slopes, check_times
 from pindrive.quantities.units import UnitError, to_si
 from pindrive.quantities.value import concise
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
 
 _TABLE: Final = Part((*DRIVE_QUANTITIES, *PARTS))
 

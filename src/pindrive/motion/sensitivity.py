@@ -18,7 +18,7 @@ from pindrive.lazy import mpl_figure, xr
 from pindrive.motion.core_numbers import PLACES, ROWS, CoreNumbers, Input, Rows, entry
 from pindrive.motion.drive import Contact, Drive
 from pindrive.motion.friction import COEFFICIENTS, PRESSED_BY, normal_force
-from pindrive.motion.function import UNITS, Function, rates_of
+from pindrive.motion.function import Function, rates_of
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.refusal import refusal
@@ -316,11 +316,10 @@ def _along_function(motion: pindrive.Motion, given: str) -> tuple[CoreNumbers, f
     if parameter not in function.parameters:
         known = ", ".join(f"{name}.{part}" for part in function.parameters) or "none of a sum"
         raise ValueError(refusal("parameter", f"one of {known}", repr(given)))
-    rates = rates_of(function, parameter)
+    rates, at_begin = rates_of(function, parameter)
     along = _replaced(_mapped(lambda _: 0.0, motion.core_numbers), PLACES[name], rates)
     if name == "mouse_velocity" and motion.release.velocity is None:
-        begin = _rows_of(motion.core_numbers[5]), _rows_of(rates)
-        along = _replaced(along, (8,), _start_slope(*begin))
+        along = _replaced(along, (8,), at_begin)
     return along, abs(function.parameters[parameter]) or function.size or 1.0
 
 
@@ -384,9 +383,6 @@ def _unit(given: str) -> str:
     """The SI unit of a parameter."""
     name = re.sub(r"^(plate|finger)_", r"\1.", given)
     table, _, column = name.partition("[")
-    of_function, _, part = name.partition(".")
-    if of_function in _INPUTS and part:
-        return UNITS.get(part) or QUANTITIES[of_function].unit
     if not column:
         return QUANTITIES[name if name in QUANTITIES else given].unit
     part = column.partition("].")[2]

@@ -12,6 +12,7 @@ from typing import Final, TypeVar, dataclass_transform
 from pindrive.quantities.device import ARRAY, CONTROL, DEVICE_PARTS, PIN, SCAN
 from pindrive.quantities.drive import DRIVE_QUANTITIES, PARTS
 from pindrive.quantities.electromagnet import COIL, MADE, MAGNET
+from pindrive.quantities.functions import parameters_of
 from pindrive.quantities.part import Part, checked_class
 from pindrive.quantities.quantity import Quantity, Rows
 from pindrive.quantities.results import CRITERIA, DESIGNED, FINAL, JUDGE, OUTPUTS, RATE
@@ -21,11 +22,19 @@ T = TypeVar("T")
 DEVICE_INPUTS: Final = MAGNET + COIL + CONTROL + ARRAY + SCAN + CRITERIA
 """Optional keys of a device file beyond the drive, in order."""
 
+FUNCTION_PARAMETERS: Final = parameters_of(DRIVE_QUANTITIES)
+"""Parameters of inputs that are functions of time: "mouse_velocity.amplitude"."""
+
 
 DEVICE: Final[tuple[Quantity, ...]] = DEVICE_INPUTS + MADE + DEVICE_PARTS + PIN + JUDGE
 """Additional quantities of a whole device."""
 
-_ALL: Final = Part((*DRIVE_QUANTITIES, *PARTS, *OUTPUTS, *FINAL, RATE, *DEVICE, *DESIGNED))
+_ALL: Final = Part(
+    (
+        *(*DRIVE_QUANTITIES, *FUNCTION_PARAMETERS, *PARTS),
+        *(*OUTPUTS, *FINAL, RATE, *DEVICE, *DESIGNED),
+    )
+)
 QUANTITIES: Final = _ALL.rows
 check: Final = _ALL.check
 default: Final = _ALL.default

@@ -72,7 +72,7 @@ def _compared(value: Any) -> Iterator[Field[Any]]:
 
 def _text(value: Any, room: int) -> str:
     """Return a value as text of limited length."""
-    if is_dataclass(value):
+    if is_dataclass(value) and _has_usual_text(type(value)):
         shown = (
             f"{field.name}={_text(item, _NESTED)}"
             for field in fields(value)
@@ -91,6 +91,11 @@ def _text(value: Any, room: int) -> str:
         return text if len(value) <= 4 and len(text) <= _ROW else f"<{len(value)} values>"
     text = repr(value)
     return text if len(text) <= room else f"{text[: room - 1]}…"
+
+
+def _has_usual_text(cls: Any) -> bool:
+    """Return True if a dataclass has no representation of its own."""
+    return bool(cls.__dataclass_params__.repr)
 
 
 def _tells(field: Field[Any], value: Any) -> bool:

@@ -9,7 +9,7 @@ from numbers import Integral, Real
 from pathlib import Path
 from typing import Any, Final, cast
 
-from pindrive.files.keys import DRIVE, NAMES, NUMERIC_KEYS, TABLES, has_part, number
+from pindrive.files.keys import DRIVE, NAMES, NUMERIC_KEYS, PARAMETERS, TABLES, has_part, number
 from pindrive.quantities import budgets
 from pindrive.quantities.quantity import Quantity
 from pindrive.quantities.refusal import quoted, refusal
@@ -39,13 +39,24 @@ _KINDS: Final = ("lin", "log", "list", *KINDS, "times")
 _BESIDE: Final = {"lin": ("count",), "log": ("count",), "list": (), "times": ("of",)}
 
 
-def written_axes(table: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
-    """The keys of [axes] and what is written for each, whether under its table or in full."""
-    for given, spec in table.items():
-        if given in TABLES and isinstance(spec, dict):
-            yield from ((f"{given}.{name}", inner) for name, inner in spec.items())
+def written_axes(table: Mapping[str, Any], within: str = "") -> Iterator[tuple[str, Any]]:
+    """The keys of [axes] and what is written for each, whether under its table or in full.
+
+    Args:
+        table: Table of TOML, in which "mouse_velocity.amplitude" is a table in a table.
+        within: Beginning of the keys.
+    """
+    for name, spec in table.items():
+        given = f"{within}{name}"
+        if isinstance(spec, dict) and (given in TABLES or _has_parameters(given, spec)):
+            yield from written_axes(spec, f"{given}.")
         else:
             yield given, spec
+
+
+def _has_parameters(given: str, spec: Mapping[str, Any]) -> bool:
+    """Return True if a table under the name of an input has parameters of a function."""
+    return any(key in PARAMETERS for name in spec for key in NAMES.matches(f"{given}.{name}"))
 
 
 def sweepable(given: str, place: str, scans: bool) -> str:

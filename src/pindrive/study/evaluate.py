@@ -18,6 +18,7 @@ from pindrive.files.ratios import scaled_rows
 from pindrive.motion.batch import batched
 from pindrive.motion.drive import Contact, Drive, law_name
 from pindrive.motion.friction import COEFFICIENT_OF, COEFFICIENTS, LAW
+from pindrive.motion.function import Function
 from pindrive.motion.motion import Motion
 from pindrive.motion.profile import Profile
 from pindrive.motion.release import INPUTS, Release
@@ -187,7 +188,8 @@ def follow(study: Study, at: Mapping[str, float]) -> Motion:
 def is_slow(device: DeviceFile, swept: Mapping[str, object]) -> bool:
     """Return True if the points of a device must be simulated one by one."""
     changes = {
-        f"motion.{name}": isinstance(getattr(device.release, name), Profile) for name in INPUTS
+        f"motion.{name}": isinstance(getattr(device.release, name), (Profile, Function))
+        for name in INPUTS
     }
     return (
         any(changing and key not in swept for key, changing in changes.items())
@@ -266,9 +268,14 @@ def _motion(given: Mapping[str, Any]) -> Motion:
             if own[curve] is not None:
                 own[curve] = scaled_rows(own[curve], own[kinetic])
         body[table] = Contact(**own, stiffness=stiffness)
+    release = {name: given[name] for name in _RELEASE}
+    for name in INPUTS:
+        if isinstance(release[name], Function):
+            parameters = {part: given[f"{name}_{part}"] for part in release[name].parameters}
+            release[name] = release[name].replace(**parameters) if parameters else release[name]
     return simulated(
         Drive(**body),
-        Release(**{name: given[name] for name in _RELEASE}),
+        Release(**release),
         **{name: given[name] for name in _NOT_OF_THE_DRIVE},
     )
 

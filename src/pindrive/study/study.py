@@ -15,6 +15,7 @@ import numpy as np
 
 from pindrive.device.page_description import Page
 from pindrive.files.device import DeviceFile
+from pindrive.files.functions import plain
 from pindrive.files.keys import has_part
 from pindrive.files.overrides import ConfigError
 from pindrive.lazy import xr
@@ -268,7 +269,7 @@ class Study:
             json.dumps(
                 {
                     "pindrive": __version__,
-                    "device": self.values,
+                    "device": {key: plain(value) for key, value in self.values.items()},
                     **page,
                     "dimensions": [asdict(dimension) for dimension in self.dimensions],
                     "links": {key: asdict(link) for key, link in self.links.items()},

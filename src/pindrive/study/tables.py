@@ -11,6 +11,7 @@ from typing import Any, Final
 
 from pindrive.device.page_description import Page
 from pindrive.files.device import DeviceFile, device_of, read_tables
+from pindrive.files.functions import check_parameter
 from pindrive.files.keys import NAMES, TABLES, is_file, variable
 from pindrive.files.overrides import ConfigError, Setting, settings_of
 from pindrive.quantities import budgets
@@ -129,7 +130,9 @@ def _settings(tables: Mapping[str, Any], file: Path) -> list[Setting]:
     if not isinstance(given, dict):
         raise ConfigError([refusal("set", "a table, [set]", quoted(given), str(file))])
     settings = []
-    for key, value in written_axes(given):
+    inner = {name: t for name, t in given.items() if name in TABLES and isinstance(t, dict)}
+    full = {f"{name}.{key}": value for name, t in inner.items() for key, value in t.items()}
+    for key, value in ({k: v for k, v in given.items() if k not in inner} | full).items():
         keys = NAMES.matches(key)
         if len(keys) == 1 and is_file(keys[0], value):
             value = str((file.parent / value).absolute())
@@ -247,6 +250,7 @@ class _Reader:
                         f"{self._file}: {table}.{key} is given twice, as {names[key]} and {given}"
                     )
                 names[key] = given
+                check_parameter(self._device.release, key, f"{self._file}: {table}")
                 base = base_value(self._device, key)
                 number = base if isinstance(base, float) else None
                 reader = AxisReader(self._source, table, key, number, scans=self._scans)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Final
 
-from pindrive.files.keys import DRIVE, NUMERIC_KEYS, line
+from pindrive.files.keys import DRIVE, FILE_KEYS, line
 from pindrive.quantities.device import READER
 
 _RELEASES: Final = """\
@@ -96,7 +96,7 @@ def device_lines(*, whole: bool) -> list[str]:
     if whole:
         lines.append("# [array] has neither columns nor rows: one pin, which takes the least time.")
     table = ""
-    for key, quantity in (NUMERIC_KEYS if whole else DRIVE).items():
+    for key, quantity in (FILE_KEYS if whole else DRIVE).items():
         if whole:
             quantity = replace(quantity, **READER.get(key, {}))
         kept = key not in _ONE_PIN and not key.startswith("criteria.")
