@@ -138,12 +138,18 @@ void exchange(Bytes& bytes, pindrive::StepperState<double>& s) {
        {&s.mouse_velocity, &s.plate_load, &s.across_velocity, &s.force, &s.finger_load})
     held(*input);
   number(s.horizon, s.event.plate, s.event.finger, s.event.stop);
+  auto& load = s.load_piece;
+  number(load.piece.begin, load.piece.count);
+  for (double& coefficient : load.piece.polynomial) number(coefficient);
+  for (auto& term : load.terms) number(term.cosine, term.sine, term.decay, term.frequency);
+  load.piece.terms = load.terms.data();
+  if (load.piece.count > load.terms.size()) load.piece.count = 0;
 }
 
 template <class Bytes>
 void exchange(Bytes& bytes, pindrive::device::CoilState& s) {
   const auto number = [&](auto&... each) { (bytes.item(each), ...); };
-  number(s.since, s.flux, s.pull, s.warming, s.level, s.commanded, s.on, s.command);
+  number(s.since, s.flux, s.warming, s.level, s.commanded, s.on, s.command);
 }
 
 }  // namespace pindrive_c

@@ -445,7 +445,7 @@ class Search {
       add(voltage, {}, "given with a coil, by turns, gap, wire_diameter and the like|it alone");
     const auto coil = device::CoilConstruction::of([&](const char* key) { return number(key); });
     if (made && !check_coil(coil, made)) return;
-    device::MagnetParameters magnet = made ? coil.magnet(0) : device::MagnetParameters{};
+    device::MagnetParameters magnet = made ? coil.magnet() : device::MagnetParameters{};
     if (!made) magnet.hold_force = number("magnet.hold_force");
     magnet.residual = number(residual);
     if (magnet.residual >= magnet.hold_force)

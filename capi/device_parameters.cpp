@@ -162,12 +162,9 @@ pindrive_error DeviceParameters::fill(pindrive_drive* drive, double Number::* pa
 std::unique_ptr<const device::Electromagnet> DeviceParameters::magnet() const {
   if (!has_magnet()) return nullptr;
   const bool made = has("magnet.turns");
-  const double deviation = number("magnet.deviation");
   device::MagnetParameters found{};
   if (made) {
-    found = device::CoilConstruction::of([&](const char* key) {
-              return number(key);
-            }).magnet(deviation);
+    found = device::CoilConstruction::of([&](const char* key) { return number(key); }).magnet();
     found.thermal_resistance = number("magnet.thermal_resistance");
     found.heat_capacity = of("magnet.heat_capacity").value;
   } else {
@@ -175,7 +172,6 @@ std::unique_ptr<const device::Electromagnet> DeviceParameters::magnet() const {
     found.rise_constant = device::rise_constant(number("magnet.rise_time"), found.saturation);
     found.fall_constant = device::fall_constant(number("magnet.fall_time"), found.saturation);
     found.hold_force = number("magnet.hold_force");
-    found.deviation = deviation;
   }
   found.residual = number("magnet.residual");
   if (has("magnet.lift")) {

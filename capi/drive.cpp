@@ -190,8 +190,8 @@ pindrive_error check_rows(const char* name, const pd::Rows& rows, bool negative,
   return PINDRIVE_OK;
 }
 
-/// Largest rate of a term of an input, 1/s.
-constexpr double largest_rate = 1e7;
+/// Largest decay and frequency of a term of an input, 1/s.
+constexpr double largest_decay = 1e9, largest_frequency = 1e7;
 
 /// Pieces in order, with numbers in range.
 pindrive_error check_pieces(const char* name, const std::vector<pd::PieceNumbers>& pieces) {
@@ -210,11 +210,12 @@ pindrive_error check_pieces(const char* name, const std::vector<pd::PieceNumbers
         if (!in_range(amplitude, true))
           return fail(PINDRIVE_BAD_VALUE, "an amplitude of %s must be %s, not %.17g", name,
                       range_of(true), amplitude);
-      for (const double rate : {decay, frequency}) {
-        const bool within = rate >= 0 && rate <= largest_rate;
+      for (const auto& [rate, largest] :
+           {std::pair(decay, largest_decay), std::pair(frequency, largest_frequency)}) {
+        const bool within = rate >= 0 && rate <= largest;
         if (!within)
           return fail(PINDRIVE_BAD_VALUE, "a rate of %s must be from 0 to %g 1/s, not %.17g", name,
-                      largest_rate, rate);
+                      largest, rate);
       }
     }
   }

@@ -75,7 +75,7 @@ pindrive_error pindrive_scan_lines(const pindrive_scan* scan, pindrive_go_on go_
     const device::PageAlongPath page(inputs.raster, inputs.path, reader.axis,
                                      reader.controller.threshold);
     const device::ScanEvaluation evaluation(inputs, scan->owned->criteria);
-    const device::PinState begin = device::at_rest(reader, inputs.begin);
+    const device::PinState begin = device::at_rest(inputs.begin);
     Attended attended(go_on, context);
     device::Evaluation found;
     device::PinRun run;
@@ -97,11 +97,11 @@ pindrive_error pindrive_scan_lines(const pindrive_scan* scan, pindrive_go_on go_
   });
 }
 
-pindrive_error pindrive_scan_load(const pindrive_scan* scan, size_t pin, double* times,
-                                  double* factors, size_t capacity, size_t* count) {
+pindrive_error pindrive_scan_load(const pindrive_scan* scan, size_t pin, pindrive_piece* pieces,
+                                  pindrive_term* terms, size_t capacity, size_t* count) {
   if (!scan) return null_pointer("scan");
   if (!count) return null_pointer("count");
-  if (capacity > 0 && (!times || !factors)) return null_pointer("times and factors");
+  if (capacity > 0 && (!pieces || !terms)) return null_pointer("pieces and terms");
   if (const pindrive_error error = check_begin(*scan)) return error;
   const device::ScanInputs inputs = inputs_of(*scan);
   const std::size_t pins = inputs.device.spots.size();
@@ -109,11 +109,16 @@ pindrive_error pindrive_scan_load(const pindrive_scan* scan, size_t pin, double*
     return fail(PINDRIVE_BAD_VALUE, "a pin must be from 0 to %zu, not %zu", pins - 1, pin);
   return guarded([&]() -> pindrive_error {
     device::PinRun run;
-    run.energise(inputs, pin, device::at_rest(inputs.device, inputs.begin), unlimited);
+    run.energise(inputs, pin, device::at_rest(inputs.begin), unlimited);
     *count = run.loads.size();
-    const auto fitting = static_cast<std::ptrdiff_t>(std::min(capacity, *count));
-    std::copy_n(run.load_times.begin(), fitting, times);
-    std::copy_n(run.loads.begin(), fitting, factors);
+    for (std::size_t i = 0; i < std::min(capacity, *count); ++i) {
+      const pd::InputPiece<double>& load = run.loads[i];
+      pindrive_term* const own = terms + 2 * i;
+      for (std::size_t j = 0; j < load.count; ++j)
+        own[j] = {load.terms[j].cosine, load.terms[j].sine, load.terms[j].decay,
+                  load.terms[j].frequency};
+      pieces[i] = {load.begin, {load.polynomial[0]}, own, load.count};
+    }
     return capacity < *count ? PINDRIVE_MORE : PINDRIVE_OK;
   });
 }

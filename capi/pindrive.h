@@ -145,7 +145,7 @@ PINDRIVE_API pindrive_error pindrive_release_set_profile(pindrive_release *relea
                                                          const double *values, size_t count);
 
 /* Term of a function of time: (cosine cos(frequency tau) + sine sin(frequency tau)) exp(-decay tau),
- * with decay (1/s) and frequency (rad/s) from 0 to 1e7. */
+ * with decay (1/s) from 0 to 1e9 and frequency (rad/s) from 0 to 1e7. */
 typedef struct {
   double cosine, sine, decay, frequency;
 } pindrive_term;
@@ -470,7 +470,7 @@ PINDRIVE_API void pindrive_device_free(pindrive_device *device);
  *   magnet.   hold_force, rise_time, fall_time, saturation
  *   magnet.   or in their place turns, pole_area, gap, wire_diameter, turn_length, supply_voltage,
  *   magnet.   release_resistance, saturation_field, thermal_resistance, heat_capacity
- *   magnet.   residual, pwm_frequency, pwm_duty, lift, closing_force, deviation
+ *   magnet.   residual, pwm_frequency, pwm_duty, lift, closing_force
  *   control.  sample_rate, latency, threshold, hysteresis
  *   array.    axis: of the drives on the page, from x towards y, rad
  *   criteria. felt, direction, direction_sure, direction_speed, false_line, distinct: of a felt line
@@ -622,12 +622,13 @@ PINDRIVE_API pindrive_error pindrive_scan_lines(const pindrive_scan *scan, pindr
                                                 size_t capacity, size_t *count,
                                                 size_t *false_lines);
 
-/* Rows of the factor of the plate friction of one pin, for the hand as pindrive_scan_lines() takes it: times since the
- * begin of the scan, s, and factors, linear in between; one row for a constant. With the velocity of the hand
- * they are the inputs of a release with the motion of the pin. More than `capacity` rows make it return
- * PINDRIVE_MORE, with the number of all in `count`. */
-PINDRIVE_API pindrive_error pindrive_scan_load(const pindrive_scan *scan, size_t pin, double *times,
-                                               double *factors, size_t capacity, size_t *count);
+/* Pieces of the factor of the plate friction of one pin, for the hand as pindrive_scan_lines() takes it, on the
+ * clock that begins with the scan; `terms` has room for two terms of each piece, and the pieces refer to it.
+ * With the velocity of the hand they are the inputs of a release with the motion of the pin. More than
+ * `capacity` pieces make it return PINDRIVE_MORE, with the number of all in `count`. */
+PINDRIVE_API pindrive_error pindrive_scan_load(const pindrive_scan *scan, size_t pin,
+                                               pindrive_piece *pieces, pindrive_term *terms,
+                                               size_t capacity, size_t *count);
 
 typedef struct pindrive_speed_limit {
   double distinct_from, distinct_to; /* first band of speeds at which both lines are felt, m/s; NaN: none */

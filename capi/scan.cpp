@@ -125,7 +125,7 @@ pindrive_error pindrive_scan_new(const pindrive_device* device, double time, dou
     if (!error) error = check("y", y, std::abs(y) <= 1000, "from -1000 to 1000");
     if (error) return error;
     made->page = std::make_shared<OwnedPage>();
-    const device::PinState begin = device::at_rest(made->owned->device, time);
+    const device::PinState begin = device::at_rest(time);
     made->stream = std::make_unique<device::DeviceStream>(
         made->owned->device, device::LiveHand::Row{time, {vx, vy}, finger_load},
         device::Place{x, y},

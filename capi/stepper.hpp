@@ -72,6 +72,8 @@ class Following {
   virtual pindrive_error set(const char* input, double value, double rate) = 0;
   virtual pindrive_error set_along(const char* input, double value, double rate) = 0;
   virtual const pd::Stepper<double>* values() const { return nullptr; }  ///< null: derivatives
+  /// Sets the plate load of a stepper without derivatives to a piece of a function.
+  virtual pindrive_error set_load(const pd::InputPiece<double>& load) = 0;
 };
 
 /// A stepper with the friction curves that it refers to.
@@ -123,6 +125,14 @@ class Followed final : public Following {
         line.value = {line.value.value, value};
         line.rate = {line.rate.value, rate};
       });
+  }
+  pindrive_error set_load(const pd::InputPiece<double>& load) override {
+    if constexpr (std::is_same_v<T, double>)
+      return set_input("plate_load", [&](pd::Curve<double>& given) {
+        given = pd::Held<double>(load).from(stepper_.now());
+      });
+    else
+      return fail(PINDRIVE_DERIVATIVE, "a load is set of a stepper, not of derivatives");
   }
   const pd::Stepper<double>* values() const override {
     if constexpr (std::is_same_v<T, double>)

@@ -12,6 +12,7 @@
 #include "bytes.hpp"
 #include "interface.hpp"
 #include "parameters.hpp"
+#include "stepper.hpp"
 
 namespace pindrive_fmu {
 
@@ -37,8 +38,8 @@ pindrive_error make_magnet(const Given& given, double time, Magnet& magnet) {
 }
 
 /// Sets the plate load by the pull of the magnet from now on.
-pindrive_error pulled(pindrive_stepper* stepper, const Magnet& magnet, double time) {
-  return pindrive_stepper_set(stepper, "plate_load", magnet.load(time), magnet.load_rate());
+pindrive_error pulled(pindrive_stepper* stepper, const Magnet& magnet) {
+  return stepper->pin->set_load(magnet.load().piece);
 }
 
 }  // namespace
@@ -113,7 +114,7 @@ pindrive_error Instance::make(Stepper& stepper, Magnet& magnet) const {
     if (variables_[i].kind == Variable::luminance) magnet.control.luminance = values[i];
     if (variables_[i].kind == Variable::command && values[i] != 0) {
       magnet.coil->command(true, values_.begin);
-      error = pulled(made, magnet, values_.begin);
+      error = pulled(made, magnet);
     }
   }
   if (error) stepper.reset();
@@ -170,7 +171,7 @@ pindrive_error Instance::next_event(double& time) {
   if (!magnet_.present()) return PINDRIVE_OK;
   if (magnet_.next() > now.time) {
     time = std::min(time, magnet_.next());
-  } else {  // a line of the pull ends now: its next one is not the stepper's yet
+  } else {  // a piece of the pull ends now: its next one is not the stepper's yet
     pindrive::device::Coil ahead = *magnet_.coil;
     ahead.pass(now.time);
     time = std::min(time > now.time ? time : ahead.next(), ahead.next());
@@ -294,7 +295,7 @@ pindrive_error Instance::set_flag(std::size_t reference, bool value) {
   if (error || value == magnet_.coil->state().command) return error;
   magnet_.coil->command(value, now.time);
   magnet_.coil->pass(now.time);
-  return pulled(stepper_.get(), magnet_, now.time);
+  return pulled(stepper_.get(), magnet_);
 }
 
 pindrive_error Instance::set_rate(std::size_t reference, double rate) {
@@ -324,7 +325,7 @@ pindrive_error Instance::step(double from, double size, bool may_end_early, bool
     if (magnet_.present()) {
       if (std::min(magnet_.next(), magnet_.next_sample()) <= at.time) {
         magnet_.pass(at.time);
-        error = pulled(stepper_.get(), magnet_, at.time);
+        error = pulled(stepper_.get(), magnet_);
       }
       next = std::min({until, magnet_.next(), magnet_.next_sample()});
     }
@@ -344,7 +345,7 @@ namespace {
 bool possible(const pindrive::device::CoilState& s) {
   const auto part = [](double number) { return number >= 0 && number <= 1; };
   return part(s.flux) && part(s.level) && s.warming >= 0 && std::isfinite(s.since) &&
-         std::isfinite(s.pull) && std::isfinite(s.warming) && std::isfinite(s.commanded);
+         std::isfinite(s.warming) && std::isfinite(s.commanded);
 }
 
 pindrive_error copy(const Stepper& stepper, Stepper& copied) {
@@ -382,7 +383,8 @@ pindrive_error Instance::go_back(const State& state) {
     magnet.coil = std::make_unique<pindrive::device::Coil>(*magnet.electromagnet, state.coil);
     pindrive_instant now;
     if (stepper) error = pindrive_stepper_now(stepper.get(), &now);
-    if (stepper && !error) magnet.coil->pass_rows(now.time);
+    while (stepper && !error && magnet.coil->next() < now.time)
+      magnet.coil->pass(magnet.coil->next());
   }
   if (error) return error;
   magnet.control = state.control;

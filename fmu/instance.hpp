@@ -12,6 +12,7 @@
 #include "pindrive/device/coil.hpp"
 #include "pindrive/device/controller.hpp"
 #include "pindrive/device/electromagnet.hpp"
+#include "pindrive/device/scan_inputs.hpp"
 #include "variables.hpp"
 
 namespace pindrive_fmu {
@@ -56,8 +57,10 @@ struct Magnet {
   }
   /// Goes beyond all samples, switchings and changes until a time, s; a switching comes before a change.
   void pass(double until);
-  double load(double time) const { return 1 + coil->pull(time) / normal_force; }
-  double load_rate() const { return coil->rate() / normal_force; }
+  /// Factor of the friction of the plate by the present piece of the pull.
+  pindrive::OwnedPiece<double> load() const {
+    return pindrive::device::load_under(coil->pull_piece(), normal_force, 0);
+  }
 };
 
 /// Variable state of an instance, beside its stepper and its magnet.

@@ -20,7 +20,7 @@ from pindrive.files.keys import (
     AROUND,
     DRIVE,
     KEYS,
-    NUMERIC_KEYS,
+    FILE_KEYS,
     STUDY_KEYS,
     TABLES,
     line,
@@ -110,7 +110,7 @@ def checked(quantity: Quantity) -> dict[str, Any]:
             "mayBeConstant": quantity.may_be_constant,
             "usual": quantity.usual,
             "usualRows": usual_rows(quantity) if quantity.rows else "",
-            "line": line(quantity) if quantity.key in NUMERIC_KEYS else "",
+            "line": line(quantity) if quantity.key in FILE_KEYS else "",
         }
     )
 
@@ -145,7 +145,7 @@ def tables() -> dict[str, Any]:
     """All that the page knows."""
     return {
         "version": __version__,
-        "inputs": [checked(quantity) for quantity in NUMERIC_KEYS.values()],
+        "inputs": [checked(quantity) for quantity in FILE_KEYS.values()],
         "drive": [*DRIVE],
         "parts": {name: checked(QUANTITIES[name]) for name in PARTS},
         "columns": COLUMNS,
@@ -153,7 +153,7 @@ def tables() -> dict[str, Any]:
         "series": [column(quantity) for quantity in MOTION],
         "channels": [column(quantity) for quantity in CHANNELS.values()],
         "keys": KEYS,
-        "variables": {key: quantity.variable for key, quantity in NUMERIC_KEYS.items()},
+        "variables": {key: quantity.variable for key, quantity in FILE_KEYS.items()},
         "otherWords": OTHER_WORDS,
         "tables": TABLES,
         "alone": ALONE,

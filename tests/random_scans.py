@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from pindrive import Contact, Drive, Profile
+from pindrive import Contact, Drive
 from pindrive.device import (
     Coil,
     ControlBlock,
@@ -71,7 +71,6 @@ class RandomScan:
             fall_constant=between(1e-4, 1e-2),
             saturation=either(1.0, draw.uniform(0.1, 1.0)),
             residual=either(0.0, 0.02),
-            deviation=between(1e-5, 1e-2),
         )
         control = ControlBlock(
             sample_rate=between(100.0, 5000.0), latency=either(0.0, between(1e-3, 0.05))
@@ -128,10 +127,7 @@ def random_magnet(rng: np.random.Generator, *, warms: bool = False) -> Electroma
     def between(low: float, high: float) -> float:
         return float(np.exp(rng.uniform(np.log(low), np.log(high))))
 
-    given: dict[str, Any] = {
-        "residual": float(rng.choice([0.0, 0.005])),
-        "deviation": between(1e-5, 1e-2),
-    }
+    given: dict[str, Any] = {"residual": float(rng.choice([0.0, 0.005]))}
     if rng.random() < 0.5:
         given |= {"pwm_frequency": between(100.0, 3000.0), "pwm_duty": rng.uniform(0.1, 0.9)}
     if rng.random() < 0.3:
@@ -166,8 +162,8 @@ def random_magnet(rng: np.random.Generator, *, warms: bool = False) -> Electroma
 
 def short(pin: PinScan) -> bool:
     """Return True if a general integrator finishes within a second."""
-    rows = len(pin.load.times) if isinstance(pin.load, Profile) else 1
-    return rows <= 600 and pin.end <= 4.0
+    pieces = 1 if isinstance(pin.load, float) else len(pin.load.pieces)
+    return pieces <= 60 and pin.end <= 4.0
 
 
 def parting(whole: PinScan, halves: tuple[PinScan, PinScan]) -> float:

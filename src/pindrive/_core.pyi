@@ -160,9 +160,9 @@ def plate_velocity(path: tuple[Annotated[NDArray[numpy.float64], dict(shape=(Non
     Times since the begin; velocity along and across the axis; whether across it moves.
     """
 
-def coil_course(magnet: tuple[Sequence[float], Sequence[tuple[float, float]]], state: tuple[float, float, float, float, float, float, bool, bool], switchings: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], begin: float, end: float, most: int) -> tuple:
+def coil_course(magnet: tuple[Sequence[float], Sequence[tuple[float, float]]], state: tuple[float, float, float, float, float, bool, bool], switchings: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], begin: float, end: float, most: int) -> tuple:
     """
-    Pieces of a coil under commands, rows of its pull (times, N), and its state at the end.
+    Pieces of a coil under commands, those of its pull (N), and its state at the end.
     """
 
 def closest_approaches(motions: Sequence[Motion], pairs: Sequence[tuple[int, int]], duration: float) -> tuple:
@@ -178,7 +178,7 @@ class Device:
 class Scan:
     """Pins under a hand that moves over a page."""
 
-    def __init__(self, device: Device, raster: tuple[Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], float, float, float], path: tuple[Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]], touch: Sequence[tuple[float, float]], states: Sequence[tuple[float, float, float, tuple[float, float, float, float, float, float, bool, bool], bool, Sequence[float], Sequence[float]]]) -> None: ...
+    def __init__(self, device: Device, raster: tuple[Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], float, float, float], path: tuple[Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]], touch: Sequence[tuple[float, float]], states: Sequence[tuple[float, float, float, tuple[float, float, float, float, float, bool, bool], bool, Sequence[float], Sequence[float]]]) -> None: ...
 
     def energise(self, most_switchings: int, most_rows: int) -> tuple: ...
 
@@ -190,7 +190,8 @@ class Scan:
 
     def coil(self, pin: int) -> tuple: ...
 
-    def load(self, pin: int) -> tuple: ...
+    def load(self, pin: int) -> list:
+        """Pieces of the factor of the plate friction: begin, polynomial, terms."""
 
     def energised(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]:
         """Time for which the magnet of each pin is switched on, s."""

@@ -30,7 +30,17 @@ auto column_of(const std::vector<device::FluxPiece>& pieces, Function&& f) {
   return mapped<double>(pieces.size(), [&](std::size_t i) { return f(pieces[i]); });
 }
 
-/// Columns of the pieces of a coil, rows of its pull and its state at the end.
+/// A piece of a function as Python has it: begin, polynomial, terms.
+nb::tuple piece_of(const pd::InputPiece<double>& piece) {
+  nb::list terms;
+  for (std::size_t i = 0; i < piece.count; ++i) {
+    const pd::InputTerm<double>& term = piece.terms[i];
+    terms.append(nb::make_tuple(term.cosine, term.sine, term.decay, term.frequency));
+  }
+  return nb::make_tuple(piece.begin, nb::make_tuple(piece.polynomial[0]), nb::tuple(terms));
+}
+
+/// Columns of the pieces of a coil, pieces of its pull and its state at the end.
 nb::tuple table_of(const device::CoilCourse& course) {
   using Piece = device::FluxPiece;
   const auto column = [&](auto&& f) { return column_of(course.pieces, f); };
@@ -45,8 +55,14 @@ nb::tuple table_of(const device::CoilCourse& course) {
   pieces["inductances"] = column([](const Piece& p) { return p.inductance; });
   pieces["warmings"] = column([](const Piece& p) { return p.warming; });
   pieces["resistances"] = column([](const Piece& p) { return p.resistance; });
-  return nb::make_tuple(pieces, to_array(std::vector<double>(course.times)),
-                        to_array(std::vector<double>(course.pulls)), numbers_of(course.end));
+  nb::list pulls;
+  for (const device::PullPiece& pull : course.pulls) {
+    // The load on a plate with a normal force of 1 N is 1 more.
+    pd::OwnedPiece<double> given = device::load_under(pull, 1, 0);
+    given.piece.polynomial[0] = pull.constant;
+    pulls.append(piece_of(given.piece));
+  }
+  return nb::make_tuple(pieces, pulls, numbers_of(course.end));
 }
 
 nb::tuple coil_course(const MagnetNumbers& magnet, const CoilNumbers& from,
@@ -83,7 +99,7 @@ nb::tuple closest_approaches(const std::vector<const pd::StoredMotion<double>*>&
 void bind_scan(nb::module_& m) {
   m.def("coil_course", &coil_course, "magnet"_a, "state"_a, "switchings"_a, "begin"_a, "end"_a,
         "most"_a,
-        "Pieces of a coil under commands, rows of its pull (times, N), and its state at the end.");
+        "Pieces of a coil under commands, those of its pull (N), and its state at the end.");
   m.def("closest_approaches", &closest_approaches, "motions"_a, "pairs"_a, "duration"_a,
         "Smallest x(behind) - x(ahead) of each pair of motions, m, and its time, s.");
   nb::class_<OwnedDevice>(m, "Device", "Device whose pins are alike.")
@@ -109,11 +125,12 @@ void bind_scan(nb::module_& m) {
       .def(
           "load",
           [](const Scan& scan, std::size_t pin) {
-            const device::PinRun& run = scan.run(pin);
-            return nb::make_tuple(to_array(std::vector<double>(run.load_times)),
-                                  to_array(std::vector<double>(run.loads)));
+            nb::list pieces;
+            for (const pd::InputPiece<double>& piece : scan.run(pin).loads)
+              pieces.append(piece_of(piece));
+            return pieces;
           },
-          "pin"_a)
+          "pin"_a, "Pieces of the factor of the plate friction: begin, polynomial, terms.")
       .def(
           "energised",
           [](const Scan& scan) {

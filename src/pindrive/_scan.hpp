@@ -57,8 +57,8 @@ using DriveNumbers = std::tuple<double, double, double, ContactNumbers, ContactN
 using MagnetNumbers = std::pair<std::vector<double>, pd::Rows>;
 /// Sample rate, latency, threshold, hysteresis.
 using ControlNumbers = std::tuple<double, double, double, double>;
-/// Since, flux, pull, warming, level, commanded; on, command.
-using CoilNumbers = std::tuple<double, double, double, double, double, double, bool, bool>;
+/// Since, flux, warming, level, commanded; on, command.
+using CoilNumbers = std::tuple<double, double, double, double, double, bool, bool>;
 /// Position, velocity, stretch; coil; decision, pending switchings; numbers of the motion, none of a release.
 using StateNumbers =
     std::tuple<double, double, double, CoilNumbers, bool, std::vector<double>, std::vector<double>>;
@@ -99,18 +99,17 @@ inline device::Electromagnet magnet_of(const MagnetNumbers& given) {
   const std::vector<double>& n = given.first;
   std::vector<device::VoltageStep> steps;
   for (const auto& [time, level] : given.second) steps.push_back({time, level});
-  return device::Electromagnet(
-      {n.at(0), n.at(1), n.at(2), n.at(3), n.at(4), n.at(5), n.at(6), n.at(7), n.at(8), n.at(9),
-       n.at(10), n.at(11), n.at(12), n.at(13), n.at(14)},
-      std::move(steps));
+  return device::Electromagnet({n.at(0), n.at(1), n.at(2), n.at(3), n.at(4), n.at(5), n.at(6),
+                                n.at(7), n.at(8), n.at(9), n.at(10), n.at(11), n.at(12), n.at(13)},
+                               std::move(steps));
 }
 
 inline device::CoilState coil_of(const CoilNumbers& given) {
-  const auto& [since, flux, pull, warming, level, commanded, on, command] = given;
-  return {since, flux, pull, warming, level, commanded, on, command};
+  const auto& [since, flux, warming, level, commanded, on, command] = given;
+  return {since, flux, warming, level, commanded, on, command};
 }
 inline CoilNumbers numbers_of(const device::CoilState& s) {
-  return {s.since, s.flux, s.pull, s.warming, s.level, s.commanded, s.on, s.command};
+  return {s.since, s.flux, s.warming, s.level, s.commanded, s.on, s.command};
 }
 
 /// Device with the arrays to which it refers.

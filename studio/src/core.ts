@@ -1,7 +1,24 @@
 // The core as WebAssembly: the functions of capi/pindrive.h on JavaScript's arrays. SI units throughout.
 
+import { valueAt } from "./pieces";
+
 export type Row = readonly [number, number];
 export type Rows = readonly Row[];
+/** Term (cosine, sine, decay, frequency) of a piece: (cosine cos Ωτ + sine sin Ωτ) e^(−δτ). */
+export type Term = readonly [number, number, number, number];
+/** Part of a function of time from its begin (s) on: a polynomial and terms. */
+export interface Piece {
+  readonly begin: number;
+  readonly polynomial: readonly number[];
+  readonly terms: readonly Term[];
+}
+export interface Pieces {
+  readonly pieces: readonly Piece[];
+}
+/** Sizes of pindrive_piece and pindrive_term, and the place of the terms in a piece. */
+export const PIECE_BYTES = 64;
+export const TERM_BYTES = 32;
+export const TERMS_AT = 56;
 
 /** A drive and a release in the names of pindrive.h; a rate along which they change looks alike. */
 export interface Input {
@@ -9,6 +26,7 @@ export interface Input {
   readonly curves: Readonly<Record<string, Rows>>;
   readonly release: Readonly<Record<string, number>>;
   readonly profiles: Readonly<Record<string, Rows>>;
+  readonly functions: Readonly<Record<string, Pieces>>;
 }
 
 export const QUANTITIES = [
@@ -147,7 +165,14 @@ export class Core {
    * Problems of values of a device file, SI, in a line each: the bounds of each value, and what they require of
    * each other; `whole`: of a device with magnet, control block and array. Null: given, but not known.
    */
-  problems(given: Readonly<Record<string, number | Rows | null>>, whole = false): string[] {
+  problems(values: Readonly<Record<string, number | Rows | Pieces | null>>, whole = false): string[] {
+    // A function contradicts others by its first value.
+    const given = Object.fromEntries(
+      Object.entries(values).map(([key, value]) => [
+        key,
+        typeof value === "object" && value !== null && "pieces" in value ? valueAt(value, 0) : value,
+      ]),
+    ) as Record<string, number | Rows | null>;
     const keys = Object.keys(given);
     const columns = keys.map((key) => {
       const value = given[key]!;
@@ -345,10 +370,38 @@ export class Core {
     for (const [name, rows] of Object.entries(input.profiles)) {
       this.setRows("release_set_profile", release, name, rows);
     }
+    for (const [name, { pieces }] of Object.entries(input.functions)) {
+      this.setPieces(release, name, pieces);
+    }
   }
 
   setNumber(setter: string, target: number, name: string, value: number): void {
     this.named([name], ([address]) => this.call(setter, target, address!, value));
+  }
+
+  private setPieces(release: number, name: string, pieces: readonly Piece[]): void {
+    const terms = pieces.reduce((sum, piece) => sum + piece.terms.length, 0);
+    this.borrowed(PIECE_BYTES * pieces.length + TERM_BYTES * terms, (at) =>
+      this.named([name], ([address]) => {
+        const view = this.view();
+        const numbers = (from: number, values: readonly number[]): void =>
+          values.forEach((value, i) => {
+            view.setFloat64(from + 8 * i, value, true);
+          });
+        let next = at + PIECE_BYTES * pieces.length;
+        pieces.forEach((piece, i) => {
+          const from = at + PIECE_BYTES * i;
+          numbers(from, [piece.begin, ...Array.from({ length: 6 }, (_, n) => piece.polynomial[n] ?? 0)]);
+          view.setUint32(from + TERMS_AT, next, true);
+          view.setUint32(from + TERMS_AT + 4, piece.terms.length, true);
+          for (const term of piece.terms) {
+            numbers(next, term);
+            next += TERM_BYTES;
+          }
+        });
+        this.call("release_set_function", release, address!, at, pieces.length);
+      }),
+    );
   }
 
   setRows(setter: string, target: number, name: string, rows: Rows): void {

@@ -1,5 +1,5 @@
 // A design: the values that a device file gives, what follows from them, and what the core is given.
-import type { Core, Input, Rows } from "./core";
+import type { Core, Input, Pieces, Rows } from "./core";
 import { type Device, readDevice } from "./device";
 import type { Given } from "./files";
 import {
@@ -13,6 +13,7 @@ import {
   type Value,
   type Values,
 } from "./friction";
+import { integralUntil, valueAt } from "./pieces";
 import { DRIVE, TABLES } from "./table";
 
 export interface Design extends Device {
@@ -49,6 +50,10 @@ function dampingOf(values: Values): number {
 
 export function isRows(value: Value | null | undefined): value is Rows {
   return Array.isArray(value);
+}
+
+export function isPieces(value: Value | null | undefined): value is Pieces {
+  return typeof value === "object" && value !== null && "pieces" in value;
 }
 
 /** Value of a key: the given one, or the default of a missing key; null: none. */
@@ -93,13 +98,18 @@ export function coreInput(values: Values): Input {
     if (typeof value === "number") release[name] = value;
   }
   const profiles: Record<string, Rows> = {};
+  const functions: Record<string, Pieces> = {};
   for (const name of TABLES.overTime) {
     const value = valueFor(values, `motion.${name}`)!;
+    if (isPieces(value)) {
+      functions[name] = value;
+      continue;
+    }
     // An input that never changes is a constant, as in Python.
     const changes = isRows(value) && value.some(([, y]) => y !== value[0]![1]);
     profiles[name] = changes ? value : [[0, isRows(value) ? value[0]![1] : value]];
   }
-  return { drive, curves, release, profiles };
+  return { drive, curves, release, profiles, functions };
 }
 
 /** The keys of end stops that mean nothing without that one. */
@@ -136,6 +146,7 @@ export function withValue(values: Values, key: string, value: Value | null): Val
       continue;
     }
     const scale = (y: number): number => (y / before) * after;
+    if (isPieces(given)) continue;
     next[other] = isRows(given)
       ? given[0]![1] === 0
         ? given
@@ -221,9 +232,10 @@ export function direction(values: Values, key: string, part: number): Input {
   }
   const profiles: Record<string, Rows> = {};
   for (const name of TABLES.overTime) {
-    profiles[name] = scaled(input.profiles[name]!, of(`motion.${name}`));
+    const rows = input.profiles[name];
+    if (rows) profiles[name] = scaled(rows, of(`motion.${name}`)); // no parameter of a function is varied
   }
-  return { drive, curves, release, profiles };
+  return { drive, curves, release, profiles, functions: {} };
 }
 
 /** Relative change of the normal force on a contact. */
@@ -242,6 +254,7 @@ export function variedKeys(values: Values): string[] {
     if (key === "motion.duration" || key === "motion.settling_band") return false;
     if (DRIVE.get(key)!.choices || key.endsWith(".exponent")) return false;
     const value = values[key];
+    if (isPieces(value)) return false;
     return value !== undefined && (isRows(value) ? value.some(([, y]) => y !== 0) : value !== 0);
   });
 }
@@ -253,6 +266,7 @@ export function settlingBand(values: Values): number {
 /** The plate's velocity in the housing at a time, m/s. */
 export function plateVelocity(values: Values, t: number): number {
   const given = values[MOUSE];
+  if (isPieces(given)) return valueAt(given, t);
   if (!isRows(given)) return given ?? 0;
   const after = given.findIndex(([time]) => time > t);
   if (after === 0) return given[0]![1];
@@ -264,6 +278,7 @@ export function plateVelocity(values: Values, t: number): number {
 /** Distance of the plate since the release, m. */
 export function plateDistance(values: Values, t: number): number {
   const given = values[MOUSE];
+  if (isPieces(given)) return integralUntil(given, t);
   if (!isRows(given)) return (given ?? 0) * t;
   const times = [0, ...given.map(([time]) => time).filter((time) => time > 0 && time < t), t];
   let sum = 0;

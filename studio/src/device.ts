@@ -1,6 +1,6 @@
 // Device files: TOML with units, read into the values of a drive and its release, and written again.
 // What is wrong is said in the lines that the command prints: file, key, value and bound.
-import type { Core, Row, Rows } from "./core";
+import type { Core, Piece, Pieces, Row, Rows, Term } from "./core";
 import type { Value, Values } from "./friction";
 import { nearest, unknownInFile } from "./names";
 import { floatRepr, general, quoted } from "./numbertext";
@@ -226,6 +226,8 @@ function readValue(value: TomlValue, quantity: Quantity): Value {
     const words = "a value or rows in a page, which may open no files (`pindrive studio FILE` reads it)";
     throw new Refusal(quantity.key, words, quoted(value));
   }
+  const first = Array.isArray(value) ? value[0] : value;
+  if (quantity.rowsOf === "profile" && isTable(first)) return readPieces(value, quantity);
   if (quantity.rows && (Array.isArray(value) || !quantity.mayBeConstant)) {
     return readRows(value, quantity);
   }
@@ -255,6 +257,30 @@ export function readNumber(value: TomlValue, quantity: Quantity, example: string
 /** A value as a design has it: "22 mN". */
 function usualOf(quantity: Quantity, value: number): string {
   return `${general(value * quantity.displayScale, 12)} ${quantity.displayUnit ?? ""}`.trimEnd();
+}
+
+/** A function of time by its pieces, in SI numbers; the functions with names are for Python to read. */
+function readPieces(value: TomlValue, quantity: Quantity): Pieces {
+  const example = '{ pieces = [{ begin = "0 s", polynomial = [0.06], terms = [] }] }';
+  const refuse = (): never => {
+    throw new Refusal(quantity.key, `a value, rows, or pieces in a page, like ${example}`, quoted(value));
+  };
+  const list = (given: TomlValue | undefined, least: number, most: number): number[] => {
+    const numbers = Array.isArray(given) ? given.map(Number) : refuse();
+    if (numbers.length < least || numbers.length > most || !numbers.every(Number.isFinite)) refuse();
+    return numbers;
+  };
+  if (!isTable(value) || !Array.isArray(value.pieces) || !value.pieces.length) return refuse();
+  const pieces = value.pieces.map((given): Piece => {
+    if (!isTable(given) || typeof given.begin !== "string") return refuse();
+    const terms = Array.isArray(given.terms ?? []) ? ((given.terms ?? []) as TomlValue[]) : refuse();
+    return {
+      begin: toSi(given.begin, "s", "0 s"),
+      polynomial: list(given.polynomial ?? [], 0, 6),
+      terms: terms.map((term) => list(term, 4, 4) as unknown as Term),
+    };
+  });
+  return { pieces };
 }
 
 function readRows(value: TomlValue, quantity: Quantity): Rows {

@@ -1,8 +1,8 @@
 // Friction by forces or by coefficients: what presses on a contact, and the forces that follow.
-import type { Rows } from "./core";
+import type { Pieces, Rows } from "./core";
 import { DRIVE, TABLES } from "./table";
 
-export type Value = number | Rows;
+export type Value = number | Rows | Pieces;
 /** The values of keys that are given, SI. */
 export type Values = Readonly<Record<string, Value>>;
 /** Keys with defaults of missing ones; null without a default. */

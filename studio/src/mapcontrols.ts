@@ -1,5 +1,4 @@
 // Controls of map and bars: number, parameters, and specification.
-import { isRows } from "./design";
 import { button, h, option, refill } from "./dom";
 import { nameOf } from "./results";
 import type { Limit, State, Step } from "./state";
@@ -20,7 +19,7 @@ export function mapKeys(state: State): string[] {
   const { values } = state.designs[state.current]!;
   return [...DRIVE.keys()].filter((key) => {
     const value = values[key];
-    if (value === undefined || isRows(value)) return false;
+    if (typeof value !== "number") return false;
     if (DRIVE.get(key)!.choices || key.endsWith(".exponent")) return false;
     return key !== "motion.duration" && key !== "motion.settling_band";
   });

@@ -1,5 +1,5 @@
 // The parameters of the current design: a slider and a field each, with unit, bounds and meaning.
-import { applies, isRows, valueFor, withValue } from "./design";
+import { applies, isPieces, isRows, valueFor, withValue } from "./design";
 import { readNumber } from "./device";
 import { h, option, show, symbol, textField } from "./dom";
 import type { Value, Values } from "./friction";
@@ -188,7 +188,11 @@ export class Panel {
       rows?.update(isRows(own) ? own : null, constant ? value : null);
       if (!constant || !enabled) {
         field.value = "";
-        field.placeholder = isRows(value) ? "rows" : absentWords(key, values);
+        field.placeholder = isRows(value)
+          ? "rows"
+          : isPieces(value)
+            ? "a function"
+            : absentWords(key, values);
         note.textContent = "";
         return;
       }

@@ -1,7 +1,7 @@
 // Files that the page writes: device files (TOML), samples and events (CSV).
 
-import type { QuantityName } from "./core";
-import { type Design, isRows } from "./design";
+import type { Pieces, QuantityName } from "./core";
+import { type Design, isPieces, isRows } from "./design";
 import { floatRepr, general } from "./numbertext";
 import type { Curves } from "./sample";
 import { columnsOf, DRIVE, type Quantity, SERIES, TABLES } from "./table";
@@ -37,7 +37,12 @@ export function deviceFile(design: Design): string {
     if (own !== table) lines.push("", `[${own}]`);
     table = own;
     lines.push(`# ${quantity.symbol}: ${quantity.meaning}`);
-    lines.push(`${name} = ${isRows(value) ? rowsText(quantity, value) : valueText(quantity, value)}`);
+    const shown = isPieces(value)
+      ? piecesText(value)
+      : isRows(value)
+        ? rowsText(quantity, value)
+        : valueText(quantity, value);
+    lines.push(`${name} = ${shown}`);
   }
   for (const [name, rest] of Object.entries(design.around)) {
     lines.push("", `[${name}]`, ...Object.entries(rest).map(([key, value]) => `${key} = ${toml(value)}`));
@@ -53,6 +58,16 @@ function valueText(quantity: Quantity, value: number): string {
 function rowsText(quantity: Quantity, rows: readonly (readonly [number, number])[]): string {
   const [across] = columnsOf(quantity);
   return `[${rows.map(([x, y]) => `[${valueText(across, x)}, ${valueText(quantity, y)}]`).join(", ")}]`;
+}
+
+function piecesText({ pieces }: Pieces): string {
+  const list = (numbers: readonly number[]): string => `[${numbers.map(floatRepr).join(", ")}]`;
+  const parts = pieces.map(
+    ({ begin, polynomial, terms }) =>
+      `{ begin = ${JSON.stringify(`${floatRepr(begin)} s`)}, polynomial = ${list(polynomial)}, ` +
+      `terms = [${terms.map(list).join(", ")}] }`,
+  );
+  return `{ pieces = [${parts.join(", ")}] }`;
 }
 
 function toml(value: TomlValue): string {

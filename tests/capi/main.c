@@ -511,7 +511,9 @@ static pindrive_device *the_device(void) {
 
 /* Lines of a page under a hand, and the speed at which two lines merge. */
 static void lines_and_speeds(void) {
-  double paper[400], rows[4];
+  double paper[400];
+  pindrive_piece pieces[2];
+  pindrive_term terms[4];
   pindrive_device *device = the_device();
   pindrive_scan *scan = NULL;
   pindrive_line lines[8];
@@ -530,10 +532,12 @@ static void lines_and_speeds(void) {
   expect(pindrive_scan_lines(scan, NULL, NULL, lines, 8, &count, &false_lines) == PINDRIVE_OK &&
              lines[0].outcome == PINDRIVE_SHOWN && lines[1].outcome == PINDRIVE_SHOWN,
          "that are shown");
-  expect(pindrive_scan_load(scan, 0, rows, rows + 2, 2, &count) == PINDRIVE_MORE && count > 4,
-         "rows of the load");
-  expect(rows[0] == 0 && rows[2] == 1, "that begin with the magnet off");
-  refuses(pindrive_scan_load(scan, 1, rows, rows + 2, 2, &count), PINDRIVE_BAD_VALUE,
+  expect(pindrive_scan_load(scan, 0, pieces, terms, 2, &count) == PINDRIVE_MORE && count > 4,
+         "pieces of the load");
+  expect(pieces[0].polynomial[0] == 1 && pieces[0].count == 0, "that begin with the magnet off");
+  expect(pieces[1].count == 2 && pieces[1].terms == terms + 2 && terms[2].decay > 0,
+         "and go on by exponentials");
+  refuses(pindrive_scan_load(scan, 1, pieces, terms, 2, &count), PINDRIVE_BAD_VALUE,
           "a pin must be from 0 to 0, not 1");
   expect(fabs(lines[0].begin.x - 0.01) < 1e-4 && lines[0].begin.lag > 0, "where they are printed");
   expect(pindrive_scan_advance(scan, 0.1, NULL, NULL) == PINDRIVE_OK, "advanced");

@@ -45,6 +45,33 @@ class PinEvent(ctypes.Structure):
     _fields_ = (("pin", c_size_t), ("event", Event))
 
 
+class Term(ctypes.Structure):
+    """pindrive_term."""
+
+    _fields_ = tuple((name, c_double) for name in ("cosine", "sine", "decay", "frequency"))
+
+    @property
+    def numbers(self) -> tuple[float, ...]:
+        return self.cosine, self.sine, self.decay, self.frequency
+
+
+class Piece(ctypes.Structure):
+    """pindrive_piece."""
+
+    _fields_ = (
+        ("begin", c_double),
+        ("polynomial", c_double * 6),
+        ("terms", ctypes.POINTER(Term)),
+        ("count", c_size_t),
+    )
+
+    @property
+    def numbers(self) -> tuple[float, tuple[float, ...], tuple[tuple[float, ...], ...]]:
+        """As Python has a piece of a load."""
+        terms = tuple(term.numbers for term in self.terms[: self.count])
+        return self.begin, (self.polynomial[0],), terms
+
+
 class Reading:
     """A device with its page and its hand, in Python and in C."""
 
@@ -294,10 +321,9 @@ def test_lines_are_those_of_evaluate(seed: int, c_library: Path) -> None:
     assert len(expected.shown) > 4
     for pin in reading.scan().pins:
         assert c("scan_load", begun, c_size_t(pin.number), None, None, c_size_t(0), byref(count))
-        times, factors = np.empty(count.value), np.empty(count.value)
-        columns = doubles(times), doubles(factors)
-        assert not c("scan_load", begun, c_size_t(pin.number), *columns, count, byref(count))
-        assert_array_equal([times, factors], pin.core.load(pin.number))
+        pieces, terms = (Piece * count.value)(), (Term * (2 * count.value))()
+        assert not c("scan_load", begun, c_size_t(pin.number), pieces, terms, count, byref(count))
+        assert [piece.numbers for piece in pieces] == pin.core.load(pin.number)
     c("scan_advance", begun, c_double(p.times[1]), None, None)
     lines = c.library.pindrive_scan_lines
     assert lines(begun, None, None, buffer, count, byref(count), byref(false)) > 1

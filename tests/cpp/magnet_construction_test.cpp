@@ -21,7 +21,7 @@ void a_coil() {
   expect(close(coil.inductance(), mu * 62500 * 3e-6 / 1e-4), "inductance of two gaps in series");
   expect(close(coil.field(), field) && coil.saturation() == 1, "field in the gap");
   expect(close(coil.pull(), field * field * 3e-6 / mu), "pull of two poles");
-  const auto magnet = coil.magnet(1e-4);
+  const auto magnet = coil.magnet();
   expect(close(magnet.rise_constant, coil.inductance() / resistance), "rise constant");
   expect(close(magnet.fall_constant, coil.inductance() / (resistance + 2)), "fall constant");
   device::CoilConstruction weak = coil;
@@ -31,8 +31,8 @@ void a_coil() {
 
 void times_of_a_pull() {
   for (const double sigma : {1.0, 0.6}) {
-    const device::Electromagnet magnet({1, 0.1, sigma, device::rise_constant(0.003, sigma),
-                                        device::fall_constant(0.005, sigma), 1e-4});
+    const device::Electromagnet magnet(
+        {1, 0.1, sigma, device::rise_constant(0.003, sigma), device::fall_constant(0.005, sigma)});
     const double rises = magnet.piece(0, 0, 0, true, 1).flux_after(0.003);
     const double falls = magnet.piece(0, 1, 0, false, 1).flux_after(0.005);
     expect(close(magnet.pull(rises), 0.1 + 0.9 * 0.9), "90 % after the rise time");

@@ -35,9 +35,9 @@ void commands_and_load() {
   expect(std::abs(run.switchings[0] - ahead.switchings[0] - 0.01) < 1.1e-3, "a spot ahead before");
   const auto energised = run.energised(inputs);
   expect(energised.size() == 2 && energised[0].end == run.switchings[1], "two times with it on");
-  const auto load = device::profile_of(run.load_times, run.loads);
+  const pd::Profile<double> load(run.loads.data(), run.loads.size());
   expect(load.from(0.01).value == 1, "without a current the plate has its own friction");
-  expect(std::abs(load.from(energised[0].end).value - 41) < 1e-2, "with 2 N 41 times as much");
+  expect(std::abs(load.from(energised[0].end).value - 41) < 1e-6, "with 2 N 41 times as much");
 }
 
 void a_blank_page() {

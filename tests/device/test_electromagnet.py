@@ -1,8 +1,8 @@
-"""The electromagnet: its current against its equation, its rows against their bound."""
+"""The electromagnet: its current against its equation, its pull against the flux."""
 
 from __future__ import annotations
 
-from math import exp, isclose, sqrt
+from math import exp, isclose
 
 import numpy as np
 import pytest
@@ -71,15 +71,13 @@ def test_pull_grows_with_the_square_and_saturates() -> None:
     lasts=st.lists(st.floats(1e-5, 0.05), min_size=1, max_size=8),
     sigma=st.floats(0.05, 1.0),
     residual=st.floats(0.0, 0.9),
-    deviation=st.sampled_from([1e-2, 1e-3, 1e-4]),
     start=st.floats(0.0, 1.0),
     constants=st.tuples(st.floats(1e-4, 1e-2), st.floats(1e-4, 1e-2)),
 )
-def test_rows_keep_their_bound(
+def test_the_pull_is_that_of_the_flux(
     lasts: list[float],
     sigma: float,
     residual: float,
-    deviation: float,
     start: float,
     constants: tuple[float, float],
 ) -> None:
@@ -90,34 +88,15 @@ def test_rows_keep_their_bound(
         fall_constant=fall,
         saturation=sigma,
         residual=residual,
-        deviation=deviation,
     )
     times = np.cumsum(lasts)
     end = float(times[-1])
     current = magnet.current(Commands(times[:-1]), CoilState(0.0, False, start), end=end)
-    rows, pull = current.rows
-    assert rows[0] == 0.0
-    assert rows[-1] >= end or pull[-1] == magnet.pull(float(current.on[-1]))
-    assert (np.diff(rows) > 0.0).all()
-    assert (pull >= residual).all()
-    dense = np.append(np.linspace(rows[:-1], rows[1:], 20), np.linspace(0.0, end, 99))
-    exact = magnet.pull(current(dense))
-    assert np.abs(np.interp(dense, rows, pull) - exact).max() <= deviation * (1.0 + 1e-6)
-
-
-def test_rows_are_no_more_than_the_bound_requires() -> None:
-    """Rows follow from the curvature: the deviation is used up, and they go with its root."""
-    counts = []
-    for deviation in (1e-3, 1e-4, 1e-5):
-        magnet = Electromagnet(hold_force=1.0, deviation=deviation)
-        current = magnet.current(commands(0.0, 0.05), CoilState(-1e-3), end=0.2)
-        rows, pull = current.rows
-        dense = np.linspace(rows[:-1], rows[1:], 20).ravel()
-        worst = np.abs(np.interp(dense, rows, pull) - magnet.pull(current(dense))).max()
-        assert worst > 0.8 * deviation
-        counts.append(len(rows))
-    assert counts[1] / counts[0] == pytest.approx(sqrt(10.0), rel=0.2)
-    assert counts[2] / counts[1] == pytest.approx(sqrt(10.0), rel=0.2)
+    begins = [piece.begin for piece in current.pull.pieces]
+    assert begins[0] == 0.0
+    assert len(begins) <= 2 * len(lasts)
+    t = np.linspace(0.0, end, 999)
+    assert np.abs(current.pull(t) - magnet.pull(current(t))).max() < 1e-12
 
 
 def test_coil_by_hand() -> None:
@@ -191,10 +170,6 @@ def test_a_strong_coil_saturates() -> None:
         (
             {"saturation": 1.5},
             "saturation must be finite and at least 0.001 and at most 1, got 1.5",
-        ),
-        (
-            {"deviation": 0.5},
-            "deviation must be finite and at least 1e-8 and at most 0.1, got 0.5",
         ),
         (
             {"hold_force": 1.0, "residual": 1.0},

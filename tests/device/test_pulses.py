@@ -84,9 +84,8 @@ def test_a_full_duty_is_no_pulse() -> None:
 def test_rows_of_pulses_keep_their_bound(duty: float, frequency: float) -> None:
     made = magnet(duty, frequency)
     current = made.current(COMMANDS, CoilState(), 0.0, 0.08)
-    rows, pull = current.rows
-    dense = np.linspace(rows[:-1], rows[1:], 20).ravel()
-    assert np.abs(np.interp(dense, rows, pull) - made.pull(current(dense))).max() <= 1.001e-4
+    t = np.linspace(0.0, 0.08, 4001)
+    assert np.abs(current.pull(t) - made.pull(current(t))).max() <= 1e-12
 
 
 PLATE, SKIN = Contact(0.022, 0.0265), Contact(0.020, 0.030, stiffness=300.0)
@@ -101,7 +100,7 @@ COIL = Coil(
     release_resistance=20.0,
     heat_capacity=0.02,
 )
-PULSED = Electromagnet.from_coil(COIL, pwm_frequency=333.0, pwm_duty=0.6, deviation=1e-3)
+PULSED = Electromagnet.from_coil(COIL, pwm_frequency=333.0, pwm_duty=0.6)
 
 
 def reader(made: Electromagnet) -> Device:
@@ -149,9 +148,7 @@ def test_a_scan_cut_exactly_at_a_switching_off_is_the_scan_in_one(held: bool) ->
 
 # ---- a given voltage -----------------------------------------------------------------------------
 
-HELD = Electromagnet.from_coil(
-    COIL, voltage=[(0.0, 3.0), (0.004, 0.6), (0.03, 1.5)], deviation=1e-3
-)
+HELD = Electromagnet.from_coil(COIL, voltage=[(0.0, 3.0), (0.004, 0.6), (0.03, 1.5)])
 
 
 def test_a_given_voltage_holds_from_each_switching_on() -> None:
@@ -172,10 +169,9 @@ def test_a_given_voltage_holds_from_each_switching_on() -> None:
         value = target + (value - target) * exp(-lasts / constant)
         assert current(end) == pytest.approx(value, rel=1e-12, abs=1e-15)
     assert made.sustained_pull == made.pull(0.5)
-    rows, pull = current.rows
-    dense = np.linspace(rows[:-1], rows[1:], 20).ravel()
-    error = np.abs(np.interp(dense, rows, pull) - made.pull(current(dense))).max()
-    assert error <= 1.001e-4 * made.hold_force
+    dense = np.linspace(0.0, 0.08, 4001)
+    error = np.abs(current.pull(dense) - made.pull(current(dense))).max()
+    assert error <= 1e-12 * made.hold_force
 
 
 @pytest.mark.parametrize(
@@ -276,24 +272,21 @@ def test_a_coil_that_is_held_on_loses_current_as_it_warms() -> None:
     out = solve_ivp(slope, (0.0, 20.0), [0.0, 0.0], t_eval=t, method="LSODA", rtol=1e-9, atol=1e-12)
     exact = made.pull(out.y[0] / coil.current)
     assert exact[-1] < 0.9 * exact[0]
-    rows, pull = current.rows
-    np.testing.assert_allclose(np.interp(t, rows, pull), exact, rtol=1e-3)
+    np.testing.assert_allclose(current.pull(t), exact, rtol=1e-3)
     np.testing.assert_allclose(current.warming(t), out.y[1], rtol=1e-3)
 
 
-def test_a_warm_coil_pulls_less_and_its_rows_keep_their_bound() -> None:
-    warm = CoilState(0.0, False, 0.0, None, 60.0)
+def test_a_warm_coil_pulls_less() -> None:
+    warm = CoilState(0.0, False, 0.0, 60.0)
     for field in (1.6, 0.5):
         given = {name: getattr(COIL, name) for name in Coil.__dataclass_fields__}
         coil = Coil(**given | {"saturation_field": field})
-        made = Electromagnet.from_coil(coil, deviation=1e-4)
+        made = Electromagnet.from_coil(coil)
         current = made.current(Commands(np.array([0.001, 0.02])), warm, 0.0, 0.04)
         assert current(0.0199) == pytest.approx(1.0 / (1.0 + 3.93e-3 * 60.0), rel=0.01)
-        rows, pull = current.rows
-        dense = np.linspace(rows[:-1], rows[1:], 20).ravel()
-        error = np.abs(np.interp(dense, rows, pull) - made.pull(current(dense))).max()
-        assert error <= 1.001e-4 * made.hold_force
-        assert len(rows) < 400
+        dense = np.linspace(0.0, 0.04, 4001)
+        error = np.abs(current.pull(dense) - made.pull(current(dense))).max()
+        assert error <= 1e-12 * made.hold_force
 
 
 # ---- device files --------------------------------------------------------------------------------

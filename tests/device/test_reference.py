@@ -9,6 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from oracle.coil_course import ReferenceMagnet, decide
+from pindrive import Function
 from pindrive.device import CoilState, Commands, HandPath, Scene, scan
 from random_scans import RandomScan, random_magnet
 
@@ -30,9 +31,10 @@ def test_currents_and_pulls_of_random_magnets() -> None:
             np.testing.assert_allclose(
                 getattr(found, part), getattr(expected, part)[within], rtol=1e-12, atol=1e-15
             )
-        times, pulls = reference.pull_rows(expected, 0.2)
-        np.testing.assert_allclose(found.rows[0], times, rtol=1e-12, atol=1e-15)
-        np.testing.assert_allclose(found.rows[1], pulls, rtol=1e-11, atol=1e-13)
+        t = np.linspace(0.0, 0.2, 401)
+        np.testing.assert_allclose(
+            found.pull(t), reference.pull_of(expected, t), rtol=1e-11, atol=1e-13
+        )
         compared += 1
     assert compared > 120
 
@@ -81,10 +83,10 @@ def test_commands_and_loads_of_random_scans(kind: str) -> None:
         assert pin.state.decision == decision
         reference = ReferenceMagnet(case.device.magnet)
         current = reference.current(commands, CoilState(pin.begin), pin.begin, pin.end)
-        times, pulls = reference.pull_rows(current, pin.end)
         if len(commands.times):
-            rows, load = pin.core.load(0)
-            np.testing.assert_allclose(rows, times - pin.begin, rtol=1e-12, atol=1e-15)
-            np.testing.assert_allclose(load, case.device.load(pulls), rtol=1e-12)
+            t = np.linspace(pin.begin, pin.end, 401)
+            load = case.device.load(reference.pull_of(current, t))
+            assert isinstance(pin.load, Function)
+            np.testing.assert_allclose(pin.load(t - pin.begin), load, rtol=1e-11)
         switchings += len(commands.times)
     assert switchings > 100

@@ -31,7 +31,7 @@ def device(finger: Contact = RIGID, touch_force: float = 0.010, pins: int = 1) -
         finger=finger,
         touch_force=touch_force,
     )
-    magnet = Electromagnet.from_times(hold_force=1.2, deviation=1e-3)
+    magnet = Electromagnet.from_times(hold_force=1.2)
     return Device(drive=drive, magnet=magnet, array=PinArray.grid(pins, 1, 0.002))
 
 

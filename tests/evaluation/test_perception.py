@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from pindrive import Contact, Drive, Profile, Release, simulate
+from pindrive import Contact, Drive, Function, Release, simulate
 from pindrive.device import (
     ControlBlock,
     Criteria,
@@ -206,16 +206,14 @@ def test_smear_is_settling_time_times_hand_speed() -> None:
     scene, speed = grating(0.004, count=1, margin=0.05), 0.06
     done = scan(Device(drive=drive()), scene, evenly(scene, speed))
     (pin,), (line,) = done.pins, evaluate(done).lines
-    assert isinstance(pin.load, Profile)
-    since = [(t - line.release, load) for t, load in pin.load.rows]
-    rows = [(t, load) for t, load in since if t > 0.0]
-    first = float(pin.load(line.release))
+    assert isinstance(pin.load, Function)
+    since = Function([piece.from_time(piece.begin - line.release) for piece in pin.load.pieces])
     release = simulate(
         drive(),
         Release(
             speed,
             float(pin.position(line.release)),
-            plate_load=Profile([0.0, *(t for t, _ in rows)], [first, *(y for _, y in rows)]),
+            plate_load=since,
         ),
     )
     settling = release.transient.settling_time

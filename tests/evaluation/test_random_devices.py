@@ -14,7 +14,7 @@ import pytest
 
 from oracle.coil_course import ReferenceMagnet, decide
 from oracle.scan_evaluation import evaluated
-from pindrive import Contact, Drive, Profile, simulate
+from pindrive import Function, Contact, Drive, Profile, simulate
 from pindrive.device import CoilState, Criteria, Device, HandPath, Scan, Scene, scan
 from pindrive.motion.results import Event
 from random_scans import RandomScan, random_magnet
@@ -99,10 +99,10 @@ def commands_and_loads(done: Scan) -> int:
     if before.coil is None and len(pin.commands.times) and not warms:
         reference = ReferenceMagnet(device.magnet)
         current = reference.current(commands, CoilState(pin.begin), pin.begin, pin.end)
-        times, pulls = reference.pull_rows(current, pin.end)
-        found, load = pin.core.load(0)
-        np.testing.assert_allclose(found, times - pin.begin, rtol=1e-12, atol=1e-15)
-        np.testing.assert_allclose(load, device.load(pulls), rtol=1e-11)
+        assert isinstance(pin.load, Function)
+        t = np.linspace(pin.begin, pin.end, 401)
+        load = device.load(reference.pull_of(current, t))
+        np.testing.assert_allclose(pin.load(t - pin.begin), load, rtol=1e-11)
     return len(pin.commands.times)
 
 

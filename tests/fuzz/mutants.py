@@ -466,10 +466,10 @@ MUTANTS = (
         "return infinity;",
     ),
     Mutant(
-        "rows of a pull are twice as far apart",
+        "a pull without its slow exponential",
         "device/electromagnet.hpp",
-        "std::sqrt(8 * tolerance_ / curvature(c))",
-        "2 * std::sqrt(8 * tolerance_ / curvature(c))",
+        "2 * whole * target * swing",
+        "whole * target * swing",
     ),
     Mutant(
         "the flux decides nothing at the closing",
@@ -532,9 +532,9 @@ MUTANTS = (
         "const double horizon = next(scan);",
     ),
     Mutant(
-        "the coil that a pin kept is at its first row",
+        "the coil that a pin kept is not saturated yet",
         "device/pin_follower.hpp",
-        "    while (coil_.next() - begin_ <= passed_) coil_.pass(coil_.next());\n",
+        "    while (coil.next() - begin <= time) coil.pass(coil.next());\n",
         "",
     ),
     Mutant(

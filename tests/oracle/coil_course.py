@@ -1,15 +1,14 @@
 """Control block and coil of a scan in Python: the reference of include/pindrive/device.
 
-Commands from samples, the flux of the coil piece by piece with the resistance of the begin of each,
-and the pull as rows, as the package had them before its device layer was written in C++.
+Commands from samples, and the flux of the coil piece by piece with the resistance of the begin of
+each, as the package had them before its device layer was written in C++.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
-from math import ceil, exp, expm1, floor, inf, log, log1p, sqrt
+from math import ceil, exp, expm1, floor, inf, log1p
 from typing import Any
 
 import numpy as np
@@ -21,7 +20,6 @@ from pindrive.device.controller import Decision
 from pindrive.device.current import Pulses, VoltageSteps
 from pindrive.device.heating import Heat
 
-AT_ONCE = 0.01
 COPPER_RISE = 3.93e-3
 Circuit = Callable[[bool, float], tuple[float, float]]
 
@@ -198,7 +196,7 @@ class Course:
 
 
 class ReferenceMagnet:
-    """The current and the rows of the pull of an electromagnet."""
+    """The current of an electromagnet."""
 
     def __init__(self, magnet: Electromagnet) -> None:
         self.magnet = magnet
@@ -248,136 +246,14 @@ class ReferenceMagnet:
         outer = self.coil.release_resistance
         return 0.0, self.fall_constant * (own + outer) / (resistance * own + outer)
 
-    def pull_rows(
-        self, current: Course, end: float, first: float | None = None
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """The pull as rows (time in s, N) from the current's begin to `end`, or a row beyond.
-
-        Linear between them it is nowhere further from the exact one than `deviation` of the hold
-        force. No row depends on what comes after it, so that a course that is cut keeps the same
-        rows: a switching finds the pull on its line, and a moment later it is exact again.
-
-        Args:
-            current: The current.
-            end: s, after its begin.
-            first: The pull at its begin, N; None: the exact one.
-
-        Raises:
-            ValueError: The number of rows exceeds its budget.
-        """
-        rows, pieces = 0, max(1, int(np.searchsorted(current.begins, end)))
-        times: list[NDArray[np.float64]] = []
-        pulls: list[NDArray[np.float64]] = []
-        stops = [*current.begins[1:pieces].tolist(), end]
-        pull = self.pull(float(current.starts[0])) if first is None else first
-        for begin, stop, start, target, constant in zip(
-            current.begins[:pieces].tolist(),
-            stops,
-            current.starts[:pieces].tolist(),
-            current.targets[:pieces].tolist(),
-            current.constants[:pieces].tolist(),
-            strict=True,
-        ):
-            parts, currents = self._rows_after(start, target)
-            after = constant * parts
-            t = begin + after
-            p = np.concatenate([[pull], self.pull(currents)])
-            count = int(np.searchsorted(t, stop))
-            pull = float(np.interp(stop, t, p))
-            last = count + 1 if stop == end else count
-            rows += last
-            times.append(t[:last])
-            pulls.append(p[:last])
-        return np.concatenate(times), np.concatenate(pulls)
-
-    def _rows_after(
-        self, start: float, target: float
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Return the times after a switching, in time constants, and the currents then.
-
-        At the switching, whose current is left out; a moment later; as the current passes its
-        levels; and when it has reached its end within the deviation, where it stays.
-        """
-        if start == target:
-            return np.zeros(1), np.zeros(0)
-        if target not in (0.0, 1.0):
-            return self._rows_between(start, target)
-        rises, final = target == 1.0, target
-        levels = self._rising if rises else self._falling
-        moment = AT_ONCE * self.saturation * self._tolerance
-        soon = current_after(start, target, moment)
-        due = levels[(levels > soon) if rises else (levels < soon)]
-        apart = np.log((1.0 - start) / (1.0 - due)) if rises else np.log(start / due)
-        due, apart = due[apart > 2.0 * moment], apart[apart > 2.0 * moment]
-        after = np.concatenate([[0.0, moment], apart])
-        return np.append(after, after[-1] + 1.0), np.concatenate([[soon], due, [final]])
-
-    def _rows_between(
-        self, start: float, target: float
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Return the times and currents of a partial switching.
-
-        With c = A + C E, E = exp(−t/τ), the curvature of c² is 4C²E² + 2AC E, at its largest at
-        first. A row is due where the iron comes to saturation, or out of it.
-        """
-        sigma, tolerance = self.saturation, self._tolerance
-        swing = start - target
-        kink = log(swing / (sigma - target)) if (start > sigma) != (target > sigma) else inf
-        due, x = [AT_ONCE * sigma * tolerance], AT_ONCE * sigma * tolerance
-        while True:
-            left = exp(-x)
-            c = target + swing * left
-            if x < kink and c >= sigma:  # saturated until then, or forever
-                if kink == inf:
-                    break
-                x = kink
-            elif x >= kink and target >= sigma:
-                break
-            else:
-                size = 4.0 * (swing * left) ** 2 + 2.0 * abs(target * swing) * left
-                if abs(2.0 * target * swing * left) + (swing * left) ** 2 <= tolerance * sigma**2:
-                    break
-                step = x + sigma * sqrt(8.0 * tolerance / size)
-                x = kink if x < kink <= step else step
-            due.append(x)
-        after = np.array(due)
-        currents = target + swing * np.exp(-after)
-        return np.concatenate([[0.0], after, [after[-1] + 1.0]]), np.append(currents, target)
-
-    @property
-    def _tolerance(self) -> float:
-        """The deviation as a part of the pull that comes and goes, less what a moment takes."""
-        part: float = self.deviation * self.hold_force / (self.hold_force - self.residual)
-        return (1.0 - 5.0 * AT_ONCE) * part
-
-    @cached_property
-    def _rising(self) -> NDArray[np.float64]:
-        """Currents at which rows are due as it rises from 0.
-
-        With E = 1 − c = exp(−t/τ) the pull's curvature is 2E (2E − 1) / (σ τ)², whose size at any
-        later time is at most that at E or, before E = 1/4, that there, 1/4.
-        """
-
-        def curvature(c: float) -> float:
-            e = 1.0 - c
-            return max(abs(2.0 * e * (2.0 * e - 1.0)), 0.25 if e > 0.25 else 0.0)
-
-        sigma, tolerance = self.saturation, self._tolerance
-        levels, c = [0.0], 0.0
-        while True:
-            if sigma == 1.0 and 1.0 - c * c <= tolerance:
-                return np.array(levels)
-            c = 1.0 - (1.0 - c) * exp(-sigma * sqrt(8.0 * tolerance / curvature(c)))
-            levels.append(min(c, sigma) if sigma < 1.0 else c)
-            if sigma < 1.0 and c >= sigma:
-                return np.array(levels)
-
-    @cached_property
-    def _falling(self) -> NDArray[np.float64]:
-        """Currents at which rows are due as it falls from 1, with a curvature of 4c² / (σ τ)²."""
-        sigma, tolerance = self.saturation, self._tolerance
-        levels = [1.0, sigma] if sigma < 1.0 else [1.0]
-        while (levels[-1] / sigma) ** 2 > tolerance:
-            c = levels[-1]
-            levels.append(c * exp(-sigma * sqrt(2.0 * tolerance) / c))
-        return np.array(levels)
+    def pull_of(self, course: Course, t: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The pull at times (s) from the begin of the course on, N."""
+        i = np.maximum(np.searchsorted(course.begins, t, "right") - 1, 0)
+        after = (t - course.begins[i]) / course.constants[i]
+        flux = [
+            current_after(*each)
+            for each in zip(course.starts[i], course.targets[i], after, strict=True)
+        ]
+        share = np.minimum((np.array(flux) / self.saturation) ** 2, 1.0)
+        pull: NDArray[np.float64] = self.residual + (self.hold_force - self.residual) * share
+        return pull

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from math import copysign, hypot, inf, sqrt
+from math import copysign, exp, hypot, inf, sqrt
 from typing import Any
 
 import numpy as np
@@ -72,6 +72,10 @@ class ExplicitModes:
         self.plate, self.finger = Law(inputs["plate"]), Law(inputs["finger"])
         self.soft = not self.finger.absent and self.finger.stiffness < inf
         self.mouse, self.load = (np.array(inputs[n], float).T for n in ("mouse_velocity", "load"))
+        self.pulls = inputs.get("load_pieces")  # begin, constant, terms (amplitude, decay)
+        if self.pulls:
+            values = [constant + sum(a for a, _ in terms) for _, constant, terms in self.pulls]
+            self.load = np.array([[begin for begin, *_ in self.pulls], values])
         self.push = np.array(inputs.get("force", [[0.0, 0.0]]), float).T
         self.touch = np.array(inputs.get("touch", [[0.0, 1.0]]), float).T  # no steps, no skin
         self.across = np.array(inputs.get("across", [[0.0, 0.0]]), float).T
@@ -106,6 +110,10 @@ class ExplicitModes:
         later = [u for given in rows for u in given[0] if u > self.t]
         self.t0, self.t1 = self.t, min(later, default=inf)
         self.vp, self.lam = np.interp(self.t, *self.mouse), np.interp(self.t, *self.load)
+        if self.pulls:
+            i = int(np.searchsorted(self.load[0], self.t, "right")) - 1
+            self.pull = self.pulls[max(i, 0)]
+            self.lam = self.load_at(self.t)
         self.pushed = np.interp(self.t, *self.push)
         width = self.t1 - self.t0
         moving = width < inf
@@ -117,6 +125,9 @@ class ExplicitModes:
         return float(self.vp + self.w * (t - self.t0))
 
     def load_at(self, t: float) -> float:
+        if self.pulls:
+            begin, constant, terms = self.pull
+            return float(constant + sum(a * exp(-d * (t - begin)) for a, d in terms))
         return float(self.lam + self.rise * (t - self.t0))
 
     def touch_at(self, t: float) -> float:

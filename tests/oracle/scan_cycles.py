@@ -9,7 +9,7 @@ import numpy as np
 
 from oracle import explicit_piecewise, sundials_modes
 from oracle.watched_dop853 import Integrator
-from pindrive import Contact, Profile
+from pindrive import Contact, InputPiece, Profile
 from pindrive.device import PinScan
 
 SAMPLES = 300
@@ -75,13 +75,18 @@ def _inputs(pin: PinScan) -> dict[str, Any]:
         "plate": _contact(motion.drive.plate),
         "finger": _contact(motion.drive.finger),
         "mouse_velocity": [list(row) for row in motion.release.mouse_velocity.rows],
-        "load": [list(row) for row in load.rows] if isinstance(load, Profile) else [[0.0, load]],
+        "load": [[0.0, load]] if isinstance(load, float) else [],
+        "load_pieces": None if isinstance(load, float) else [*map(_pull, load.pieces)],
         "touch": touch.rows if isinstance(touch, Profile) else [[0.0, touch]],
         "across": across.rows if isinstance(across, Profile) else [[0.0, across]],
         "displacement": 0.0,
         "velocity": 0.0,
         "skin_stretch": None if motion.drive.finger.rigid else 0.0,
     }
+
+
+def _pull(piece: InputPiece) -> tuple[float, float, list[tuple[float, float]]]:
+    return piece.begin, piece.polynomial[0], [(term.cosine, term.decay) for term in piece.terms]
 
 
 def _contact(surface: Contact) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-/// Coil of one pin over time: commands to voltage, flux and the lines of a piecewise-linear pull.
+/// Coil of one pin over time: commands to voltage, flux and the pieces of the pull.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,6 @@ namespace pindrive::device {
 struct CoilState {
   double since{0};      ///< time of that change, s
   double flux{0};       ///< flux linkage then
-  double pull{0};       ///< pull then, as its rows have it, N
   double warming{0};    ///< above 20 °C then, K
   double level{1};      ///< voltage while it is on
   double commanded{0};  ///< time of the command to switch on, s
@@ -24,16 +23,15 @@ struct CoilState {
 };
 
 /// Coil that is simulated from change to change: next() is the time of the next one, pass() goes
-/// beyond. Between changes the pull is a line.
+/// beyond. Between changes the pull is one piece.
 class Coil {
  public:
   /// A coil without current, switched off.
   Coil(const Electromagnet& magnet, double time) : magnet_(&magnet) {
     state_.since = time;
-    state_.pull = magnet.pull(0);
     begin_piece();
   }
-  /// A coil in a state that was kept; pass_rows() goes to the present line of the pull.
+  /// A coil in a state that was kept; pass() goes to the present piece of the pull.
   Coil(const Electromagnet& magnet, const CoilState& state) : magnet_(&magnet), state_(state) {
     begin_piece();
   }
@@ -72,34 +70,18 @@ class Coil {
       change(true, 1, time);
   }
 
-  /// Time at which the present line of the pull ends, s; infinite without a change to come.
-  double next() const { return std::min({next_row(), closing_, heating_, next_voltage()}); }
+  /// Time at which the present piece of the pull ends, s; infinite without a change to come.
+  double next() const {
+    return std::min({saturated_ ? infinity : saturating_, closing_, heating_, next_voltage()});
+  }
 
   /// Goes beyond all changes until a time.
   void pass(double until) {
     for (double time = next(); time <= until; time = next()) pass_next(time);
   }
 
-  /// Begin of the present line of the pull, s.
-  double line_begin() const { return rows_[row_].time; }
-  /// Time of the next row of the pull, s; infinite after the last.
-  double next_row() const { return row_ + 1 < rows_.size() ? rows_[row_ + 1].time : infinity; }
-  double next_pull() const { return rows_[row_ + 1].pull; }  ///< at that row, N
-  /// Goes to the line of the pull that holds until a time, without a change.
-  void pass_rows(double time) {
-    while (next_row() < time) ++row_;
-  }
-
-  double pull(double time) const {
-    const Row& from = rows_[row_];
-    return from.pull + rate() * (time - from.time);
-  }
-  /// Rate of the pull, N/s.
-  double rate() const {
-    if (row_ + 1 >= rows_.size()) return 0;
-    const Row &from = rows_[row_], &to = rows_[row_ + 1];
-    return to.time > from.time ? (to.pull - from.pull) / (to.time - from.time) : 0;
-  }
+  const PullPiece& pull_piece() const { return pull_; }
+  double pull(double time) const { return pull_.at(time); }
   /// Flux linkage; at a closing or opening of the gap that of the change, to the bit.
   double flux(double time) const {
     return time == closing_ ? magnet_->given().closing_flux
@@ -112,9 +94,6 @@ class Coil {
 
  private:
   static constexpr double infinity = std::numeric_limits<double>::infinity();
-  struct Row {
-    double time, pull;
-  };
 
   /// Time from which the present voltage follows: the command or the last change.
   double reference() const { return std::max(state_.since, state_.commanded); }
@@ -149,7 +128,8 @@ class Coil {
   void pass_next(double time) {
     const double voltage = next_voltage(), own = std::min(closing_, heating_);
     if (time < std::min(voltage, own)) {
-      ++row_;
+      saturated_ = true;
+      pull_ = magnet_->pull_piece(piece_, true);
     } else if (own < voltage) {
       change(state_.on, state_.level, own);
     } else if (!magnet_->steps().empty()) {
@@ -159,12 +139,11 @@ class Coil {
     }
   }
 
-  /// Begins a piece: the pull continues from its line, the flux from its value.
+  /// Begins a piece, in which the flux continues.
   void change(bool on, double level, double time) {
-    const double pulling = pull(time), linked = flux(time), warm = warming(time);
+    const double linked = flux(time), warm = warming(time);
     state_.since = time;
     state_.flux = linked;
-    state_.pull = pulling;
     state_.warming = warm;
     state_.on = on;
     state_.level = level;
@@ -175,18 +154,18 @@ class Coil {
     piece_ = magnet_->piece(s.since, s.flux, s.warming, s.on, s.level);
     closing_ = s.since + magnet_->closing_after(piece_);
     heating_ = s.since + magnet_->heating_after(piece_);
-    row_ = 0;
-    rows_.assign(1, {s.since, s.pull});
-    magnet_->rows(piece_,
-                  [&](double after, double pulls) { rows_.push_back({s.since + after, pulls}); });
+    saturating_ = s.since + magnet_->saturating_after(piece_);
+    saturated_ = false;
+    pull_ = magnet_->pull_piece(piece_, false);
   }
 
   const Electromagnet* magnet_;
   CoilState state_;
   FluxPiece piece_{};
+  PullPiece pull_{};
   double closing_{infinity}, heating_{infinity};  ///< times of the next change by itself, s
-  std::size_t row_{0};                            ///< present row of the pull
-  std::vector<Row> rows_;                         ///< of the pull since the begin of the piece
+  double saturating_{infinity};  ///< time at which the iron saturates, or ceases to be saturated, s
+  bool saturated_{false};        ///< that time has passed
 };
 
 }  // namespace pindrive::device

@@ -1,4 +1,4 @@
-/// Course of a coil under commands: its pieces, and the pull as rows.
+/// Course of a coil under commands: the pieces of its flux and of its pull.
 #pragma once
 
 #include <algorithm>
@@ -13,9 +13,9 @@ namespace pindrive::device {
 
 /// Course of a coil from a state on.
 struct CoilCourse {
-  std::vector<FluxPiece> pieces;     ///< from the state on, in order
-  std::vector<double> times, pulls;  ///< rows of the pull: s, N
-  CoilState end;                     ///< state at the last change before the end
+  std::vector<FluxPiece> pieces;  ///< from the state on, in order
+  std::vector<PullPiece> pulls;   ///< from the begin on, in order
+  CoilState end;                  ///< state at the last change before the end
 
   /// True if the coil was never on and had no current: the pull is the residual one throughout.
   bool idle() const {
@@ -24,35 +24,29 @@ struct CoilCourse {
     return true;
   }
 
-  /// Replaces the course by that under a command which each switching before `until` changes. The rows
-  /// begin with the last one until `begin` and end with the first one from `until` on. With more than
-  /// `most` pieces or rows the course is incomplete. A last change after `begin`, as on another clock,
-  /// counts as one at `begin`.
+  /// Replaces the course by that under a command which each switching before `until` changes. With more than
+  /// `most` pieces the course is incomplete. A last change after `begin`, as on another clock, counts as one at
+  /// `begin`.
   void follow(const Electromagnet& magnet, CoilState from, const double* switchings,
               std::size_t count, double begin, double until, std::size_t most) {
     most_ = most;
     from.since = std::min(from.since, begin);
     pieces.clear();
-    times.clear();
-    pulls.clear();
     add(Coil(magnet, from));
     Coil coil = Coil::begun(magnet, from, begin);
+    pulls.clear();
     add(coil);
-    times.assign(1, coil.line_begin());
-    pulls.assign(1, coil.pull(coil.line_begin()));
     for (std::size_t i = 0; i < count && switchings[i] < until; ++i) {
       pass_before(coil, switchings[i]);
       coil.command(!coil.state().command, switchings[i]);
       add(coil);
     }
     pass_before(coil, until);
-    if (const double beyond = coil.next_row(); std::isfinite(beyond))
-      add_row(beyond, coil.next_pull());
     end = coil.state();
   }
 
  private:
-  bool full() const { return pieces.size() > most_ || times.size() > most_; }
+  bool full() const { return pieces.size() > most_; }
 
   /// A change at the time itself comes after a command at that time.
   void pass_before(Coil& coil, double to) {
@@ -61,19 +55,17 @@ struct CoilCourse {
       add(coil);
     }
   }
-  /// Adds the present piece and the row at the begin of the present line, unless they are there.
+  /// Adds the present pieces; a piece without a duration is replaced.
   void add(const Coil& coil) {
-    const FluxPiece& piece = coil.piece();
-    if (!pieces.empty() && pieces.back().begin == piece.begin)
-      pieces.back() = piece;
-    else
-      pieces.push_back(piece);
-    add_row(coil.line_begin(), coil.pull(coil.line_begin()));
+    put(pieces, coil.piece());
+    put(pulls, coil.pull_piece());
   }
-  void add_row(double time, double pull) {
-    if (!times.empty() && !(time > times.back())) return;
-    times.push_back(time);
-    pulls.push_back(pull);
+  template <class Piece>
+  static void put(std::vector<Piece>& all, const Piece& piece) {
+    if (!all.empty() && !(piece.begin > all.back().begin))
+      all.back() = piece;
+    else
+      all.push_back(piece);
   }
 
   std::size_t most_{0};

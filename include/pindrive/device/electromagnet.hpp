@@ -1,11 +1,11 @@
-/// Electromagnet of a pin: flux linkage from the voltage, pull from the flux, and the flux linkages at
-/// which a piecewise-linear pull has its rows. A flux linkage is a part of that of the full current
+/// Electromagnet of a pin: flux linkage from the voltage, and pull from the flux. A flux linkage is a part of that of the full current
 /// with a closed gap, a voltage a part of the full one.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "pindrive/numbers/functions.hpp"
@@ -39,13 +39,25 @@ struct FluxPiece {
   double current(double flux) const { return flux / inductance; }
 };
 
+/// Pull from a time on: constant + once·E + twice·E², where E = e^(−rate·(t − begin)).
+struct PullPiece {
+  double begin;        ///< s
+  double constant;     ///< N
+  double once, twice;  ///< N
+  double rate;         ///< 1/s
+
+  double at(double time) const {
+    const double left = detail::exp(-rate * (time - begin));
+    return constant + (once + twice * left) * left;
+  }
+};
+
 /// Parameters of an electromagnet, SI.
 struct MagnetParameters {
   double hold_force, residual;  ///< pull at full and without current, N
   double saturation;            ///< flux linkage from which on the pull is constant
   double rise_constant,
       fall_constant;          ///< time constants of the flux linkage, gap closed, 20 °C, s
-  double deviation;           ///< largest error of the piecewise-linear pull, over hold_force
   double closing_flux{0};     ///< flux linkage at which the gap closes and opens
   double open_inductance{1};  ///< inductance with the open gap over that with the closed one
   double pulse_frequency{0};  ///< Hz; 0 for a continuous voltage
@@ -60,12 +72,7 @@ struct MagnetParameters {
 class Electromagnet {
  public:
   explicit Electromagnet(const MagnetParameters& given, std::vector<VoltageStep> steps = {})
-      : given_(given), steps_(std::move(steps)) {
-    tolerance_ =
-        (1 - 5 * prompt) * given.deviation * given.hold_force / (given.hold_force - given.residual);
-    find_rising_levels();
-    find_falling_levels();
-  }
+      : given_(given), steps_(std::move(steps)) {}
 
   const MagnetParameters& given() const { return given_; }
   const std::vector<VoltageStep>& steps() const { return steps_; }
@@ -133,22 +140,24 @@ class Electromagnet {
     return found;
   }
 
-  /// Calls row(time after the begin, pull) for the rows of a piecewise-linear pull in a piece, in order,
-  /// without the first, which continues the pull before. Nowhere later than the first row is it further
-  /// from the exact pull than the deviation.
-  template <class Row>
-  void rows(const FluxPiece& piece, Row&& row) const {
-    if (piece.start == piece.target) return;
-    double last = 0;
-    const auto add = [&](double constants, double flux) {
-      row(piece.constant * constants, pull(flux));
-      last = constants;
-    };
-    if (piece.target == 0 || piece.target == 1)
-      rows_to_an_end(piece, add);
-    else
-      rows_to_a_part(piece, add);
-    add(last + 1, piece.target);
+  /// Time after the begin of a piece at which the iron saturates, or ceases to be saturated, s; infinite if it
+  /// does not.
+  double saturating_after(const FluxPiece& piece) const {
+    const double edge = given_.saturation;
+    if ((piece.start > edge) == (piece.target > edge) || piece.start == edge) return infinity;
+    return piece.constant * detail::log(piece.swing() / (edge - piece.target));
+  }
+
+  /// Pull in a piece before or after the time at which the iron saturates, or ceases to be saturated.
+  PullPiece pull_piece(const FluxPiece& piece, bool after) const {
+    const double edge = given_.saturation, whole = given_.hold_force - given_.residual;
+    const double begin = after ? piece.begin + saturating_after(piece) : piece.begin;
+    const double from = after ? edge : piece.start;
+    const bool saturated = after ? piece.target > edge : from >= edge && piece.target >= edge;
+    if (saturated || (!after && from > edge)) return {begin, given_.hold_force, 0, 0, 0};
+    const double target = piece.target / edge, swing = from / edge - target;
+    return {begin, given_.residual + whole * target * target, 2 * whole * target * swing,
+            whole * swing * swing, 1 / piece.constant};
   }
 
  private:
@@ -158,8 +167,6 @@ class Electromagnet {
   /// Largest change of the resistance within a piece. Without it a coil that is held on pulls by 17 %
   /// too much after 20 s at 2 V; with it the pull is within 0.1 % of the coupled equations.
   static constexpr double resistance_step = 5e-4;
-  /// Relative change of the pull, over twice the deviation, after which the rows of a piece begin.
-  static constexpr double prompt = 0.01;
 
   double cooling_constant() const { return given_.thermal_resistance * given_.heat_capacity; }
   /// Largest heating in a piece at its resistance, K/s.
@@ -179,75 +186,8 @@ class Electromagnet {
     return most > 0 ? now + 0.5 * resistance_step * (heating - cooling) / most : now;
   }
 
-  /// Flux linkages at the rows of a pull that rises from 0. With E = 1 − c = exp(−t/τ) the curvature of
-  /// the pull is 2E (2E − 1) / (σ τ)², whose size at any later time is at most that at E or, before
-  /// E = 1/4, that there.
-  void find_rising_levels() {
-    const double sigma = given_.saturation;
-    const auto curvature = [](double c) {
-      const double e = 1 - c;
-      return std::max(std::abs(2 * e * (2 * e - 1)), e > 0.25 ? 0.25 : 0.0);
-    };
-    for (double c = 0; sigma < 1 ? c < sigma : 1 - c * c > tolerance_;) {
-      c = 1 - (1 - c) * detail::exp(-sigma * std::sqrt(8 * tolerance_ / curvature(c)));
-      rising_.push_back(sigma < 1 ? std::min(c, sigma) : c);
-    }
-  }
-  /// Flux linkages at the rows of a pull that falls from 1, with a curvature of 4c² / (σ τ)².
-  void find_falling_levels() {
-    const double sigma = given_.saturation;
-    if (sigma < 1) falling_.push_back(1);
-    for (double c = sigma;; c *= detail::exp(-sigma * std::sqrt(2 * tolerance_) / c)) {
-      falling_.push_back(c);
-      if ((c / sigma) * (c / sigma) <= tolerance_) return;
-    }
-  }
-
-  /// Rows of a flux that tends to 0 or 1: where it passes the levels.
-  template <class Add>
-  void rows_to_an_end(const FluxPiece& piece, Add&& add) const {
-    const bool rises = piece.target == 1;
-    const double start = piece.start, moment = prompt * given_.saturation * tolerance_;
-    const double soon = piece.flux_after(moment * piece.constant);
-    add(moment, soon);
-    for (const double level : rises ? rising_ : falling_) {
-      if (rises ? level <= soon : level >= soon) continue;
-      const double after = detail::log(rises ? (1 - start) / (1 - level) : start / level);
-      if (after > 2 * moment) add(after, level);
-    }
-  }
-
-  /// Rows of a flux that tends to a part, c = A + C E: the curvature of c² is 4C²E² + 2AC E, largest
-  /// at first. A row is due where the iron comes to saturation, or out of it.
-  template <class Add>
-  void rows_to_a_part(const FluxPiece& piece, Add&& add) const {
-    const double sigma = given_.saturation, target = piece.target, swing = piece.swing();
-    const double kink = (piece.start > sigma) != (target > sigma)
-                            ? detail::log(swing / (sigma - target))
-                            : infinity;
-    double x = prompt * sigma * tolerance_;
-    for (;;) {
-      const double left = detail::exp(-x), c = target + swing * left;
-      add(x, c);
-      if (x < kink && c >= sigma) {  // saturated until then, or forever
-        if (kink == infinity) return;
-        x = kink;
-        continue;
-      }
-      if (x >= kink && target >= sigma) return;
-      const double bend = 2 * std::abs(target * swing) * left;
-      const double square = (swing * left) * (swing * left);
-      if (bend + square <= tolerance_ * sigma * sigma) return;
-      const double step = x + sigma * std::sqrt(8 * tolerance_ / (4 * square + bend));
-      x = x < kink && kink <= step ? kink : step;
-    }
-  }
-
   MagnetParameters given_;
   std::vector<VoltageStep> steps_;
-  double
-      tolerance_;  ///< deviation as a part of the pull that comes and goes, less that of `prompt`
-  std::vector<double> rising_, falling_;
 };
 
 }  // namespace pindrive::device

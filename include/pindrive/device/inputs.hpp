@@ -122,7 +122,6 @@ inline constexpr InputQuantity input_quantities[] = {
     {"magnet.pwm_duty", "1", share, any, none},
     {"magnet.outer_diameter", "m", between(1e-6, 1), any, none},
     {"magnet.height", "m", between(1e-6, 1), any, none},
-    {"magnet.deviation", "1", fine, any, 0.0001},
     {"magnet.turns", "1", between(1, 1e6), any, none},
     {"magnet.pole_area", "m^2", between(1e-10, 1), any, none},
     {"magnet.gap", "m", between(1e-9, 0.1), any, none},

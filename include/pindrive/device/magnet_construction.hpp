@@ -54,13 +54,12 @@ struct CoilConstruction {
   double power() const { return supply_voltage * current(); }  ///< at full current, W
 
   /// Electromagnet without a residual pull, a temperature or a lift.
-  MagnetParameters magnet(double deviation) const {
+  MagnetParameters magnet() const {
     MagnetParameters found{};
     found.hold_force = pull();
     found.saturation = saturation();
     found.rise_constant = inductance() / resistance();
     found.fall_constant = inductance() / (resistance() + release_resistance);
-    found.deviation = deviation;
     found.winding_resistance = resistance();
     found.outer_resistance = release_resistance;
     found.power = power();

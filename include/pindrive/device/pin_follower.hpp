@@ -44,14 +44,14 @@ class PinFollower {
   PinFollower(const ScanInputs& scan, const State& state)
       : device_(&scan.device),
         begin_(scan.begin),
-        coil_(device_->magnet, state.coil),
+        coil_(passed(Coil(device_->magnet, state.coil), begin_, state.passed)),
         sampled_(state.sampled),
         passed_(state.passed),
         decision_(state.decision),
         pending_(state.pending),
-        stepper_(device_->drive, state.motion) {
-    while (coil_.next() - begin_ <= passed_) coil_.pass(coil_.next());
-  }
+        stepper_(device_->drive, state.motion) {}
+  PinFollower(const PinFollower&) = delete;
+  PinFollower& operator=(const PinFollower&) = delete;
 
   State state() const {
     return {
@@ -94,18 +94,26 @@ class PinFollower {
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 
   /// Release with the inputs at the begin.
-  Inputs<double> release(const ScanInputs& scan, const PinState& from) const {
+  Inputs<double> release(const ScanInputs& scan, const PinState& from) {
     const PlateVelocity& plate = scan.plate;
     const Line<double> along = plate.profile(plate.along).from(0).line();
     Inputs<double> inputs{
-        {0, along}, from.position,     std::isnan(from.velocity) ? along.value : from.velocity,
-        infinity,   {0, load(begin_)}, scan.held_stretch(from.stretch)};
+        {0, along}, from.position, std::isnan(from.velocity) ? along.value : from.velocity,
+        infinity,   load(),        scan.held_stretch(from.stretch)};
     inputs.across_velocity = {0, plate.profile(plate.across).from(0).line()};
     inputs.finger_load = {0, scan.finger_load.from(0).line()};
     return inputs;
   }
-  Line<double> load(double time) const {
-    return {device_->load(coil_.pull(time)), coil_.rate() / device_->normal_force};
+  /// Load by the present piece of the pull.
+  Held<double> load() {
+    load_ = load_under(coil_.pull_piece(), device_->normal_force, begin_);
+    if (load_.piece.straight()) return {load_.piece.polynomial[0]};
+    return Held<double>(load_.piece);
+  }
+  /// A coil beyond the changes until a time since the begin, s.
+  static Coil passed(Coil coil, double begin, double time) {
+    while (coil.next() - begin <= time) coil.pass(coil.next());
+    return coil;
   }
 
   /// Time of the next switching that is due, s.
@@ -126,14 +134,14 @@ class PinFollower {
   template <class Sink>
   void pass(const ScanInputs& scan, double time, Sink&& sink) {
     InputCurves<double> lines = stepper_.inputs();
-    if (passed_ == -infinity) lines.plate_load = load(begin_);
-    for (double at; (at = std::min(command(), coil_.next())) - begin_ <= time;) {
+    bool pulls = passed_ == -infinity;  // as from another scan, whose piece may have ended
+    for (double at; (at = std::min(command(), coil_.next())) - begin_ <= time; pulls = true) {
       if (at == command())
         give_command();
       else
         coil_.pass(at);
-      lines.plate_load = load(at);
     }
+    if (pulls) lines.plate_load = load().from(time);
     if (scan.next_row(passed_) <= time) {
       const PlateVelocity& plate = scan.plate;
       lines.plate_velocity = plate.profile(plate.along).from(time);
@@ -149,6 +157,7 @@ class PinFollower {
   const Device* device_;
   double begin_;  ///< of the scan, s
   Coil coil_;
+  OwnedPiece<double> load_{};  ///< last load that was given to the stepper
   double sampled_, passed_{-infinity};
   bool decision_;
   std::vector<double> pending_;

@@ -32,12 +32,13 @@ struct PinRun {
   bool decision{false};            ///< last decision of the control block
   std::vector<double> pending;     ///< switchings that are due at the end of the path or later, s
   CoilCourse coil;
-  std::vector<double> load_times, loads;  ///< rows of the factor of the plate friction
+  std::vector<OwnedPiece<double>> owned;  ///< pieces of the load
+  std::vector<InputPiece<double>> loads;  ///< factor of the plate friction, by these pieces
   std::vector<Segment<double>> segments;
   Outcome<double> outcome{};
   StepperState<double> ended{};  ///< for a scan that begins at the end
 
-  /// Samples the page and switches the coil, until its course has more than `most` pieces or rows.
+  /// Samples the page and switches the coil, until its course has more than `most` pieces.
   void energise(const ScanInputs& scan, std::size_t pin, const PinState& from, std::size_t most) {
     const Controller& controller = scan.device.controller;
     const double begin = scan.path.begin(), end = scan.path.end();
@@ -53,18 +54,12 @@ struct PinRun {
     commanded = from.coil.command;
     coil.follow(scan.device.magnet, from.coil, switchings.data(), switchings.size(), begin, end,
                 most);
-    load_times.clear();
+    if (coil.idle()) coil.end = from.coil;
+    owned.clear();
+    for (const PullPiece& pull : coil.pulls)
+      owned.push_back(load_under(pull, scan.device.normal_force, begin));
     loads.clear();
-    if (coil.idle()) {
-      load_times.push_back(0);
-      loads.push_back(scan.device.load(scan.device.magnet.given().residual));
-      coil.end = from.coil;
-      return;
-    }
-    for (std::size_t i = 0; i < coil.times.size(); ++i) {
-      load_times.push_back(coil.times[i] - begin);
-      loads.push_back(scan.device.load(coil.pulls[i]));
-    }
+    for (const OwnedPiece<double>& load : owned) loads.push_back(load.piece);
   }
 
   /// Times with the command to be on, s.
@@ -90,7 +85,10 @@ struct PinRun {
     const double velocity = std::isnan(from.velocity) ? plate.along[0] : from.velocity;
     Inputs<double> found{profile_of(plate.times, plate.along), from.position, velocity,
                          plate.times.back()};
-    found.plate_load = profile_of(load_times, loads);
+    if (loads.size() == 1 && loads[0].straight())
+      found.plate_load = {loads[0].polynomial[0]};
+    else
+      found.plate_load = {loads.data(), loads.size()};
     found.skin_stretch = scan.held_stretch(from.stretch);
     found.across_velocity = profile_of(plate.times, plate.across);
     found.finger_load = scan.finger_load;

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "pindrive/device/coil.hpp"
@@ -17,6 +18,17 @@
 #include "pindrive/model/model.hpp"
 
 namespace pindrive::device {
+
+/// Factor of the friction of a plate with a normal force (N) under a piece of a pull, on a clock that begins at a
+/// time, s.
+inline OwnedPiece<double> load_under(const PullPiece& pull, double normal_force, double begin) {
+  OwnedPiece<double> found;
+  found.piece.begin = pull.begin - begin;
+  found.piece.polynomial[0] = 1 + pull.constant / normal_force;
+  if (pull.once != 0) found.add({pull.once / normal_force, 0, pull.rate, 0});
+  if (pull.twice != 0) found.add({pull.twice / normal_force, 0, 2 * pull.rate, 0});
+  return found;
+}
 
 /// Device whose pins are alike.
 struct Device {
@@ -44,10 +56,9 @@ struct PinState {
 };
 
 /// State of a pin with its spring at rest, switched off, at a time, s.
-inline PinState at_rest(const Device& device, double time) {
+inline PinState at_rest(double time) {
   PinState state;
   state.coil.since = time;
-  state.coil.pull = device.magnet.pull(0);
   return state;
 }
 

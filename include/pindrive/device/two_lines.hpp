@@ -43,7 +43,7 @@ inline double dragging_friction(const Device& device) {
 inline PinState steady_state(const Device& device) {
   const Drive<double>& drive = device.drive;
   const double along = device.axis.along({1, 0}), plate = dragging_friction(device);
-  PinState state = at_rest(device, 0);
+  PinState state = at_rest(0);
   state.position = std::copysign(drag_of_plate(drive, plate, 1), along);
   if (std::isfinite(drive.finger.stiffness)) {
     const double held = plate <= drive.finger.static_limit ? plate : drive.finger.kinetic;

@@ -16,9 +16,9 @@ namespace pindrive::detail {
 
 /// Load from a time on, of which a falling load stops at zero, as friction never pushes.
 template <class T>
-Held<T> falling_load(T now, T value, T rate) {
-  Held<T> load(now, {value, rate});
-  if (rate < 0) load.ends = now - value / rate;
+Held<T> load_from(T now, const Line<T>& given) {
+  Held<T> load(now, given);
+  if (given.rate < 0) load.ends = now - given.value / given.rate;
   return load;
 }
 
@@ -40,7 +40,7 @@ Inputs<T> without_end(Inputs<T> inputs) {
   constexpr T never = std::numeric_limits<T>::infinity();
   inputs.duration = never;
   for (Held<T>* load : {&inputs.plate_load.held(), &inputs.finger_load.held()})
-    if (!(load->ends < never)) *load = falling_load(load->since, load->line.value, load->line.rate);
+    if (!(load->ends < never) && load->piece == nullptr) *load = load_from(load->since, load->line);
   return inputs;
 }
 
@@ -56,7 +56,7 @@ bool is_zero(const T& x) {
 /// Difference between an input and its continuation; zero within rounding.
 template <class T>
 T change_to(const T& given, const Held<T>& held, T now) {
-  const Line<T> line = held.from(now);
+  const Curve<T> line = held.from(now);
   const T change = given - line.value;
   const T size = abs(held.line.value) + abs(line.rate * (now - held.since)) + abs(given);
   return abs(change) <= rounding<T> * size ? change - plain(change) : change;
@@ -65,7 +65,9 @@ T change_to(const T& given, const Held<T>& held, T now) {
 /// True if an input differs from its continuation in value or rate.
 template <class T>
 bool differs(const Curve<T>& given, const Held<T>& held, T now) {
-  return !is_zero(change_to(given.value, held, now)) || !is_zero(given.rate - held.from(now).rate);
+  const Curve<T> continued = held.from(now);
+  if (!given.straight() || !continued.straight()) return given.piece != continued.piece;
+  return !is_zero(change_to(given.value, held, now)) || !is_zero(given.rate - continued.rate);
 }
 
 /// Value after a change: the given value, or the value before where only the derivative changes.

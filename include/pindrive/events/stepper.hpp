@@ -7,7 +7,9 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <type_traits>
 
@@ -34,6 +36,10 @@ class Stepper {
         evolution_(drive_, inputs_, begin),
         now_(begin),
         before_(evolution_.pin.mode()) {
+    if (const InputPiece<T>* const piece = inputs_.plate_load.held().piece) {
+      load_by(OwnedPiece<T>(*piece));
+      evolution_.pin.plate.load = inputs_.plate_load.from(begin);
+    }
     select(false, Unattended{});
   }
   Stepper(const Drive<T>& drive, const State& state)
@@ -44,6 +50,7 @@ class Stepper {
         evolution_(drive_, inputs_, state.since),
         now_(state.now),
         horizon_(state.horizon) {
+    if (!state.load_piece.piece.straight()) load_by(state.load_piece);
     restore(state);
     select(false, Unattended{});
     event_ = state.event;
@@ -94,7 +101,8 @@ class Stepper {
     return !stopped;
   }
 
-  /// Sets the inputs from now on, values and rates; a falling load stops at zero.
+  /// Sets the inputs from now on, values and rates; a falling load stops at zero. The plate load may be a
+  /// piece of a function with at most two terms.
   ///
   /// A jump of the mouse velocity moves the housing in no time: the pin keeps its velocity relative
   /// to the housing, which no finite force could change. A jump of the transverse velocity acts
@@ -119,11 +127,13 @@ class Stepper {
         plain(detail::change_to(given.across_velocity.value, across, now_)) != 0;
     const T from = detail::is_zero(jump) ? given.plate_velocity.value : velocity.from(now_).value;
     if (turns) velocity = {now_, {from, given.plate_velocity.rate}};
-    if (loads) load = detail::falling_load(now_, given.plate_load.value, given.plate_load.rate);
+    if (loads && given.plate_load.straight())
+      load = detail::load_from(now_, given.plate_load.line());
+    else if (loads)
+      load_by(OwnedPiece<T>(*given.plate_load.piece));
     if (drifts) across = {now_, given.across_velocity.line()};
     if (pushes) force = {now_, given.force.line()};
-    if (touches)
-      touch = detail::falling_load(now_, given.finger_load.value, given.finger_load.rate);
+    if (touches) touch = detail::load_from(now_, given.finger_load.line());
     for (Held<T>* each : {&velocity, &across}) detail::end_at(*each, now_, horizon);
     const bool ends = restart();
     if (!detail::is_zero(jump)) {
@@ -178,6 +188,12 @@ class Stepper {
   }
 
  private:
+  /// Sets a plate load that is no line. The piece before keeps its place: the present segment refers to it.
+  void load_by(const OwnedPiece<T>& load) {
+    present_ = 1 - present_;
+    loads_[present_] = load;
+    inputs_.plate_load.held() = Held<T>(loads_[present_].piece);
+  }
   bool happens_after(const T& time) const { return event_.any() && evolution_.pin.time > time; }
 
   void restore(const State& state) {
@@ -230,6 +246,10 @@ class Stepper {
   State with_inputs(State state) const {
     state.mouse_velocity = inputs_.mouse_velocity.held();
     state.plate_load = inputs_.plate_load.held();
+    state.load_piece = {};
+    if (const InputPiece<T>* const piece = state.plate_load.piece)
+      state.load_piece = OwnedPiece<T>(*piece);
+    state.plate_load.piece = nullptr;
     state.across_velocity = inputs_.across_velocity.held();
     state.force = inputs_.force.held();
     state.finger_load = inputs_.finger_load.held();
@@ -291,6 +311,8 @@ class Stepper {
   }
 
   Drive<T> drive_;
+  std::array<OwnedPiece<T>, 2> loads_{};  ///< plate load that is no line, and the one before
+  std::size_t present_{0};
   T far_{far_for(drive_)};  ///< s
   Inputs<T> inputs_;
   detail::Evolution<T> evolution_;

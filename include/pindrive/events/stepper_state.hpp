@@ -28,7 +28,8 @@ struct StepperState {
   Held<T> mouse_velocity{}, plate_load{}, across_velocity{}, force{}, finger_load{};
   /// Time at which the inputs are set next at the latest, s.
   T horizon{std::numeric_limits<T>::infinity()};
-  Event event{};  ///< transitions of contacts and stops now
+  Event event{};               ///< transitions of contacts and stops now
+  OwnedPiece<T> load_piece{};  ///< plate load, if it is no line
 
   /// The same state on a clock that begins at a time, s.
   StepperState on_clock_from(const T& begin) const {
@@ -41,6 +42,7 @@ struct StepperState {
       input->since -= begin;
       input->ends -= begin;
     }
+    found.load_piece.piece.begin -= begin;
     return found;
   }
 };

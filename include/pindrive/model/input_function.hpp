@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include "pindrive/flow/flow.hpp"
 #include "pindrive/numbers/functions.hpp"
@@ -102,15 +103,27 @@ struct InputPiece {
         if (each > 0) rate = rate > 0 ? std::min(rate, each) : each;
     return rate;
   }
+  /// Time after τ over which the Taylor terms beyond an order stay within a part of the size at τ, s: for a term of
+  /// that size `longest` over its rate; a smaller one reaches farther.
+  Real reach(T tau, int order, Real longest) const {
+    using std::abs, std::exp, std::log;
+    Real whole = abs(plain(polynomial[0])), least = std::numeric_limits<Real>::infinity();
+    for (std::size_t j = 0; j < count; ++j) whole += amplitude(terms[j], tau);
+    for (std::size_t j = 0; j < count; ++j) {
+      const Real part = amplitude(terms[j], tau), rate = rate_of(terms[j]);
+      if (part > 0 && rate > 0)
+        least = std::min(least, longest / rate * exp(log(whole / part) / (order + 1)));
+    }
+    return least;
+  }
   /// Bound of the Taylor terms beyond an order >= `degree` at τ, over a step.
   Real beyond(T tau, Real step, int order) const {
-    using std::abs, std::exp;
+    using std::exp;
     Real sum{0};
     for (std::size_t j = 0; j < count; ++j) {
       const InputTerm<T>& term = terms[j];
       const Real s = rate_of(term) * step;
-      Real size = (abs(plain(term.cosine)) + abs(plain(term.sine))) *
-                  exp(s - plain(term.decay) * plain(tau));
+      Real size = amplitude(term, tau) * exp(s);
       for (int n = 1; n <= order + 1; ++n) size *= s / n;
       sum += size;
     }
@@ -118,8 +131,39 @@ struct InputPiece {
   }
 
  private:
+  /// Bound of a term from τ on.
+  static Real amplitude(const InputTerm<T>& term, T tau) {
+    using std::abs, std::exp;
+    return (abs(plain(term.cosine)) + abs(plain(term.sine))) * exp(-plain(term.decay * tau));
+  }
   static Real rate_of(const InputTerm<T>& term) {
     return std::hypot(plain(term.decay), plain(term.frequency));
+  }
+};
+
+/// Piece with at most two terms, which it owns.
+template <class T>
+struct OwnedPiece {
+  InputPiece<T> piece{};
+  std::array<InputTerm<T>, 2> terms{};
+
+  OwnedPiece() = default;
+  explicit OwnedPiece(const InputPiece<T>& of) : piece(of) {
+    std::copy_n(of.terms, of.count, terms.data());
+    piece.terms = terms.data();
+  }
+  OwnedPiece(const OwnedPiece& other) : OwnedPiece(other.piece) {}
+  OwnedPiece& operator=(const OwnedPiece& other) {
+    piece = other.piece;
+    terms = other.terms;
+    piece.terms = terms.data();
+    return *this;
+  }
+  ~OwnedPiece() = default;
+
+  void add(const InputTerm<T>& term) {
+    terms[piece.count++] = term;
+    piece.terms = terms.data();
   }
 };
 
@@ -141,6 +185,13 @@ struct Curve {
     value = c[0];
     rate = c[1];
     if (!of.straight()) piece = &of;
+  }
+
+  /// Part of a piece at a time that is so long after its begin; its terms may have decayed.
+  [[gnu::noinline]] static Curve part(const InputPiece<T>& of, T after, bool decayed) {
+    if (of.count == 0 || !decayed) return {of, after};
+    const Curve rest(of.without_terms(), after);
+    return rest.straight() ? rest : Curve(of, after);
   }
 
   bool straight() const { return piece == nullptr; }

@@ -179,23 +179,32 @@ struct Drive {
   Stops<T> stops{};
 };
 
-/// Input that is linear from the time at which it was set; constant at zero rate.
+/// Input that is linear from the time at which it was set, constant at zero rate, or a piece of a function.
 template <class T>
 struct Held {
   T since{0};      ///< s
   Line<T> line{};  ///< value and rate from `since` on
   T ends{std::numeric_limits<
-      T>::infinity()};  ///< time at which the input reaches zero and stays there, s
+      T>::infinity()};                  ///< time at which the input reaches zero and stays there, s
+  const InputPiece<T>* piece{nullptr};  ///< in place of the line: begins at `since`
 
   Held() = default;
   constexpr Held(T constant) noexcept : line{constant, T(0)} {}  // NOLINT: a number is an input
   Held(T begin, const Line<T>& from_there) noexcept : since(begin), line(from_there) {}
+  /// The piece must outlive the input.
+  explicit Held(const InputPiece<T>& of) : since(of.begin), line{of.at(T(0)), T(0)}, piece(&of) {}
 
-  Line<T> from(T t) const {
+  Curve<T> from(T t) const {
+    if (piece != nullptr) return Curve<T>::part(*piece, t - since, t >= decayed());
     if (t >= ends) return {};
     return {line.at(t - since), line.rate};
   }
-  T next_breakpoint(T t) const { return t < ends ? ends : std::numeric_limits<T>::infinity(); }
+  T next_breakpoint(T t) const {
+    const T next = piece != nullptr ? decayed() : ends;
+    return t < next ? next : std::numeric_limits<T>::infinity();
+  }
+  /// Time from which the terms of its piece have decayed, s.
+  T decayed() const { return since + piece->decayed(); }
 };
 
 /// Input over time: held, or linear between its breakpoints and constant outside, or a function of pieces.
@@ -255,9 +264,7 @@ class Profile {
     if (i == 0) return {first(), T(0)};
     const InputPiece<T>& piece = pieces_[i - 1];
     const T since = t - piece.begin, after = since > detail::rounding<T> * t ? since : T(0);
-    if (piece.count == 0 || t < piece.begin + piece.decayed()) return {piece, after};
-    const Curve<T> rest(piece.without_terms(), after);
-    return rest.straight() ? rest : Curve<T>(piece, after);
+    return Curve<T>::part(piece, after, t >= piece.begin + piece.decayed());
   }
   std::size_t breakpoints_until(T t) const {
     if (pieces_ != nullptr) {
@@ -406,9 +413,9 @@ inline bool stops(Transition transition) {
   return transition == Transition::stick || transition == Transition::cross;
 }
 
-/// Fast transient that a series omits (creep.hpp, slow_slider.hpp). `motion`: the whole motion of a
+/// Fast transient that a series omits (creep.hpp, slow_slider.hpp, overdamped.hpp). `motion`: the whole motion of a
 /// pin in equilibrium by the rest criterion.
-enum class EliminatedPart : signed char { none, of_friction, of_slider, motion };
+enum class EliminatedPart : signed char { none, of_friction, of_slider, of_inertia, motion };
 
 /// One mode from begin to end (infinite if it never ends), with its friction.
 template <class T>

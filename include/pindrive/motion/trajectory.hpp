@@ -164,6 +164,8 @@ class BySeries {
     const SeriesEquation<T> e = mode.equation();
     if (segment.eliminated == EliminatedPart::of_slider)
       if (const auto slow = slow_slider(e, start, span, true)) return *slow;
+    if (segment.eliminated == EliminatedPart::of_inertia)
+      if (const auto slow = overdamped(e, start, span, true)) return *slow;
     if (segment.eliminated == EliminatedPart::of_friction)
       for (const bool within_step : {true, false})
         if (const auto slow = creep(e, start, span, within_step)) return *slow;

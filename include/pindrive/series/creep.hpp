@@ -17,6 +17,7 @@
 #include <limits>
 
 #include "pindrive/numbers/limits.hpp"
+#include "pindrive/series/overdamped.hpp"
 #include "pindrive/series/series.hpp"
 #include "pindrive/series/slow_slider.hpp"
 
@@ -39,7 +40,7 @@ class CreepFlow : public SeriesStep<T> {
     if (e.across.value < 0 || (e.across.value == 0 && e.across.rate < 0))
       e.across = {-e.across.value, -e.across.rate};  // symmetry: w >= 0
     acceleration_[0] = e.plate_velocity.rate;        // initial guess: acceleration of the plate
-    if (e.held || e.side != 0 || !e.load.straight() || !e.finger_load.straight()) return;
+    if (e.held || e.side != 0 || !e.finger_load.straight()) return;
     if (!(e.load.value * e.plate_force > 0) || !balance(e, start)) return;
     Real farthest = std::min(plain(limit), e.input_reach());
     if (e.across.rate < 0)
@@ -157,7 +158,7 @@ class CreepFlow : public SeriesStep<T> {
   void expand(const SeriesEquation<T>& e, const SeriesState<T>& start, Real step, int order) {
     auto &x = position.c, &v = velocity.c, &y = skin.c;
     auto &t = inner(0).c, &s = inner(1).c, &d = inner(2).c;
-    const T w = e.across.value, w_rate = e.across.rate * step, load_rate = e.load.rate * step;
+    const T w = e.across.value, w_rate = e.across.rate * step;
     const bool falls = e.plate_falling.present(), finger_falls = e.finger_falling.present();
     // Falling friction at the plate, along the axis, and at the finger, whose speed is given.
     const auto at_plate = [&](int n) {
@@ -167,7 +168,7 @@ class CreepFlow : public SeriesStep<T> {
     };
     x[0] = start.x;
     y[0] = start.skin;
-    T before{0};  // F d + S u of the preceding order
+    std::array<T, N + 1> friction;  // F d + S u
     for (int n = 0;; ++n) {
       // Terms without t of this order; then t and its contribution.
       T square{0}, product{0};
@@ -179,7 +180,7 @@ class CreepFlow : public SeriesStep<T> {
       s[n] = n == 0 ? sqrt(1 + t_ * t_) : square / (2 * s[0]);
       d[n] = n == 0 ? t_ / s[0] : -(product + s[n] * d[0]) / s[0];
       T u = w * t[n] + (n > 0 ? w_rate * t[n - 1] : T(0));
-      T friction = e.plate_force * d[n] + e.plate_slope * u;
+      friction[n] = e.plate_force * d[n] + e.plate_slope * u;
       const T v_p = this->plate_velocity_[n];
       T others = e.stiffness * x[n] + e.skin_factor.value * y[n] - this->given_force(e, n, step) +
                  e.mass * acceleration_[n];
@@ -197,20 +198,19 @@ class CreepFlow : public SeriesStep<T> {
           others += this->falling_at_finger(e, n);
           damping += e.finger_load.value * e.finger_falling.slope(T(e.finger_side) * v[0]);
         }
-        const T missing = e.load.value * (friction + fallen) + load_rate * before +
-                          e.damping * (v_p + u) + others;
+        const T missing =
+            this->load_.times(friction, n) + e.load.value * fallen + e.damping * (v_p + u) + others;
         t[n] = -missing / (e.load.value * slope + damping * w);
         s[n] += d[0] * t[n];
         d[n] += free * t[n];
         u += w * t[n];
-        friction += (e.plate_force * free + e.plate_slope * w) * t[n];
+        friction[n] += (e.plate_force * free + e.plate_slope * w) * t[n];
       }
-      if (falls) friction += at_plate(n);
+      if (falls) friction[n] += at_plate(n);
       v[n] = v_p + u;
       if (finger_falls) this->falling_at_finger(e, n);
       speed.c[n] = w * s[n] + (n > 0 ? w_rate * s[n - 1] : T(0));
-      plate_force.c[n] = -(e.load.value * friction + load_rate * before);
-      before = friction;
+      plate_force.c[n] = -this->load_.times(friction, n);
       x[n + 1] = T(step) / T(n + 1) * v[n];
       e.follow(y, v, n, T(step));
       if (n == order) break;
@@ -247,30 +247,29 @@ class CreepFlow : public SeriesStep<T> {
     const Real f = plain(e.skin_factor.value), f_change = plain(e.skin_factor.rate) * h;
     const Real K = plain(e.skin_stiffness);
     const Real F = plain(e.plate_force), S = plain(e.plate_slope);
-    const Real load = plain(e.load.value), load_change = plain(e.load.rate) * h;
     const Real w = plain(e.across.value), w_end = w + plain(e.across.rate) * h;
-    const Real most_load = max(load, load + load_change), most_w = max(w, w_end);
-    const Real least_load = std::min(load, load + load_change);
+    const auto& load = this->load_;
+    const Real most_load = load.most(), least_load = load.least(), most_w = max(w, w_end);
     const auto last = [](const Polynomial<T>& p, int n) { return abs(plain(p.c[n])); };
     const Sums t = sums_of(inner(0).c), s = sums_of(inner(1).c), d = sums_of(inner(2).c);
     const Sums v = sums_of(velocity.c);
     const Real root = beyond(s, s) + beyond(t, t), direction = beyond(s, d) + d[0] * root;
-    missed +=
-        max(abs(b), abs(b + b_change)) * last(velocity, N) + abs(b_change) * last(velocity, N - 1) +
-        k * (last(position, N) + last(position, N + 1)) +
-        max(abs(f), abs(f + f_change)) * last(skin, N) + abs(f_change) * last(skin, N - 1) +
-        this->missed_inputs(e) +
-        most_load * (abs(S) * (v[N] + this->plate_velocity_.missed()) + F * (d[N] + direction)) +
-        abs(load_change) * (abs(S) * v[N - 1] + F * (d[N - 1] - d[N]));
+    missed += max(abs(b), abs(b + b_change)) * last(velocity, N) +
+              abs(b_change) * last(velocity, N - 1) +
+              k * (last(position, N) + last(position, N + 1)) +
+              max(abs(f), abs(f + f_change)) * last(skin, N) + abs(f_change) * last(skin, N - 1) +
+              this->missed_inputs(e) +
+              abs(S) * (load.beyond(v) + most_load * this->plate_velocity_.missed()) +
+              F * (load.beyond(d) + most_load * direction);
     Real falls{0};  // slopes of falling friction, N s/m
     if (e.plate_falling.present()) {
       const auto& phi = falling_plate.friction().c;
-      const auto& along = inner(2).c;
+      std::array<T, N + 2> directed{};
+      for (int n = 0; n <= N; ++n) directed[n] = order_of_product(phi, inner(2).c, n);
       const Sums r = sums_of(speed.c), parts = sums_of(phi);
       const Real error = falling_plate.error(e.plate_falling, r, most_w * root);
-      missed += most_load * (abs(plain(order_of_product(phi, along, N))) + beyond(parts, d) +
-                             d[0] * error + parts[0] * direction) +
-                abs(load_change) * abs(plain(order_of_product(phi, along, N - 1)));
+      missed += load.beyond(sums_of(directed)) +
+                most_load * (beyond(parts, d) + d[0] * error + parts[0] * direction);
       falls += most_load * falling_plate.steepest(e.plate_falling, r);
     }
     if (e.finger_falling.present()) {
@@ -286,7 +285,7 @@ class CreepFlow : public SeriesStep<T> {
     const Real steep = sqrt(1 + t[0] * t[0]);
     const Real gamma = std::min(b, b + b_change) +
                        least_load * F / (most_w * steep * steep * steep) +
-                       std::min(S * load, S * (load + load_change)) - falls;
+                       std::min(S * least_load, S * most_load) - falls;
     const Real grown = exp(max(Real(0), f < 0 ? -decay / f : Real(0)) * h) * h;
     const Real left = gamma - k * h - K * grown;
     if (!(left > 0)) return false;
@@ -334,11 +333,12 @@ std::optional<CreepFlow<T>> creep(const SeriesEquation<T>& e, const SeriesState<
   return flow;
 }
 
-/// Step from a state: the Taylor series, or the slow motion where the fast transient is over, in
-/// creep or on a slider of stiff skin.
+/// Step from a state: the Taylor series, or the slow motion where the fast transient is over: in
+/// creep, on a slider of stiff skin, or of an overdamped pin.
 template <class T>
 SeriesStep<T> series_step(const SeriesEquation<T>& e, const SeriesState<T>& start, T limit) {
   if (const auto slow = slow_slider(e, start, limit)) return *slow;
+  if (const auto slow = overdamped(e, start, limit)) return *slow;
   if (e.held || e.side != 0) return SeriesFlow<T>(e, start, limit);
   SeriesStep<T> step;
   const bool slides = plain(start.v) != plain(e.plate_velocity.value) || plain(e.across.value) != 0;

@@ -75,8 +75,10 @@ class SeriesFlow : public SeriesStep<T> {
   /// Estimate of the fastest rate of the equation without transverse velocity, 1/s.
   static Real linear_rate(const SeriesEquation<T>& e) {
     const Real m = plain(e.mass), f = plain(e.skin_factor.value);
-    return (abs(plain(e.damping)) + abs(plain(e.load.value) * plain(e.plate_slope))) / m +
-           (f != 0 ? abs(plain(e.skin_decay) / f) : Real(0)) +
+    // Damping delays no pin that is held.
+    const Real damping =
+        e.held ? Real(0) : abs(plain(e.damping)) + abs(plain(e.load.value) * plain(e.plate_slope));
+    return damping / m + (f != 0 ? abs(plain(e.skin_decay) / f) : Real(0)) +
            sqrt((plain(e.stiffness) + plain(e.skin_stiffness)) / m);
   }
   /// Part of the rate by the falling parts of friction, 1/s.

@@ -73,11 +73,11 @@ struct SeriesEquation {
 
   /// Time over which the terms of the inputs beyond the last order stay within rounding, s.
   Real<T> input_reach() const {
-    Real<T> fastest{0};
+    Real<T> least = std::numeric_limits<Real<T>>::infinity();
     for (const Curve<T>* input : {&pushes, &plate_velocity, &load, &finger_load, &surface})
-      if (!input->straight()) fastest = std::max(fastest, input->piece->fastest());
-    return fastest > 0 ? Real<T>(longest_input) / fastest
-                       : std::numeric_limits<Real<T>>::infinity();
+      if (!input->straight())
+        least = std::min(least, input->piece->reach(input->since, series_order, longest_input));
+    return least;
   }
 
   /// Computes order n + 1 of y from the orders of y and x' up to n or, if f begins at 0, order n;

@@ -54,6 +54,11 @@ class InputSeries {
     const Real a = plain(c_[0]), b = plain(c_[1]);
     return degree_ == 1 ? std::max(abs(a), abs(a + b)) : abs(a) + change();
   }
+  /// Bound from below over the step.
+  Real least() const {
+    const Real a = plain(c_[0]);
+    return degree_ == 1 ? std::min(a, a + plain(c_[1])) : a - change();
+  }
   /// Bound of the change over the step.
   Real change() const {
     using std::abs;

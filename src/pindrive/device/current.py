@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from pindrive import _core
 from pindrive.device.closing import Closing
 from pindrive.device.heating import Heat
+from pindrive.motion.function import Function, function_of
 from pindrive.quantities import budgets
 
 Numbers = tuple[list[float], list[tuple[float, float]]]
@@ -34,8 +35,6 @@ class CoilState:
     """True if on since then."""
     flux: float = 0.0
     """The flux linkage then, a part of that of the full current."""
-    pull: float | None = None
-    """The pull then, as its rows have it, N; None: exactly that of the flux."""
     warming: float = 0.0
     """Temperature of the coil above 20 °C at that time, K."""
     level: float = 1.0
@@ -43,18 +42,16 @@ class CoilState:
     commanded: float = 0.0
     """Time of the command to switch on, s, if commanded."""
 
-    def numbers(
-        self, pull: float, command: bool
-    ) -> tuple[float, float, float, float, float, float, bool, bool]:
-        """Return the state as the core has it, with its pull (N) and the command in force."""
+    def numbers(self, command: bool) -> tuple[float, float, float, float, float, bool, bool]:
+        """Return the state as the core has it, with the command in force."""
         flux, warming, level, commanded = self.flux, self.warming, self.level, self.commanded
-        return self.since, flux, pull, warming, level, commanded, self.on, command
+        return self.since, flux, warming, level, commanded, self.on, command
 
     @classmethod
     def of(cls, numbers: tuple[Any, ...]) -> CoilState:
         """Return a state of the core."""
-        since, flux, pull, warming, level, commanded, on, _ = numbers
-        return cls(since, on, flux, pull, warming, level, commanded)
+        since, flux, warming, level, commanded, on, _ = numbers
+        return cls(since, on, flux, warming, level, commanded)
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,23 +81,24 @@ class Current:
     resistances: NDArray[np.float64]
     """The resistance of the winding in each piece over that at 20 °C."""
     heat: Heat | None
-    rows: tuple[NDArray[np.float64], NDArray[np.float64]]
-    """Times (s) and pulls (N) between which the pull is linear."""
+    pull: Function
+    """Pull over time, N."""
     state: CoilState
     """State at the last change."""
 
     @classmethod
     def of(cls, course: tuple[Any, ...], heat: Heat | None) -> Current:
         """Return the current of a course of the core."""
-        pieces, times, pulls, end = course
+        pieces, pulls, end = course
         on = pieces.pop("on").view(np.bool_)
-        return cls(**pieces, on=on, heat=heat, rows=(times, pulls), state=CoilState.of(end))
+        pull = function_of(pulls, "N")
+        return cls(**pieces, on=on, heat=heat, pull=pull, state=CoilState.of(end))
 
     @classmethod
     def under(
         cls,
         magnet: Numbers,
-        state: tuple[float, float, float, float, float, float, bool, bool],
+        state: tuple[float, float, float, float, float, bool, bool],
         switchings: NDArray[np.float64],
         begin: float,
         end: float,
@@ -112,19 +110,16 @@ class Current:
             magnet: The electromagnet.
             state: State of the coil, with the command in force.
             switchings: Times, s, shape (n,), increasing.
-            begin: First time of the rows of the pull, s.
+            begin: Begin of the pull, s.
             end: Last time, s; later switchings are ignored.
             heat: Heating of the coil, if its temperature is simulated.
 
         Raises:
-            ValueError: The number of pieces or of rows exceeds its budget.
+            ValueError: The number of pieces exceeds its budget.
         """
-        most = int(max(budgets.SWITCHINGS.most, budgets.INPUT_ROWS.most))
+        most = int(budgets.SWITCHINGS.most) + 1
         found = cls.of(_core.coil_course(magnet, state, switchings, begin, end, most), heat)
         budgets.SWITCHINGS.check(len(found.begins) - 1, "one coil")
-        budgets.INPUT_ROWS.check(
-            len(found.rows[0]), f"{len(found.begins) - 1} switchings of one coil"
-        )
         return found
 
     @overload

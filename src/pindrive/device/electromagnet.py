@@ -3,9 +3,8 @@
 The flux linkage c, a part of that of the full current, rises and falls exponentially with L/R; it
 is the current too unless the gap opens (`closing`). The pull is
 P_r + (P_h − P_r) min((c/σ)², 1): it grows with the square of the flux until the iron saturates,
-and a residual pull stays. In time it is smooth piece by piece, so that rows whose distance h obeys
-h²/8 max|P''| <= deviation make a piecewise-linear pull that is never further from it. The core
-follows the coil and sets the rows (include/pindrive/device/electromagnet.hpp).
+and a residual pull stays. Over time it is a constant and two exponentials, piece by piece. The core
+follows the coil (include/pindrive/device/electromagnet.hpp).
 """
 
 from __future__ import annotations
@@ -48,8 +47,6 @@ class Electromagnet:
         fall_constant: Time constant of the falling current, s, greater than 0.
         saturation: σ, the part of the full current at which the pull stops growing, in (0, 1].
         residual: P_r, pull that remains without current, N, at least 0 and less than `hold_force`.
-        deviation: Largest deviation of the piecewise-linear pull, as a part of `hold_force`, in (0,
-            0.1].
         pwm_frequency: Frequency of the pulses while the magnet is on, Hz, from 1 to 20000, given
             with `pwm_duty`; None: continuous current.
         pwm_duty: The part of each period for which it is on then, above 0 and at most 1.
@@ -67,7 +64,6 @@ class Electromagnet:
     fall_constant: Number = default("fall_constant")
     saturation: Number = default("saturation")
     residual: Number = default("residual")
-    deviation: Number = default("deviation")
     pwm_frequency: OptionalNumber = default("pwm_frequency")
     pwm_duty: OptionalNumber = default("pwm_duty")
     outer_diameter: OptionalNumber = default("outer_diameter")
@@ -93,7 +89,6 @@ class Electromagnet:
         fall_time: float | str = default("fall_time"),
         saturation: float | str = default("saturation"),
         residual: float | str = default("residual"),
-        deviation: float | str = default("deviation"),
         pwm_frequency: float | str | None = default("pwm_frequency"),
         pwm_duty: float | str | None = default("pwm_duty"),
         outer_diameter: float | str | None = default("outer_diameter"),
@@ -107,7 +102,6 @@ class Electromagnet:
             fall_time: Time from switching off to 10 % of the pull beyond the residual pull, s.
             saturation: A part of the full current.
             residual: N.
-            deviation: A part of `hold_force`.
             pwm_frequency: Hz.
             pwm_duty: A part of each period.
             outer_diameter: m.
@@ -124,7 +118,6 @@ class Electromagnet:
             fall_constant=-fall / log(sigma * sqrt(0.1)),
             saturation=sigma,
             residual=residual,
-            deviation=deviation,
             pwm_frequency=pwm_frequency,
             pwm_duty=pwm_duty,
             outer_diameter=outer_diameter,
@@ -137,7 +130,6 @@ class Electromagnet:
         coil: Coil,
         *,
         residual: float | str = default("residual"),
-        deviation: float | str = default("deviation"),
         pwm_frequency: float | str | None = default("pwm_frequency"),
         pwm_duty: float | str | None = default("pwm_duty"),
         outer_diameter: float | str | None = default("outer_diameter"),
@@ -149,7 +141,6 @@ class Electromagnet:
         Args:
             coil: Construction of the coil.
             residual: N.
-            deviation: A part of the full pull.
             pwm_frequency: Hz.
             pwm_duty: A part of each period.
             outer_diameter: m.
@@ -168,7 +159,6 @@ class Electromagnet:
             fall_constant=coil.inductance / (coil.resistance + coil.release_resistance),
             saturation=coil.saturation,
             residual=residual,
-            deviation=deviation,
             pwm_frequency=pwm_frequency,
             pwm_duty=pwm_duty,
             outer_diameter=outer_diameter,
@@ -240,7 +230,7 @@ class Electromagnet:
         """The flux linkage that it keeps while it is on: with pulses the least of each period."""
         if self.steps is not None:
             switchings = np.zeros(1)
-            off = CoilState().numbers(self.residual, False)
+            off = CoilState().numbers(False)
             return float(Current.under(self._cold, off, switchings, 0.0, inf).targets[-1])
         return 1.0 if self.pulses is None else self._swing(self.pulses)[0]
 
@@ -257,9 +247,9 @@ class Electromagnet:
         if self.pulses is None:
             return 1.0
         fall, period = self.pulses.duty / self.pulses.frequency, 1.0 / self.pulses.frequency
-        low = CoilState(0.0, True, self._swing(self.pulses)[0]).numbers(0.0, True)
+        low = CoilState(0.0, True, self._swing(self.pulses)[0]).numbers(True)
         numbers, _ = self._cold
-        steady = [*numbers[:8], 0.0, 1.0, *numbers[10:]]  # no pulses: one of them alone
+        steady = [*numbers[:7], 0.0, 1.0, *numbers[9:]]  # no pulses: one of them alone
         over = Current.under((steady, []), low, np.array([fall]), 0.0, period)
         return over.mean_square(period)
 
@@ -278,7 +268,6 @@ class Electromagnet:
             self.saturation,
             self.rise_constant,
             self.fall_constant,
-            self.deviation,
             self.closing.flux,
             self.closing.inductance,
             0.0 if pulses is None else pulses.frequency,
@@ -304,25 +293,20 @@ class Electromagnet:
         begin: float | None = None,
         end: float = inf,
     ) -> Current:
-        """The current and the rows of the pull under commands after the coil's last change.
-
-        The pull is linear between its rows, and nowhere further from the exact one than `deviation`
-        of the hold force. No row depends on a later command: a course that is cut keeps its rows.
+        """The current and the pull under commands after the coil's last change, exactly.
 
         Args:
             commands: Commands of the control block.
             before: The last change.
-            begin: Time from which the commands hold, s; the rows begin with the one before it.
-                None: the time of the last change.
+            begin: Time from which the commands hold, s; None: the time of the last change.
             end: Until when, s; later commands are ignored. Finite with pulses or a temperature.
 
         Raises:
-            ValueError: There are more switchings or rows than the budgets allow.
+            ValueError: There are more switchings than the budgets allow.
         """
         if end == inf and (self.pulses or (self.coil and self.coil.heat)):
             raise ValueError(refusal("end", "finite for pulses or a coil that warms", "inf s"))
         begin = before.since if begin is None else begin
-        pull = self.pull(before.flux) if before.pull is None else before.pull
-        state = before.numbers(pull, commands.at_first)
+        state = before.numbers(commands.at_first)
         heat = None if self.coil is None else self.coil.heat
         return Current.under(self.core_numbers, state, commands.times, begin, end, heat)

@@ -20,6 +20,7 @@ from pindrive.device.page import FINER, Scene
 from pindrive.device.touch import finger_load, held_stretch
 from pindrive.device.trajectory import check_vibration
 from pindrive.motion.drive import Drive
+from pindrive.motion.function import Function, function_of
 from pindrive.motion.motion import Motion
 from pindrive.motion.profile import Profile
 from pindrive.motion.release import (
@@ -89,18 +90,16 @@ class ScanInputs:
 
     def core(self) -> _core.Scan:
         """Return the pins at the begin, as the core has them."""
-        magnet = self.device.magnet
         begins = []
         for number, state in enumerate(self.states):
             _check_contacts(number, state)
             coil = CoilState(self.path.begin) if state.coil is None else state.coil
-            pull = magnet.pull(coil.flux) if coil.pull is None else coil.pull
             begins.append(
                 (
                     state.position,
                     nan if state.velocity is None else state.velocity,
                     nan if state.skin_stretch is None else state.skin_stretch,
-                    coil.numbers(pull, state.decision.switched),
+                    coil.numbers(state.decision.switched),
                     state.decision.on,
                     [*state.decision.pending],
                     [*(state.contacts or ())],
@@ -180,12 +179,12 @@ class PinScan:
         stretch = state.skin_stretch
         if stretch is not None:
             stretch = held_stretch(stretch, self.drive.finger, pressed)
-        times, load = self.core.load(self.number)
+        load = function_of(self.core.load(self.number), "1")
         return Release(
             given.path.plate_velocity(axis),
             state.position,
             state.velocity,
-            Profile(times.tolist(), load.tolist()) if len(load) > 1 else float(load[0]),
+            load if load.changes else load(0.0),
             stretch,
             across_velocity=given.path.across_velocity(axis),
             finger_load=pressed,
@@ -226,9 +225,9 @@ class PinScan:
         return times - self.begin
 
     @property
-    def load(self) -> float | Profile:
+    def load(self) -> float | Function:
         """Factor on the plate's friction, over the time since `begin`."""
-        return cast("float | Profile", self.release.plate_load)
+        return cast("float | Function", self.release.plate_load)
 
     @property
     def finger_load(self) -> float | Profile:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import cos, exp, inf, isfinite, sin, tau
 from typing import TYPE_CHECKING, Any, Final, NamedTuple, overload
@@ -33,7 +33,7 @@ class InputTerm(NamedTuple):
     Attributes:
         cosine: Amplitude of the cosine, SI.
         sine: Amplitude of the sine, SI.
-        decay: δ, 1/s, from 0 to 1e7; 0: the term lasts.
+        decay: δ, 1/s, from 0 to 1e9; 0: the term lasts.
         frequency: Ω, rad/s, from 0 to 1e7.
     """
 
@@ -283,6 +283,15 @@ def of_parameters(kind: str, given: Mapping[str, float | str]) -> Function:
     return function
 
 
+def function_of(pieces: Iterable[Any], unit: str) -> Function:
+    """Return the function of pieces as the core has them: begin, polynomial, terms."""
+    made = (
+        InputPiece(begin, tuple(polynomial), tuple(InputTerm(*term) for term in terms))
+        for begin, polynomial, terms in pieces
+    )
+    return Function(tuple(made), unit)
+
+
 def as_function(given: float | str | Profile | Function, unit: str) -> Function:
     """Return a number, a profile or a function as a function."""
     if isinstance(given, Function):
@@ -434,6 +443,9 @@ def _sum(begin: float, one: InputPiece, other: InputPiece) -> InputPiece:
     )
 
 
+_LIMITS: Final = {"decay": (0.0, 1e9), "frequency": (0.0, 1e7)}
+
+
 def _check(pieces: tuple[InputPiece, ...]) -> None:
     """Refuse pieces that the core cannot follow."""
     if not pieces:
@@ -453,7 +465,7 @@ def _check(pieces: tuple[InputPiece, ...]) -> None:
                 raise ValueError(refusal(f"pieces[{i}].polynomial[{n}]", "finite", repr(p)))
         for j, term in enumerate(terms):
             for name, value in term._asdict().items():
-                lower, upper = (0.0, 1e7) if name in ("decay", "frequency") else (-1e12, 1e12)
+                lower, upper = _LIMITS.get(name, (-1e12, 1e12))
                 if not lower <= value <= upper:
                     label, required = (
                         f"pieces[{i}].terms[{j}].{name}",

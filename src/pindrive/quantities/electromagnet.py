@@ -94,14 +94,6 @@ MAGNET: Final = inputs(
         example=0.0124,
         remark="diameter and height bound the mass",
     ),
-    Quantity(
-        "deviation",
-        "ε_P",
-        "1",
-        "largest deviation of the piecewise-linear pull from the exact pull, over hold_force",
-        1e-4,
-        "a thousandth of the scatter of friction coefficients in handbooks",
-    ),
 )
 """The electromagnet by what it does."""
 
