@@ -14,7 +14,7 @@ import pytest
 
 from oracle.coil_course import ReferenceMagnet, decide
 from oracle.scan_evaluation import evaluated
-from pindrive import Function, Contact, Drive, Profile, simulate
+from pindrive import Contact, Drive, Function, Profile, simulate
 from pindrive.device import CoilState, Criteria, Device, HandPath, Scan, Scene, scan
 from pindrive.motion.results import Event
 from random_scans import RandomScan, random_magnet

@@ -97,7 +97,7 @@ def test_function_is_equal_to_its_copy() -> None:
         (lambda: pd.Function((InputPiece(0.0, (1.0,) * 7),)), "at most 6 coefficients, got 7"),
         (
             lambda: pd.Function((InputPiece(terms=(InputTerm(1.0, 0.0, -1.0),)),)),
-            r"pieces\[0\].terms\[0\].decay must be from 0 to 1e\+07, got -1.0",
+            r"pieces\[0\].terms\[0\].decay must be from 0 to 1e\+09, got -1.0",
         ),
         (lambda: pd.harmonic(0, 1, 3).then(0.0, 1.0), "time must be after the begin"),
         (

@@ -478,6 +478,26 @@ class Motion(lazy.NotebookHtml):
 
         return Sensitivity(self, parameters)
 
+    def multipliers(self) -> tuple[complex, ...]:
+        """Floquet multipliers of a steady motion, the largest first.
+
+        A small deviation from the motion changes by these factors in one period: the motion is
+        stable where all are within the unit circle. They are the eigenvalues of the exact
+        derivative of position and velocity after one period by those at its begin, through every
+        event; 0 stands for a deviation that a contact in stick ends. Under constant inputs the
+        factor 1 of a shift in time is left out.
+
+        Returns:
+            Two multipliers under inputs that repeat, one under constant inputs.
+
+        Raises:
+            ValueError: The motion is not steady, a contact holds the pin throughout, or the
+                derivative does not exist, as where the motion grazes an event.
+        """
+        from pindrive.motion.stability import multipliers
+
+        return multipliers(self)
+
     def numbers(self) -> dict[str, float]:
         """Every number of the transient, its ending and its energy, SI, by the table's names."""
         found: dict[str, float] = self._numbers | {"transient.settled": self.transient.settled}
