@@ -115,6 +115,7 @@ def as_input(drive: Drive, release: Release) -> dict[str, Any]:
         "curves": {name: curve for name, curve in curves.items() if curve},
         "release": {"displacement": release.displacement} | velocity,
         "profiles": {name: rows(getattr(release, name)) for name in INPUTS},
+        "functions": {},
     }
 
 

@@ -43,6 +43,8 @@ COARSER = {
         ("count = 13", "count = 3"),
     ),
     "examples/oblique-hand-study.toml": (("count = 46", "count = 7"),),
+    "examples/belt-study.toml": (("count = 60", "count = 7"),),
+    "examples/forced-study.toml": (("count = 120", "count = 7"),),
 }
 """Examples of which the pages have a copy with fewer points, to be quick."""
 WARNED = {"docs/studies.md": "the plate's friction coefficient"}

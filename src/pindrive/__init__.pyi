@@ -30,6 +30,7 @@ from .motion.simulate import simulate as simulate
 from .optimisation.designing import optimise as optimise
 from .quantities.status import Status as Status
 from .quantities.table import ImplausibleValueWarning as ImplausibleValueWarning
+from .study.bifurcation import bifurcation as bifurcation
 from .study.local_sensitivity import local_sensitivity as local_sensitivity
 from .study.robustness import robustness as robustness
 from .study.sensitivity import sobol as sobol

@@ -15,8 +15,9 @@ from pindrive.evaluation import largest_speeds
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
 
-WRITE = ("simulate", "scan", "speed", "robustness", "sensitivity", "sweep", "design", "fit", "fmu")
-DRAW = ("simulate", "scan", "speed", "robustness", "sensitivity", "map", "design", "fit")
+BOTH = ("simulate", "scan", "speed", "robustness", "sensitivity", "bifurcation", "design", "fit")
+WRITE = (*BOTH, "sweep", "fmu")
+DRAW = (*BOTH, "map")
 STUDY = EXAMPLES / "tactile-mouse-study.toml"
 READER = EXAMPLES / "tactile-reader.toml"
 

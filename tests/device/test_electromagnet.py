@@ -92,7 +92,7 @@ def test_the_pull_is_that_of_the_flux(
     times = np.cumsum(lasts)
     end = float(times[-1])
     current = magnet.current(Commands(times[:-1]), CoilState(0.0, False, start), end=end)
-    begins = [piece.begin for piece in current.pull.pieces]
+    begins = [begin for begin, *_ in current.pulls]
     assert begins[0] == 0.0
     assert len(begins) <= 2 * len(lasts)
     t = np.linspace(0.0, end, 999)

@@ -29,6 +29,7 @@ from pindrive.device.current import CoilState, Commands
 from pindrive.files.device import DeviceFile
 from pindrive.files.fmu import ELSEWHERE, inputs_of, variables_of
 from pindrive.files.keys import FILE_KEYS
+from pindrive.motion.function import function_of
 from pindrive.motion.release import INPUTS
 
 READER = Path(__file__).resolve().parents[2] / "examples" / "tactile-reader.toml"
@@ -255,7 +256,8 @@ def test_steps_end_early_under_a_command(tmp_path: Path) -> None:
             assert not defined or following > time
             unit.slave.enterStepMode()
     magnet = device.device.magnet
-    pull = magnet.current(Commands(np.array([0.0])), CoilState(-1e-9), end=0.06).pull
+    current = magnet.current(Commands(np.array([0.0])), CoilState(-1e-9), end=0.06)
+    pull = function_of(current.pulls, "N")
     per_newton = device.device.load(1.0) - 1.0
     load = Function(
         [

@@ -50,7 +50,8 @@ def test_stick_ends_a_deviation() -> None:
 
 def random_cycles(count: int) -> list[pd.Motion]:
     """Steady motions on belts with falling friction, and under sinusoids."""
-    rng, found = np.random.default_rng(47), []
+    rng = np.random.default_rng(47)
+    found: list[pd.Motion] = []
     while len(found) < count:
         belt, friction = rng.random() < 0.4, rng.uniform(0.01, 0.05)
         falls = pd.Contact(
@@ -115,8 +116,8 @@ def test_multipliers_of_random_cycles_are_those_of_nearby_motions() -> None:
         if motion.ending.cycle != "driven":
             expected.remove(min(expected, key=lambda m: abs(m - 1.0)))
         largest = max(1.0, abs(expected[0]))
-        for one, other in zip(found, expected, strict=True):
-            assert abs(abs(one) - abs(other)) < 1e-5 * largest
+        for multiplier, other in zip(found, expected, strict=True):
+            assert abs(abs(multiplier) - abs(other)) < 1e-5 * largest
         compared += 1
         driven += motion.ending.cycle == "driven"
     assert compared > 60 and driven > 20 and compared - driven > 15

@@ -134,7 +134,7 @@ class PinFollower {
   template <class Sink>
   void pass(const ScanInputs& scan, double time, Sink&& sink) {
     InputCurves<double> lines = stepper_.inputs();
-    bool pulls = passed_ == -infinity;  // as from another scan, whose piece may have ended
+    bool pulls = passed_ == -infinity;  // a piece of another scan may have ended
     for (double at; (at = std::min(command(), coil_.next())) - begin_ <= time; pulls = true) {
       if (at == command())
         give_command();

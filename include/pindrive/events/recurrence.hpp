@@ -67,7 +67,11 @@ class CycleDetector {
     const long long memory = driven ? 1 : short_memory;  // most responses repeat each period
     if (count_ > first_kept_event) {
       if (driven && returns_to(recent_, ended, now, outcome)) return;
-      if (returns_to(kept_, ended, now, outcome)) return;
+      // A response that is approached each period is not closed by a longer return.
+      if (driven && period_ > 0 && distance_ < T(approach_tolerance))
+        extend(kept_, ended, now.state);
+      else if (returns_to(kept_, ended, now, outcome))
+        return;
       if (!driven && count_ > memory && returns_to(recent_, ended, now, outcome)) return;
       if (period_ > 0 && approaches(ended, now, outcome)) return;
     }
@@ -149,8 +153,13 @@ class CycleDetector {
     extend(earlier, ended, now.state);
     const T distance = separation(earlier, now);
     if (distance <= T(return_tolerance)) return close(earlier, now, outcome);
-    if (distance < near_return && (period_ == 0 || distance < distance_)) {
-      period_ = count_ - earlier.index;
+    const long long period = count_ - earlier.index;
+    // The shorter of two returns of a response that are alike is followed.
+    const T factor = !driven_ || period == period_ ? T(1)
+                     : period > period_            ? T(near_return)
+                                                   : 1 / T(near_return);
+    if (distance < near_return && (period_ == 0 || distance < factor * distance_)) {
+      period_ = period;
       distance_ = distance;
       ratio_ = T(1);
       keep(followed_, now);

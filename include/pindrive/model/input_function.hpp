@@ -106,7 +106,7 @@ struct InputPiece {
   /// Time after τ over which the Taylor terms beyond an order stay within a part of the size at τ, s: for a term of
   /// that size `longest` over its rate; a smaller one reaches farther.
   Real reach(T tau, int order, Real longest) const {
-    using std::abs, std::exp, std::log;
+    using std::abs, detail::exp, detail::log;
     Real whole = abs(plain(polynomial[0])), least = std::numeric_limits<Real>::infinity();
     for (std::size_t j = 0; j < count; ++j) whole += amplitude(terms[j], tau);
     for (std::size_t j = 0; j < count; ++j) {
@@ -118,7 +118,7 @@ struct InputPiece {
   }
   /// Bound of the Taylor terms beyond an order >= `degree` at τ, over a step.
   Real beyond(T tau, Real step, int order) const {
-    using std::exp;
+    using detail::exp;
     Real sum{0};
     for (std::size_t j = 0; j < count; ++j) {
       const InputTerm<T>& term = terms[j];
@@ -133,11 +133,11 @@ struct InputPiece {
  private:
   /// Bound of a term from τ on.
   static Real amplitude(const InputTerm<T>& term, T tau) {
-    using std::abs, std::exp;
+    using std::abs, detail::exp;
     return (abs(plain(term.cosine)) + abs(plain(term.sine))) * exp(-plain(term.decay * tau));
   }
   static Real rate_of(const InputTerm<T>& term) {
-    return std::hypot(plain(term.decay), plain(term.frequency));
+    return detail::hypot(plain(term.decay), plain(term.frequency));
   }
 };
 

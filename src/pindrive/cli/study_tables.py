@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import shlex
 from functools import partial
+from itertools import groupby
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,7 +18,7 @@ from pindrive.lazy import h5py
 from pindrive.quantities.names import label
 from pindrive.quantities.quantity import counted, significant
 from pindrive.quantities.status import Status
-from pindrive.quantities.table import digits
+from pindrive.quantities.table import QUANTITIES, digits
 from pindrive.study.distributions import base_value
 from pindrive.study.evaluate import why
 from pindrive.study.outputs import NUMBERS, points_that_meet
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
     from rich.table import Table
 
+    from pindrive.study.bifurcation import Bifurcation, SteadyMotion
     from pindrive.study.evaluate import RefusedPoints
     from pindrive.study.local_sensitivity import Elasticities
     from pindrive.study.outputs import Share
@@ -137,6 +139,33 @@ def _short(name: str, value: float) -> str:
     """The value of a variable with its unit."""
     quantity = QUANTITY[name]
     return f"{digits(value * quantity.display_scale)} {quantity.display_unit}".rstrip()
+
+
+def bifurcation_report(found: Bifurcation) -> RenderableType:
+    """A line for each range of the parameter in which the motions are alike."""
+    quantity, length = NUMERIC_KEYS[found.key], QUANTITIES["displacement"]
+    heads = (">from", ">to", "up", ">amplitude", "down", ">amplitude")
+    made = new_table(f"Steady motions over {found.key}", *heads)
+    unit, mm = quantity.display_unit, length.display_unit
+    made.add_row(unit, unit, "", mm, "", mm, style="dim")
+    pairs = zip(found.up, found.down, strict=True)
+    alike = groupby(pairs, lambda pair: [(each.end, len(each.points)) for each in pair])
+    for _, group in alike:
+        both = [*group]
+        ends = [quantity.digits(both[i][0].value) for i in (0, -1)]
+        cells = []
+        for branch in zip(*both, strict=True):
+            low, high = (length.digits(f(m.amplitude for m in branch)) for f in (min, max))
+            cells += [_kind(branch[0]), low if low == high else f"{low} to {high}"]
+        made.add_row(*ends, *cells)
+    return Group(made, *whole_lines([f"{repr(found)[1:-1]}."]))
+
+
+def _kind(motion: SteadyMotion) -> str:
+    """Return how a motion ends, in words."""
+    name = motion.end.name.replace("_", " ")
+    count = len(motion.points)
+    return name if count < 2 else f"{name}, {counted(count, 'turning point')}"
 
 
 def sobol_report(found: SobolIndices) -> RenderableType:

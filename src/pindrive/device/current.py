@@ -18,7 +18,6 @@ from numpy.typing import ArrayLike, NDArray
 from pindrive import _core
 from pindrive.device.closing import Closing
 from pindrive.device.heating import Heat
-from pindrive.motion.function import Function, function_of
 from pindrive.quantities import budgets
 
 Numbers = tuple[list[float], list[tuple[float, float]]]
@@ -81,8 +80,8 @@ class Current:
     resistances: NDArray[np.float64]
     """The resistance of the winding in each piece over that at 20 °C."""
     heat: Heat | None
-    pull: Function
-    """Pull over time, N."""
+    pulls: list[Any]
+    """Pieces of the pull, as `pindrive.Function` has them: begin, polynomial, terms; N."""
     state: CoilState
     """State at the last change."""
 
@@ -91,8 +90,8 @@ class Current:
         """Return the current of a course of the core."""
         pieces, pulls, end = course
         on = pieces.pop("on").view(np.bool_)
-        pull = function_of(pulls, "N")
-        return cls(**pieces, on=on, heat=heat, pull=pull, state=CoilState.of(end))
+        whole = [(begin, (*constant, *5 * (0.0,)), terms) for begin, constant, terms in pulls]
+        return cls(**pieces, on=on, heat=heat, pulls=whole, state=CoilState.of(end))
 
     @classmethod
     def under(
@@ -150,6 +149,11 @@ class Current:
             1.0 - (1.0 - self.starts[i]) * left,
             target + (self.starts[i] - target) * left,
         )
+
+    def pull(self, t: ArrayLike) -> NDArray[np.float64]:
+        """The pull at times t (s, any shape), N; before its begin what it begins with."""
+        times = np.asarray(t, np.float64)
+        return _core.function_at(self.pulls, times.ravel()).reshape(times.shape)
 
     def warming(self, t: ArrayLike) -> NDArray[np.float64]:
         """The warming of the coil at times t (s, shape (n,)), K; it is simulated."""

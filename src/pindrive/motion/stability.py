@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -24,7 +24,7 @@ def multipliers(motion: pindrive.Motion) -> tuple[complex, ...]:
         raise ValueError(refusal("motion", "steady, to have multipliers", motion.ending.kind))
     period = motion.ending.period
     release = release_at(motion, _free_instant(motion))
-    over = simulate(motion.drive, release, duration=period)
+    over = simulate(motion.drive, release, duration=1.01 * period)
     change = over.sensitivity(["displacement", "velocity"])
     monodromy = np.array([change.position(period), change.velocity(period)])
     if not np.isfinite(monodromy).all():
@@ -38,7 +38,7 @@ def multipliers(motion: pindrive.Motion) -> tuple[complex, ...]:
 
 def release_at(motion: pindrive.Motion, time: float) -> Release:
     """Return the release that goes on as a motion from a time (s) without a contact in stick."""
-    inputs = {name: _from(getattr(motion.release, name), time) for name in INPUTS}
+    inputs: dict[str, Any] = {name: _from(getattr(motion.release, name), time) for name in INPUTS}
     x, v = motion.position(time), motion.velocity(time)
     return Release(displacement=x, velocity=v, **inputs)
 

@@ -3,6 +3,7 @@
 A study file, or Python, names a device and says which of its keys change and how. `Study.run` and
 `sweep` compute every point; sensitivities and yields follow from the same study.
 
+- `Bifurcation`: what `bifurcation` found
 - `Elasticities`: by how many per cent each number changes when a key grows by one per cent
 - `SobolIndices`: which key matters to which number, by Sobol' indices
 - `load_study`: a study from its file

@@ -1,5 +1,6 @@
 # The module of each public name; `__init__.py` describes them.
 
+from .bifurcation import Bifurcation as Bifurcation
 from .local_sensitivity import Elasticities as Elasticities
 from .robustness import Robustness as Robustness
 from .runner import Sweep as Sweep
