@@ -136,3 +136,20 @@ def test_multipliers_of_random_cycles_are_those_of_nearby_motions() -> None:
 def test_other_motions_have_none(release: pd.Release, message: str) -> None:
     with pytest.raises(ValueError, match=message):
         pd.simulate(LINEAR, release).multipliers()
+
+
+def test_the_fundamental_of_a_linear_pin_is_that_of_the_formula() -> None:
+    """Under a force: A = F/(k - mω² + ibω), and its phase."""
+    for frequency in (3.0, 15.0, 15.9, 40.0):
+        omega = 2.0 * pi * frequency
+        force = pd.harmonic(0.2, 0.1, frequency, 0.7)
+        motion = pd.simulate(LINEAR, pd.Release(0.0, force=force, velocity=0.0))
+        expected = 0.1 * np.exp(0.7j) / (100.0 - 0.01 * omega**2 + 0.2j * omega)
+        assert motion.fundamental() == pytest.approx(expected, rel=1e-9)
+        assert motion.ending.position == pytest.approx(2e-3, rel=1e-9)
+
+
+def test_a_motion_that_rests_has_no_fundamental() -> None:
+    drive = LINEAR.replace(finger=pd.Contact(0.01))
+    with pytest.raises(ValueError, match="motion must be steady, to have a fundamental"):
+        pd.simulate(drive, pd.Release(0.0, 1e-3, 0.0)).fundamental()

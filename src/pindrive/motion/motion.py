@@ -498,6 +498,20 @@ class Motion(lazy.NotebookHtml):
 
         return multipliers(self)
 
+    def fundamental(self) -> complex:
+        """Fundamental of the position in a steady motion, m, with its phase.
+
+        The position is Im(fundamental · exp(2πit/period)) with its mean and its further harmonics:
+        the absolute value is an amplitude, the angle a phase (rad) beside sin(2πt/period), as
+        `harmonic` has it. Under a sinusoid at that period the angle is the phase of the response.
+
+        Raises:
+            ValueError: The motion is not steady.
+        """
+        from pindrive.motion.stability import fundamental
+
+        return fundamental(self)
+
     def numbers(self) -> dict[str, float]:
         """Every number of the transient, its ending and its energy, SI, by the table's names."""
         found: dict[str, float] = self._numbers | {"transient.settled": self.transient.settled}

@@ -1,4 +1,4 @@
-"""Stability of a steady motion: Floquet multipliers, from exact derivatives over one period."""
+"""Steady motions: their stability, by exact derivatives over a period, and their fundamental."""
 
 from __future__ import annotations
 
@@ -14,6 +14,9 @@ from pindrive.motion.release import INPUTS, Release
 from pindrive.motion.simulate import simulate
 from pindrive.quantities.refusal import refusal
 
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
+_PARTS: Final = 16
+"""Even parts of a period, in each of which a motion is integrated by Gauss's rule."""
 _HELD: Final = (0, 3)
 """Contacts in stick, rigid or elastic, as the core numbers them."""
 
@@ -69,3 +72,21 @@ def _free_instant(motion: pindrive.Motion) -> float:
         required = "one in which at some instant both contacts slide"
         raise ValueError(refusal("motion", required, "one that a contact always holds"))
     return float(0.5 * (first[longest] + last[longest]))
+
+
+def fundamental(motion: pindrive.Motion) -> complex:
+    """Return the fundamental of a steady motion, as `Motion.fundamental`."""
+    if motion.ending.kind != "steady":
+        raise ValueError(refusal("motion", "steady, to have a fundamental", motion.ending.kind))
+    core, period = motion.core, motion.ending.period
+    begin = max(core.cycle_begin, motion.ending.steady_since)
+    table = core.segments()
+    edges = np.unique(np.concatenate([table["begin"], table["end"]]))
+    inside = edges[(edges > begin) & (edges < begin + period)]
+    evenly = begin + period * np.linspace(0.0, 1.0, _PARTS + 1)
+    ends = np.unique(np.concatenate([inside, evenly]))
+    half, middle = 0.5 * np.diff(ends), 0.5 * (ends[1:] + ends[:-1])
+    times = (middle[:, None] + half[:, None] * _NODES).ravel()
+    weights = (half[:, None] * _WEIGHTS).ravel()
+    turns = np.exp(-2j * np.pi * times / period)
+    return complex(2j * np.sum(weights * motion.position(times) * turns) / period)

@@ -73,8 +73,8 @@ class Bifurcation(lazy.NotebookHtml):
     def __repr__(self) -> str:
         """Return the parameter and the number of values in a line."""
         both = sum(_differ(one, other) for one, other in zip(self.up, self.down, strict=True))
-        values = counted(len(self.up), "value")
-        return f"<Bifurcation over {values} of {self.key}, {both} with two motions, {self.status.name}>"
+        values = f"{counted(len(self.up), 'value')} of {self.key}"
+        return f"<Bifurcation over {values}, {both} with two motions, {self.status.name}>"
 
     @property
     def status(self) -> Status:
