@@ -15,8 +15,8 @@ using Line = pd::Line<double>;
 
 int main() {
   constexpr double never = std::numeric_limits<double>::infinity();
-  expect(pd::detail::falling_load(2.0, 1.0, -4.0).ends == 2.25, "a falling load ends at zero");
-  expect(!(pd::detail::falling_load(2.0, 1.0, 4.0).ends < never), "a growing load does not end");
+  expect(pd::detail::load_from(2.0, Line{1, -4}).ends == 2.25, "a falling load ends at zero");
+  expect(!(pd::detail::load_from(2.0, Line{1, 4}).ends < never), "a growing load does not end");
   Held slows(1, Line{0.3, -2}), turns(1, Line{0.3, -2});
   pd::detail::end_at(slows, 1.0, 1.15);
   pd::detail::end_at(turns, 1.0, 1.2);

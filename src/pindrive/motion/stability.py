@@ -16,7 +16,7 @@ from pindrive.quantities.refusal import refusal
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 _PARTS: Final = 16
-"""Even parts of a period, in each of which a motion is integrated by Gauss's rule."""
+"""Number of even parts of a period, each integrated by Gauss's rule."""
 _HELD: Final = (0, 3)
 """Contacts in stick, rigid or elastic, as the core numbers them."""
 
