@@ -46,7 +46,7 @@ template <class T>
 double value_of(const pd::Stepper<T>& stepper, pindrive_quantity quantity) {
   const auto tau = stepper.tau();
   const auto lines = stepper.lines();
-  return pd::visit_trajectory(stepper.drive(), stepper.segment(), lines, [&](const auto& along) {
+  return stepper.visit([&](const auto& along) {
     const auto friction = [&] {
       return pd::friction_along(
           along, stepper.drive(), stepper.segment(), [&] { return lines; }, tau);

@@ -19,6 +19,8 @@ template <class T>
 class SeriesSegment {
  public:
   bool used() const { return step_.has_value(); }
+  /// Step of the present segment; null for a mode with a closed form.
+  const SeriesStep<T>* step() const { return step_ ? &*step_ : nullptr; }
 
   /// True if the slider has its stationary velocity, so that its force follows the load.
   bool has_eliminated_slider() const {

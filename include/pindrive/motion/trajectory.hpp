@@ -90,7 +90,11 @@ class BySeries {
  public:
   /// Expands the series anew from the begin of the segment; only the initial state is stored.
   BySeries(const Drive<T>& drive, const Segment<T>& segment, const InputCurves<T>& lines)
-      : step_(expand(drive, segment, lines)) {
+      : BySeries(drive, segment, lines, expand(drive, segment, lines)) {}
+  /// The step by which the segment was simulated.
+  BySeries(const Drive<T>& drive, const Segment<T>& segment, const InputCurves<T>& lines,
+           const SeriesStep<T>& step)
+      : step_(step) {
     const bool at_stop = held_by_stop(drive, segment.mode);
     const bool held = segment.mode.stuck() && !at_stop;
     plate_force_ = step_.plate_force;
