@@ -46,16 +46,17 @@ template <class T>
 double value_of(const pd::Stepper<T>& stepper, pindrive_quantity quantity) {
   const auto tau = stepper.tau();
   const auto lines = stepper.lines();
-  return stepper.visit([&](const auto& along) {
-    const auto friction = [&] {
-      return pd::friction_along(
-          along, stepper.drive(), stepper.segment(), [&] { return lines; }, tau);
-    };
-    if (quantity == PINDRIVE_STOP_FORCE)
-      return pd::result(
-          pd::stop_force_along(along, stepper.drive(), stepper.segment(), lines.force, tau));
-    return value_along(along, tau, stepper.drive(), friction, quantity);
-  });
+  return pd::visit_trajectory(
+      stepper.drive(), stepper.segment(), lines, stepper.series_step(), [&](const auto& along) {
+        const auto friction = [&] {
+          return pd::friction_along(
+              along, stepper.drive(), stepper.segment(), [&] { return lines; }, tau);
+        };
+        if (quantity == PINDRIVE_STOP_FORCE)
+          return pd::result(
+              pd::stop_force_along(along, stepper.drive(), stepper.segment(), lines.force, tau));
+        return value_along(along, tau, stepper.drive(), friction, quantity);
+      });
 }
 
 /// Stepper of one pin, with or without derivatives. A library that never constructs the second kind links a single

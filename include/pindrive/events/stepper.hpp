@@ -16,7 +16,6 @@
 #include "pindrive/events/evolution.hpp"
 #include "pindrive/events/set_inputs.hpp"
 #include "pindrive/events/stepper_state.hpp"
-#include "pindrive/motion/trajectory.hpp"
 #include "pindrive/numbers/functions.hpp"
 #include "pindrive/numbers/limits.hpp"
 
@@ -183,13 +182,8 @@ class Stepper {
     pin.move(along, evolution_.pin.finger.elastic());
     return pin;
   }
-  /// Calls visit with the trajectory of the present segment, as visit_trajectory does. Returns its result.
-  template <class Visitor>
-  auto visit(Visitor&& visit) const {
-    if (const detail::SeriesStep<T>* const step = evolution_.series.step())
-      return visit(detail::BySeries<T>(drive_, segment_, lines(), *step));
-    return visit(detail::ClosedForm<T>(segment_));
-  }
+  /// Series step of the present segment; null for a mode with a closed form.
+  const detail::SeriesStep<T>* series_step() const { return evolution_.series.step(); }
   InputCurves<T> lines() const {
     return {segment_.plate_velocity, evolution_.pin.plate.load, evolution_.pin.plate.across,
             evolution_.pin.force, evolution_.pin.finger.load};

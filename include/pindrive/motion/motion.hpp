@@ -24,6 +24,13 @@ auto visit_trajectory(const Drive<T>& drive, const Segment<T>& segment, const In
     return visit(detail::ClosedForm<T>(segment));
   return visit(detail::BySeries<T>(drive, segment, lines));
 }
+/// The same of a segment whose series step is known; null: it has a closed form.
+template <class T, class Visitor>
+auto visit_trajectory(const Drive<T>& drive, const Segment<T>& segment, const InputCurves<T>& lines,
+                      const detail::SeriesStep<T>* step, Visitor&& visit) {
+  if (step) return visit(detail::BySeries<T>(drive, segment, lines, *step));
+  return visit(detail::ClosedForm<T>(segment));
+}
 
 /// Friction of each contact on the pin, N.
 template <class T>

@@ -333,6 +333,17 @@ std::optional<CreepFlow<T>> creep(const SeriesEquation<T>& e, const SeriesState<
   return flow;
 }
 
+/// Estimate of the rate at which friction damps a deviation from creep, 1/ε, 1/s: the largest one
+/// within the rounding of the velocities.
+template <class T>
+Real<T> relaxation_rate(const SeriesEquation<T>& e, const SeriesState<T>& s) {
+  const Real<T> v = plain(s.v), v_p = plain(e.plate_velocity.value), w = plain(e.across.value);
+  const Real<T> rounded = difference_error<Real<T>> * (abs(v) + abs(v_p));
+  const Real<T> speed = hypot(std::max(abs(v - v_p) - rounded, Real<T>(0)), w);
+  return plain(e.load.value) / plain(e.mass) *
+         (plain(e.plate_force) * (w / speed) * (w / speed) / speed + plain(e.plate_slope));
+}
+
 /// Step from a state: the Taylor series, or the slow motion where the fast transient is over: in
 /// creep, on a slider of stiff skin, or of an overdamped pin.
 template <class T>
@@ -344,6 +355,8 @@ SeriesStep<T> series_step(const SeriesEquation<T>& e, const SeriesState<T>& star
   const bool slides = plain(start.v) != plain(e.plate_velocity.value) || plain(e.across.value) != 0;
   if (slides) step = SeriesFlow<T>(e, start, limit);
   if (slides && !(step.span() < plain(limit))) return step;
+  // In creep, the fast transient limits a Taylor step to some relaxation times.
+  if (slides && step.span() * relaxation_rate(e, start) < Real<T>(least_creep)) return step;
   if (const auto flow = creep(e, start, limit); flow && !(slides && flow->span() < step.span()))
     return *flow;
   return slides ? step : SeriesFlow<T>(e, start, limit);
