@@ -157,7 +157,7 @@ class PinFollower {
   const Device* device_;
   double begin_;  ///< of the scan, s
   Coil coil_;
-  OwnedPiece<double> load_{};  ///< last load that was given to the stepper
+  OwnedPiece<double> load_;  ///< last load that was given to the stepper
   double sampled_, passed_{-infinity};
   bool decision_;
   std::vector<double> pending_;
