@@ -25,7 +25,7 @@ namespace pindrive::detail {
 
 /// Step of creep; valid if velocity and series agree with creep within rounding.
 template <class T>
-class CreepFlow : public SeriesStep<T> {
+class CreepFlow : public IteratedStep<T> {
  public:
   using typename SeriesStep<T>::Real;
   using SeriesStep<T>::position, SeriesStep<T>::velocity, SeriesStep<T>::skin, SeriesStep<T>::speed;
@@ -66,7 +66,7 @@ class CreepFlow : public SeriesStep<T> {
       const Real left = farthest / step;
       Real part = within_step ? left : std::min(this->suggested_part(), left);
       const bool converged = converged_;
-      const Real changed = change(part);
+      const Real changed = last_change(part);
       converged_ = changed <= last_digit<Real> * this->size_of(plate_force, part) / plain(e.mass);
       if (!within_step && round > 2 && !converged_ && changed > last / 2) return;  // no convergence
       last = changed;
@@ -80,11 +80,11 @@ class CreepFlow : public SeriesStep<T> {
       if (!converged) static_cast<SeriesStep<T>&>(*this) = nearest;
       if (!within_step && !starts_from(e, start)) return;
       this->rescale(part);
-      holds_ = within_step || bound(e, plain(e.mass) * change(part));
+      holds_ = within_step || bound(e, plain(e.mass) * last_change(part));
       for (int tries = 0; !holds_ && tries < slow_reductions; ++tries) {
         part *= Real(step_reduction);
         this->rescale(Real(step_reduction));
-        holds_ = bound(e, plain(e.mass) * change(part));
+        holds_ = bound(e, plain(e.mass) * last_change(part));
       }
       break;
     }
@@ -95,6 +95,7 @@ class CreepFlow : public SeriesStep<T> {
   bool is_valid() const { return holds_; }
 
  private:
+  using IteratedStep<T>::acceleration_, IteratedStep<T>::last_change;
   using SeriesStep<T>::N, SeriesStep<T>::falling_plate, SeriesStep<T>::falling_finger;
   using typename SeriesStep<T>::Sums;
 
@@ -215,11 +216,7 @@ class CreepFlow : public SeriesStep<T> {
       e.follow(y, v, n, T(step));
       if (n == order) break;
     }
-    for (int n = 0; n < order; ++n) {
-      const T a = T(n + 1) / T(step) * v[n + 1];
-      changes_[n] = std::abs(plain(a - acceleration_[n]));
-      acceleration_[n] = a;
-    }
+    this->take_acceleration(step, order);
   }
 
   /// Order n of a product of two series.
@@ -227,13 +224,6 @@ class CreepFlow : public SeriesStep<T> {
   static T order_of_product(const Coefficients& p, const Coefficients& q, int n) {
     T sum{0};
     for (int i = 0; i <= n; ++i) sum += p[i] * q[n - i];
-    return sum;
-  }
-
-  /// Change of a in the last iteration, over a part of the step.
-  Real change(Real part) const {
-    Real sum{0}, power{1};
-    for (int n = 0; n < N; ++n, power *= part) sum += changes_[n] * power;
     return sum;
   }
 
@@ -318,9 +308,7 @@ class CreepFlow : public SeriesStep<T> {
     return std::max(by_forces, here) + rounding<Real> * plain(start.time) * changes;
   }
 
-  T t_{0};                               // at the start
-  std::array<T, N + 1> acceleration_{};  // a, in the time σ, m/s²
-  std::array<Real, N> changes_{};        // changes in the last iteration
+  T t_{0};  // at the start
   bool converged_{false}, holds_{false};
 };
 

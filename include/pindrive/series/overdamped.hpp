@@ -19,10 +19,40 @@
 
 namespace pindrive::detail {
 
+/// Step whose acceleration a comes from the series of the preceding iteration.
+template <class T>
+class IteratedStep : public SeriesStep<T> {
+ public:
+  using typename SeriesStep<T>::Real;
+
+ protected:
+  using SeriesStep<T>::N;
+
+  /// Takes a from the velocity below an order, in the time σ = τ/step.
+  void take_acceleration(Real step, int order) {
+    for (int n = 0; n < order; ++n) {
+      const T a = T(n + 1) / T(step) * this->velocity.c[n + 1];
+      changes_[n] = abs(plain(a - acceleration_[n]));
+      acceleration_[n] = a;
+    }
+  }
+  /// Change of a in the last iteration, over a part of the step.
+  Real last_change(Real part) const {
+    Real sum{0}, power{1};
+    for (int n = 0; n < N; ++n, power *= part) sum += changes_[n] * power;
+    return sum;
+  }
+
+  std::array<T, N + 1> acceleration_{};  // a, in the time σ, m/s²
+
+ private:
+  std::array<Real, N> changes_{};  // changes in the last iteration
+};
+
 /// Step of an overdamped pin under constant damping; valid if the pin has the velocity of the slow motion within
 /// rounding.
 template <class T>
-class OverdampedFlow : public SeriesStep<T> {
+class OverdampedFlow : public IteratedStep<T> {
  public:
   using typename SeriesStep<T>::Real;
   using SeriesStep<T>::position, SeriesStep<T>::velocity, SeriesStep<T>::skin, SeriesStep<T>::speed;
@@ -58,18 +88,18 @@ class OverdampedFlow : public SeriesStep<T> {
                                      e.input_reach() / step});
       // Dual derivatives converge one iteration later.
       if (converged) break;
-      const Real changed = plain(e.mass) * change(part);
+      const Real changed = plain(e.mass) * last_change(part);
       converged = changed <= last_digit<Real> * plain(damping(e)) * this->size_of(velocity, part);
       if (round == slow_iterations || (round > 2 && !converged && changed > last / 2)) return;
       last = changed;
     }
     this->rescale(part);
     if (!within_step && !starts_from(e, start)) return;
-    holds_ = within_step || bound(e, plain(e.mass) * change(part));
+    holds_ = within_step || bound(e, plain(e.mass) * last_change(part));
     for (int tries = 0; !holds_ && tries < slow_reductions; ++tries) {
       part *= Real(step_reduction);
       this->rescale(Real(step_reduction));
-      holds_ = bound(e, plain(e.mass) * change(part));
+      holds_ = bound(e, plain(e.mass) * last_change(part));
     }
     if (holds_) this->trim();
   }
@@ -78,6 +108,7 @@ class OverdampedFlow : public SeriesStep<T> {
   bool is_valid() const { return holds_; }
 
  private:
+  using IteratedStep<T>::acceleration_, IteratedStep<T>::last_change;
   using SeriesStep<T>::N, SeriesStep<T>::load_, SeriesStep<T>::plate_velocity_;
   using typename SeriesStep<T>::Sums;
 
@@ -104,18 +135,7 @@ class OverdampedFlow : public SeriesStep<T> {
       x[n + 1] = T(step) / T(n + 1) * v[n];
       e.follow(y, v, n, T(step));
     }
-    for (int n = 0; n < N; ++n) {
-      const T a = T(n + 1) / T(step) * v[n + 1];
-      changes_[n] = std::abs(plain(a - acceleration_[n]));
-      acceleration_[n] = a;
-    }
-  }
-
-  /// Change of a in the last iteration, over a part of the step.
-  Real change(Real part) const {
-    Real sum{0}, power{1};
-    for (int n = 0; n < N; ++n, power *= part) sum += changes_[n] * power;
-    return sum;
+    this->take_acceleration(step, N);
   }
 
   /// Bounds the truncation error; true if within rounding. The error of the velocity decreases where damping times
@@ -149,8 +169,6 @@ class OverdampedFlow : public SeriesStep<T> {
                rounding<Real> * plain(start.time) * changes;
   }
 
-  std::array<T, N + 1> acceleration_{};  // a, in the time σ, m/s²
-  std::array<Real, N> changes_{};        // changes in the last iteration
   bool holds_{false};
 };
 
