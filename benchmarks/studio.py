@@ -90,7 +90,7 @@ def read(page: Any, slowness: str, throttling: int, seconds: float) -> None:
         time.sleep(0.012)
     seen = page.evaluate("seen")
     print(f"hand {slowness} times slower, {seconds:g} s, processor {throttling} times slower")
-    shown("  thread of the pins, a picture", page.evaluate("pindrive.read.session.took"), 4)
+    shown("  threads of the pins, a picture", page.evaluate("pindrive.read.session.took"), 4)
     shown("  pointer to picture", seen["latency"], 20)
     shown("  from picture to picture", seen["pictures"], 17)
 

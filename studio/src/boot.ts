@@ -10,7 +10,7 @@ async function unpacked(id: string): Promise<Response> {
 async function boot(): Promise<void> {
   const program = new Blob([await (await unpacked("program")).text()], { type: "text/javascript" });
   const url = URL.createObjectURL(program);
-  const wasm = await (await unpacked("core")).arrayBuffer();
+  const wasm = await WebAssembly.compile(await (await unpacked("core")).arrayBuffer());
   await import(url);
   const { begin } = globalThis as unknown as { begin: Begin };
   await begin({ url, wasm });

@@ -147,8 +147,7 @@ export class Core {
     this.certificateNames = names("certificate");
   }
 
-  static async load(module: BufferSource): Promise<Core> {
-    const compiled = await WebAssembly.compile(module);
+  static async load(compiled: WebAssembly.Module): Promise<Core> {
     const imports: Record<string, Record<string, () => number>> = {};
     for (const { module: from, name } of WebAssembly.Module.imports(compiled)) {
       imports[from] = { ...imports[from], [name]: () => 8 }; // EBADF: the core has no files

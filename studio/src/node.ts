@@ -144,7 +144,7 @@ function answer(core: Core, asked: Question): unknown {
   }
 }
 
-const core = await Core.load(readFileSync(process.argv[2]!));
+const core = await Core.load(await WebAssembly.compile(readFileSync(process.argv[2]!)));
 for await (const line of createInterface({ input: process.stdin })) {
   const found = answer(core, JSON.parse(line) as Question);
   process.stdout.write(`${JSON.stringify(found)}\n`);

@@ -2,10 +2,10 @@
 import { Core } from "./core";
 import { type Answer, answersOf, type Kind, type Task } from "./work";
 
-/** The page's own program, and the core. */
+/** The page's own program, and the core, whose code all threads share. */
 export interface Program {
   readonly url: string;
-  readonly wasm: ArrayBuffer;
+  readonly wasm: WebAssembly.Module;
 }
 
 interface Question {
@@ -77,21 +77,24 @@ export class Thread {
 /** Answers the tasks of a page, within its thread. */
 export function serve(): void {
   let answers: Promise<ReturnType<typeof answersOf>> | undefined;
-  addEventListener("message", ({ data }: MessageEvent<{ wasm: ArrayBuffer } | { question: Question }>) => {
-    if ("wasm" in data) {
-      answers = Core.load(data.wasm).then(answersOf);
-      return;
-    }
-    const { number, kind, task } = data.question;
-    void answers?.then((of) => {
-      const answer = of[kind] as (task: unknown) => unknown;
-      try {
-        postMessage({ number, answer: answer(task) });
-      } catch (error) {
-        postMessage({ number, failed: error instanceof Error ? error.message : String(error) });
+  addEventListener(
+    "message",
+    ({ data }: MessageEvent<{ wasm: WebAssembly.Module } | { question: Question }>) => {
+      if ("wasm" in data) {
+        answers = Core.load(data.wasm).then(answersOf);
+        return;
       }
-    });
-  });
+      const { number, kind, task } = data.question;
+      void answers?.then((of) => {
+        const answer = of[kind] as (task: unknown) => unknown;
+        try {
+          postMessage({ number, answer: answer(task) });
+        } catch (error) {
+          postMessage({ number, failed: error instanceof Error ? error.message : String(error) });
+        }
+      });
+    },
+  );
 }
 
 interface Request<K extends Kind> {

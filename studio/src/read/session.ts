@@ -3,6 +3,7 @@
 import type { Thread } from "../thread";
 import { type Answer, type Load, SAMPLED, type Samples, type Verdict } from "./engine";
 import { Hand, type HandRows, type Motion, TICK } from "./hand";
+import type { Pins } from "./pins";
 import type { DeviceInput, Line, Raster, Shown } from "./scan";
 
 const MM = 1e-3;
@@ -10,7 +11,7 @@ const KEPT = 0.3; // s of the device for which samples are kept
 const LONGEST = 30_000; // rows of a reading, after which another begins
 const LATE = 25; // ms of the wall clock between two pictures beyond which time stands still
 const JUDGED = 300; // ms between two evaluations of the lines at least
-const REST = 3; // times that the evaluation rests as long as it took, for the thread of the pins
+const REST = 3; // times that the evaluation rests as long as it took, for the threads of the pins
 
 /** Quantities of all pins at a time, s of the device. */
 export interface Sample {
@@ -29,7 +30,7 @@ export interface Listener {
 export class Session {
   hand = new Hand({ x: 4 * MM, y: 6.25 * MM });
   samples: Sample[] = [];
-  /** Times that the pictures took in the thread, ms, for tests. */
+  /** Times that the pictures took in the threads of the pins, ms, for tests. */
   readonly took: number[] = [];
   private replay: HandRows | null = null;
   private shown = 0;
@@ -44,7 +45,7 @@ export class Session {
   private judgeFrom = 0;
 
   constructor(
-    private readonly live: Thread,
+    private readonly live: Pins,
     private readonly judge: Thread,
     private device: DeviceInput,
     private page: Raster,
@@ -96,7 +97,7 @@ export class Session {
     [this.shown, this.sent, this.wall, this.pending] = [0, 0, 0, false];
     [this.samples, this.judgedRows] = [[], 0];
     this.listener.began();
-    void this.live.ask("read", { open: this.opening }).then((answer) => this.checked(answer));
+    void this.live.open(this.opening).then((answer) => this.checked(answer));
   }
 
   /** The hand follows an aim, m, until now (ms), and the pins follow the hand. */
@@ -127,7 +128,7 @@ export class Session {
     const { hand, epoch } = this;
     const rows = hand.rowsFrom(this.sent);
     [this.sent, this.pending] = [hand.count, true];
-    void this.live.ask("read", { rows, until }).then((answer) => {
+    void this.live.advance({ rows, until }).then((answer) => {
       if (epoch !== this.epoch) return;
       this.pending = false;
       if (!this.checked(answer)) return;

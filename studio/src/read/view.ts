@@ -21,6 +21,7 @@ import { type Hand, SLOWNESS, type Slowness } from "./hand";
 import { HandControl } from "./handcontrol";
 import { Paper } from "./paper";
 import { colorsOf, type Picture } from "./picture";
+import { Pins } from "./pins";
 import { Demonstration } from "./pointer";
 import { Readouts } from "./readouts";
 import { pinDesign } from "./release";
@@ -91,7 +92,7 @@ export class ReadView {
     this.felt = new Felt(this.paper.width, this.input.spots);
     this.skin = new Skin(this.input.spots.length);
     this.judge = new Thread(program);
-    this.session = new Session(new Thread(program), this.judge, this.input, this.paper.raster, {
+    this.session = new Session(new Pins(program), this.judge, this.input, this.paper.raster, {
       sampled: (samples, hand) => this.sampled(samples, hand),
       judged: (lines, falseLines) => this.judged(lines, falseLines),
       began: () => this.began(),
