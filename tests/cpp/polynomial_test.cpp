@@ -134,7 +134,7 @@ void series_products() {
   p.span = 2;
   for (int n = 0; n <= N; ++n) p.c[n] = c[n];
   P part = p;
-  part.rescale(0.25);
+  part.rescale(pd::detail::powers_of(0.25));
   expect(part.span == 0.5 && near(part.at(0.3), p.at(0.3), 1e-15), "a part of a step is a step");
 }
 

@@ -24,7 +24,7 @@ void lines() {
   p.c[1] = 4;
   expect(line.times(p.c, 0) == 3 && line.times(p.c, 1) == 11 && line.times(p.c, 2) == -4,
          "a product has the orders of the product");
-  line.rescale(0.5);
+  line.rescale(pd::detail::powers_of(0.5));
   expect(line[1] == -0.5 && line.rate(0) == -2 && line.rate(1) == 0, "a part has the same rate");
 }
 

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <type_traits>
 
 #include "pindrive/flow/flow.hpp"
 #include "pindrive/numbers/limits.hpp"
@@ -14,6 +16,38 @@ namespace pindrive::detail {
 
 /// Highest order of a series. A step is then about a fifth of the radius of convergence.
 inline constexpr int series_order = 24;
+
+/// Powers of a part of a step, by which the coefficients of a series are scaled to that part.
+template <class Real>
+using Powers = std::array<Real, series_order + 2>;
+template <class Real>
+Powers<Real> powers_of(Real part) {
+  Powers<Real> powers{};
+  powers[0] = Real(1);
+  for (std::size_t n = 1; n < powers.size(); ++n) powers[n] = powers[n - 1] * part;
+  return powers;
+}
+
+/// Terms p_i q_(n−i) of the product of two series, from i = first to last; two partial sums are added at once.
+template <class P, class Q>
+auto sum_of_products(const P& p, const Q& q, int n, int first, int last) {
+  using T = std::decay_t<decltype(p[0] * q[0])>;
+  T even{0}, odd{0};
+  int i = first;
+  for (; i < last; i += 2) {
+    even += p[i] * q[n - i];
+    odd += p[i + 1] * q[n - i - 1];
+  }
+  if (i == last) even += p[i] * q[n - i];
+  return even + odd;
+}
+/// Order n of the square of a series without the terms of order 0.
+template <class P>
+auto inner_square(const P& p, int n) {
+  auto sum = 2 * sum_of_products(p, p, n, 1, (n - 1) / 2);
+  if (n > 0 && n % 2 == 0) sum += p[n / 2] * p[n / 2];
+  return sum;
+}
 
 /// Quantity along a step: c₀ + c₁ σ + … with σ = τ/span, 0 <= σ <= 1.
 template <class T>
@@ -46,14 +80,11 @@ struct Polynomial {
     return rate;
   }
 
-  /// Takes a part of the step as the step.
-  void rescale(Real part) {
-    span *= part;
-    Real factor{1};
-    for (T& each : c) {
-      each *= factor;
-      factor *= part;
-    }
+  /// Takes a part of the step as the step, by its powers; with the coefficients beyond the degree.
+  void rescale(const Powers<Real>& part) {
+    span *= part[1];
+    if (degree == 0) return;
+    for (std::size_t n = 1; n < c.size(); ++n) c[n] *= part[n];
   }
 
   Polynomial& operator+=(const Polynomial& other) {

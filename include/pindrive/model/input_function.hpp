@@ -123,9 +123,12 @@ struct InputPiece {
     for (std::size_t j = 0; j < count; ++j) {
       const InputTerm<T>& term = terms[j];
       const Real s = rate_of(term) * step;
-      Real size = amplitude(term, tau) * exp(s);
-      for (int n = 1; n <= order + 1; ++n) size *= s / n;
-      sum += size;
+      Real power{1}, factorial{1};
+      for (int n = 1; n <= order + 1; ++n) {
+        power *= s;
+        factorial *= n;
+      }
+      sum += amplitude(term, tau) * exp(s) * (power / factorial);
     }
     return sum;
   }

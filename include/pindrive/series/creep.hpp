@@ -17,6 +17,7 @@
 #include <limits>
 
 #include "pindrive/numbers/limits.hpp"
+#include "pindrive/series/creep_balance.hpp"
 #include "pindrive/series/overdamped.hpp"
 #include "pindrive/series/series.hpp"
 #include "pindrive/series/slow_slider.hpp"
@@ -37,24 +38,21 @@ class CreepFlow : public IteratedStep<T> {
   /// `within_step`: the limit is known to lie within one step.
   CreepFlow(SeriesEquation<T> e, const SeriesState<T>& start, T limit, bool within_step = false) {
     this->eliminated = EliminatedPart::of_friction;
-    if (e.across.value < 0 || (e.across.value == 0 && e.across.rate < 0))
-      e.across = {-e.across.value, -e.across.rate};  // symmetry: w >= 0
-    acceleration_[0] = e.plate_velocity.rate;        // initial guess: acceleration of the plate
-    if (e.held || e.side != 0 || !e.finger_load.straight()) return;
-    if (!(e.load.value * e.plate_force > 0) || !balance(e, start)) return;
-    Real farthest = std::min(plain(limit), e.input_reach());
-    if (e.across.rate < 0)
-      farthest = std::min(farthest, -plain(e.across.value) / plain(e.across.rate));
-    const Real step = std::min(trial_step(e, start), farthest);
+    e.across = CreepBalance<T>::forward(e.across);
+    acceleration_[0] = e.plate_velocity.rate;  // initial guess: acceleration of the plate
+    const Real farthest = CreepBalance<T>::farthest(e, plain(limit));
+    const Real step = balance_.span(e, start, farthest);
     if (!(step > 0)) return;
     this->begin(e, step);
     Real before{0}, last{0};  // preceding iteration: initial creep velocity, change
     // Best iterate, for a known step whose iterations do not converge within rounding.
     SeriesStep<T> nearest;
     Real least = std::numeric_limits<Real>::infinity();
-    for (int round = 0; round < slow_iterations && balance(e, start); ++round) {
+    for (int round = 0; round < slow_iterations && balance_.solve(e, start, acceleration_[0]);
+         ++round) {
       // The iteration contracts.
-      const Real v = plain(e.plate_velocity.value + e.across.value * t_), off = plain(start.v) - v;
+      const Real v = plain(e.plate_velocity.value + e.across.value * balance_.ratio());
+      const Real off = plain(start.v) - v;
       if (!within_step && round > 0 &&
           abs(off) >
               4 * abs(v - before) + direction_error<Real> * (abs(v) + abs(off)) + unsure(e, start))
@@ -101,59 +99,6 @@ class CreepFlow : public IteratedStep<T> {
 
   Polynomial<T>& inner(int i) { return this->inner_[i]; }  // t, √(1 + t²), t/√(1 + t²)
 
-  /// Computes t at the start; true if friction can balance all further forces.
-  bool balance(const SeriesEquation<T>& e, const SeriesState<T>& s) {
-    const T needed =
-        (e.force.value - e.mass * acceleration_[0] - e.damping * e.plate_velocity.value -
-         e.stiffness * s.x - e.skin_factor.value * s.skin) /
-        e.load.value;
-    const T linear = (e.plate_slope + e.damping / e.load.value) * e.across.value;
-    T t = t_;
-    for (int tries = 0; tries < 60; ++tries) {
-      const T root = sqrt(1 + t * t), along = t / root;
-      T friction = e.plate_force, falls{0}, others{0};
-      if (e.plate_falling.present()) {
-        friction += e.plate_falling.at(e.across.value * root);
-        falls = e.plate_falling.slope(e.across.value * root) * e.across.value * along * along;
-      }
-      if (e.finger_falling.present()) {
-        const T side = T(e.finger_side), pressed = e.finger_load.value / e.load.value;
-        const T v = side * (e.plate_velocity.value + e.across.value * t);
-        others = side * pressed * e.finger_falling.at(v);
-        falls += pressed * e.finger_falling.slope(v) * e.across.value;
-      }
-      const T direct = friction * along + others;
-      const T slope = friction / (root * root * root) + falls + linear;
-      const T missing = needed - direct - linear * t, move = missing / slope;
-      const bool balanced =
-          abs(missing) <= rounding<Real> * (abs(needed) + abs(direct) + abs(linear * t));
-      const T most = 1 + abs(t);  // a longer move overshoots near the friction limit
-      t += move > most ? most : move < -most ? -most : move;
-      if (!(slope > 0 && abs(t) < Real(steepest_creep)))
-        return false;  // falling friction balances nothing
-      if (!balanced) continue;
-      t_ = t;
-      return true;
-    }
-    return false;
-  }
-
-  /// Estimate of the time scale of creep, s.
-  Real trial_step(const SeriesEquation<T>& e, const SeriesState<T>& s) const {
-    const Real t = plain(t_), load = plain(e.load.value), F = plain(e.plate_force);
-    const Real w = plain(e.across.value), v = plain(e.plate_velocity.value) + w * t;
-    const Real root = sqrt(1 + t * t), k = plain(e.stiffness);
-    const Real changes = k * abs(v) + abs(plain(e.force.rate)) + abs(plain(e.load.rate)) * F +
-                         abs(plain(e.skin_stiffness) * v) +
-                         abs(plain(e.skin_decay) * plain(s.skin)) + abs(plain(e.skin_drift)) +
-                         abs(plain(e.damping_rate) * v);
-    const Real f = plain(e.skin_factor.value);
-    const Real left = load * F * (1 - abs(t) / root);
-    return 1 / (changes / left + k * w * root * root * root / (load * F) +
-                (f != 0 ? abs(plain(e.skin_decay) / f) : Real(0)) +
-                abs(plain(e.across.rate)) * k / (load * F) + sqrt(k / plain(e.mass)) / 64);
-  }
-
   /// One iteration in the time σ = τ/step: the series of t from that of a, and from t a new a below
   /// an order.
   void expand(const SeriesEquation<T>& e, const SeriesState<T>& start, Real step, int order) {
@@ -165,21 +110,18 @@ class CreepFlow : public IteratedStep<T> {
     const auto at_plate = [&](int n) {
       speed.c[n] = w * s[n] + (n > 0 ? w_rate * s[n - 1] : T(0));
       falling_plate.extend(e.plate_falling, speed.c, T(1), n);
-      return order_of_product(falling_plate.friction().c, d, n);
+      return sum_of_products(falling_plate.friction().c, d, n, 0, n);
     };
     x[0] = start.x;
     y[0] = start.skin;
     std::array<T, N + 1> friction;  // F d + S u
     for (int n = 0;; ++n) {
       // Terms without t of this order; then t and its contribution.
-      T square{0}, product{0};
-      for (int i = 1; i < n; ++i) {
-        square += t[i] * t[n - i] - s[i] * s[n - i];
-        product += s[i] * d[n - i];
-      }
-      t[n] = n == 0 ? t_ : T(0);
-      s[n] = n == 0 ? sqrt(1 + t_ * t_) : square / (2 * s[0]);
-      d[n] = n == 0 ? t_ / s[0] : -(product + s[n] * d[0]) / s[0];
+      const T squares = inner_square(t, n) - inner_square(s, n);
+      const T product = sum_of_products(s, d, n, 1, n - 1);
+      t[n] = n == 0 ? balance_.ratio() : T(0);
+      s[n] = n == 0 ? sqrt(1 + t[0] * t[0]) : squares / (2 * s[0]);
+      d[n] = n == 0 ? t[0] / s[0] : -(product + s[n] * d[0]) / s[0];
       T u = w * t[n] + (n > 0 ? w_rate * t[n - 1] : T(0));
       friction[n] = e.plate_force * d[n] + e.plate_slope * u;
       const T v_p = this->plate_velocity_[n];
@@ -219,14 +161,6 @@ class CreepFlow : public IteratedStep<T> {
     this->take_acceleration(step, order);
   }
 
-  /// Order n of a product of two series.
-  template <class Coefficients>
-  static T order_of_product(const Coefficients& p, const Coefficients& q, int n) {
-    T sum{0};
-    for (int i = 0; i <= n; ++i) sum += p[i] * q[n - i];
-    return sum;
-  }
-
   /// Bounds the truncation error; true if within rounding. The error of the velocity decreases
   /// where γ (the slope of friction) times the error exceeds the residual plus the forces from the
   /// errors of position and skin, h and g h times the velocity error.
@@ -255,7 +189,7 @@ class CreepFlow : public IteratedStep<T> {
     if (e.plate_falling.present()) {
       const auto& phi = falling_plate.friction().c;
       std::array<T, N + 2> directed{};
-      for (int n = 0; n <= N; ++n) directed[n] = order_of_product(phi, inner(2).c, n);
+      for (int n = 0; n <= N; ++n) directed[n] = sum_of_products(phi, inner(2).c, n, 0, n);
       const Sums r = sums_of(speed.c), parts = sums_of(phi);
       const Real error = falling_plate.error(e.plate_falling, r, most_w * root);
       missed += load.beyond(sums_of(directed)) +
@@ -299,8 +233,9 @@ class CreepFlow : public IteratedStep<T> {
                        abs(plain(e.damping) * plain(start.v)) +
                        plain(e.stiffness) * abs(plain(start.x)) +
                        abs(plain(e.skin_factor.value) * plain(start.skin));
-    const Real changes = abs(plain(e.plate_velocity.rate)) + abs(plain(e.across.rate * t_));
-    const Real root = hypot(Real(1), plain(t_));
+    const Real changes =
+        abs(plain(e.plate_velocity.rate)) + abs(plain(e.across.rate * balance_.ratio()));
+    const Real root = hypot(Real(1), plain(balance_.ratio()));
     const Real by_forces = difference_error<Real> * sizes * plain(e.across.value) /
                            (plain(e.load.value) * plain(e.plate_force));
     const Real here =
@@ -308,7 +243,7 @@ class CreepFlow : public IteratedStep<T> {
     return std::max(by_forces, here) + rounding<Real> * plain(start.time) * changes;
   }
 
-  T t_{0};  // at the start
+  CreepBalance<T> balance_;  // at the start
   bool converged_{false}, holds_{false};
 };
 
@@ -319,17 +254,6 @@ std::optional<CreepFlow<T>> creep(const SeriesEquation<T>& e, const SeriesState<
   std::optional<CreepFlow<T>> flow;
   if (!flow.emplace(e, start, limit, within_step).is_valid()) flow.reset();
   return flow;
-}
-
-/// Estimate of the rate at which friction damps a deviation from creep, 1/ε, 1/s: the largest one
-/// within the rounding of the velocities.
-template <class T>
-Real<T> relaxation_rate(const SeriesEquation<T>& e, const SeriesState<T>& s) {
-  const Real<T> v = plain(s.v), v_p = plain(e.plate_velocity.value), w = plain(e.across.value);
-  const Real<T> rounded = difference_error<Real<T>> * (abs(v) + abs(v_p));
-  const Real<T> speed = hypot(std::max(abs(v - v_p) - rounded, Real<T>(0)), w);
-  return plain(e.load.value) / plain(e.mass) *
-         (plain(e.plate_force) * (w / speed) * (w / speed) / speed + plain(e.plate_slope));
 }
 
 /// Step from a state: the Taylor series, or the slow motion where the fast transient is over: in
@@ -343,8 +267,7 @@ SeriesStep<T> series_step(const SeriesEquation<T>& e, const SeriesState<T>& star
   const bool slides = plain(start.v) != plain(e.plate_velocity.value) || plain(e.across.value) != 0;
   if (slides) step = SeriesFlow<T>(e, start, limit);
   if (slides && !(step.span() < plain(limit))) return step;
-  // In creep, the fast transient limits a Taylor step to some relaxation times.
-  if (slides && step.span() * relaxation_rate(e, start) < Real<T>(least_creep)) return step;
+  if (slides && creep_span(e, start, limit) < Real<T>(creep_steps) * step.span()) return step;
   if (const auto flow = creep(e, start, limit); flow && !(slides && flow->span() < step.span()))
     return *flow;
   return slides ? step : SeriesFlow<T>(e, start, limit);

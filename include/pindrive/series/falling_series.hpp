@@ -26,7 +26,7 @@ class FallingSeries {
       p->degree = order;
     }
   }
-  void rescale(Real part) {
+  void rescale(const Powers<Real>& part) {
     friction_.rescale(part);
     square_.rescale(part);
   }
@@ -37,16 +37,13 @@ class FallingSeries {
     auto &phi = friction_.c, &q = square_.c;
     const T scale = sign / law.velocity;
     if (law.shape != FallingShape::exponential) {
-      q[n] = T(0);
-      for (int i = 0; i <= n; ++i) q[n] += speed[i] * speed[n - i];
-      q[n] *= scale * scale;
+      const T ends = n == 0 ? speed[0] * speed[0] : 2 * speed[0] * speed[n];
+      q[n] = scale * scale * (ends + inner_square(speed, n));
     }
     if (n == 0) return phi[0] = law.at(sign * speed[0]);
+    if (law.shape == FallingShape::rational)
+      return phi[n] = -sum_of_products(q, phi, n, 1, n) / (1 + q[0]);
     T sum{0};
-    if (law.shape == FallingShape::rational) {
-      for (int i = 1; i <= n; ++i) sum += q[i] * phi[n - i];
-      return phi[n] = -sum / (1 + q[0]);
-    }
     if (law.shape == FallingShape::gaussian) {
       for (int i = 1; i <= n; ++i) sum += T(i) * q[i] * phi[n - i];
       return phi[n] = -sum / T(n);

@@ -190,12 +190,9 @@ class SeriesFlow : public SeriesStep<T> {
         r[n] = T(e.side) * u;
         d[n] = n == 0 ? T(e.side) : T(0);
       } else {
-        T square = n < 3 ? w_squared[n] : T(0), product = u;
-        for (int i = 0; i <= n; ++i) square += u_[i] * u_[n - i];
-        for (int i = 1; i < n; ++i) square -= r[i] * r[n - i];
-        r[n] = n == 0 ? sqrt(square) : square / (2 * r[0]);
-        for (int i = 1; i <= n; ++i) product -= r[i] * d[n - i];
-        d[n] = product / r[0];
+        const T squares = (n < 3 ? w_squared[n] : T(0)) + inner_square(u_, n) - inner_square(r, n);
+        r[n] = n == 0 ? sqrt(squares + u * u) : (squares / 2 + u_[0] * u) / r[0];
+        d[n] = (u - sum_of_products(r, d, n, 1, n)) / r[0];
       }
       friction[n] = e.plate_force * d[n] + e.plate_slope * u;
       if (falls) friction[n] += directed_falling(e, n, n);
@@ -228,9 +225,7 @@ class SeriesFlow : public SeriesStep<T> {
   T directed_falling(const SeriesEquation<T>& e, int n, int known) {
     const auto &d = inner(0).c, &phi = falling_plate.friction().c;
     falling_plate.extend(e.plate_falling, speed.c, T(1), n);
-    T sum{0};
-    for (int i = n - known; i <= n; ++i) sum += phi[i] * d[n - i];
-    return inner(2).c[n] = sum;
+    return inner(2).c[n] = sum_of_products(phi, d, n, n - known, n);
   }
 
  private:
@@ -259,12 +254,9 @@ class SeriesFlow : public SeriesStep<T> {
                  e.stiffness * x[n] - e.skin_factor.value * y[n];
       if (n > 0) others -= step * e.skin_factor.rate * y[n - 1];
       if (e.finger_falling.present()) others -= this->falling_at_finger(e, n);
-      T product{0}, square{0};  // d and ρ of this order without u of the next
-      for (int i = 1; i < n; ++i) {
-        product -= r[i + 1] * d[n - i];
-        square -= r[i + 1] * r[n - i + 1];
-      }
-      for (int i = 1; i < n; ++i) square += u[i + 1] * u[n - i + 1];
+      // d and ρ of this order without u of the next
+      const T product = -sum_of_products(r, d, n + 1, 2, n);
+      const T square = sum_of_products(u, u, n + 2, 2, n) - sum_of_products(r, r, n + 2, 2, n);
       T known = e.plate_slope * u[n];
       if (falls && n > 0) known += directed_falling(e, n, n - 1);  // without its part of order 0
       if (n == 0) {

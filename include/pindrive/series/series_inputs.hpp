@@ -30,10 +30,9 @@ class InputSeries {
 
   T operator[](int n) const { return n <= degree_ ? c_[n] : T(0); }
   int degree() const { return degree_; }
-  void rescale(Real part) {
-    step_ *= part;
-    Real factor{1};
-    for (int n = 0; n <= degree_; ++n, factor *= part) c_[n] *= factor;
+  void rescale(const Powers<Real>& part) {
+    step_ *= part[1];
+    for (int n = 1; n <= degree_; ++n) c_[n] *= part[n];
   }
 
   /// Order n of the derivative by time, per second.
@@ -44,9 +43,7 @@ class InputSeries {
   /// Order n of the product with a series.
   template <class Coefficients>
   T times(const Coefficients& c, int n) const {
-    T sum = c_[0] * c[n];
-    for (int i = 1, last = std::min(n, degree_); i <= last; ++i) sum += c_[i] * c[n - i];
-    return sum;
+    return sum_of_products(c_, c, n, 0, std::min(n, degree_));
   }
   /// Bound of the absolute value over the step.
   Real most() const {

@@ -51,29 +51,36 @@ class SeriesStep {
       p.degree = N;
     });
     position.degree = N + 1;
-    falling_plate.begin(step, N);
-    falling_finger.begin(step, N);
+    if (!e.held) stick_force.degree = 0;
+    if (e.skin_stiffness == 0) skin.degree = 0;
+    falling_plate.begin(step, e.plate_falling.present() ? N : 0);
+    falling_finger.begin(step, e.finger_falling.present() ? N : 0);
   }
 
   /// Part of the step at which the last terms are within the rounding of the first terms.
   Real suggested_part() const {
-    Real least = std::numeric_limits<Real>::infinity();
+    constexpr Real never = std::numeric_limits<Real>::infinity();
+    std::array<Real, 3> ratios{never, never,
+                               never};  // of the rounding to the terms from order N − 2 on
     for (const Polynomial<T>* p : {&velocity, &skin, &speed}) {
       const auto size = [&](int n) { return abs(plain(p->c[n])); };
-      const Real largest = std::max({size(0), size(1), size(2)});
-      for (int n = N - 2; n <= N; ++n)
-        if (size(n) > 0 && largest > 0)
-          least = std::min(least, exp(log(truncation_error<Real> * largest / size(n)) / n));
+      const Real known = truncation_error<Real> * std::max({size(0), size(1), size(2)});
+      for (int i = 0; i < 3 && known > 0; ++i)
+        if (size(N - 2 + i) > 0) ratios[i] = std::min(ratios[i], known / size(N - 2 + i));
     }
-    return least;
+    Real least = never;
+    for (int i = 0; i < 3; ++i)
+      if (ratios[i] < never) least = std::min(least, log(ratios[i]) / (N - 2 + i));
+    return least < never ? exp(least) : never;
   }
 
   void rescale(Real part) {
-    each([&](Polynomial<T>& p) { p.rescale(part); });
-    falling_plate.rescale(part);
-    falling_finger.rescale(part);
+    const Powers<Real> powers = powers_of(part);
+    each([&](Polynomial<T>& p) { p.rescale(powers); });
+    falling_plate.rescale(powers);
+    falling_finger.rescale(powers);
     for (InputSeries<T>* input : {&pushes_, &plate_velocity_, &load_, &finger_load_, &surface_})
-      input->rescale(part);
+      input->rescale(powers);
   }
 
   /// Order n of the inertial and given forces, N.
@@ -124,8 +131,8 @@ class SeriesStep {
       const bool by_rate = p == &velocity || p == &skin;
       const auto size = [&](int n) { return abs(plain(p->c[n])) * (by_rate ? n : 1); };
       Real total{0}, tail{0};
-      for (int n = 0; n <= N; ++n) total += size(n);
-      int n = N;
+      for (int n = 0; n <= p->degree; ++n) total += size(n);
+      int n = std::min(p->degree, N);
       while (n > needed && tail + size(n) <= removed_terms<Real> * total) tail += size(n--);
       needed = std::max(needed, n);
     }

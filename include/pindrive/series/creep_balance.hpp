@@ -1,0 +1,104 @@
+/// Balance of forces in creep: the sliding direction at which friction balances all further forces, and how long the
+/// motion that follows is smooth (see creep.hpp).
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "pindrive/numbers/limits.hpp"
+#include "pindrive/series/series_equation.hpp"
+
+namespace pindrive::detail {
+
+/// Ratio t = (x' − v_p)/w of a pin in creep, for a transverse velocity w >= 0.
+template <class T>
+class CreepBalance {
+ public:
+  using Real = detail::Real<T>;
+
+  /// Transverse velocity with w >= 0, by symmetry.
+  static Line<T> forward(const Line<T>& across) {
+    if (across.value < 0 || (across.value == 0 && across.rate < 0))
+      return {-across.value, -across.rate};
+    return across;
+  }
+  /// Time until the inputs or the zero of w end a step, up to a limit, s.
+  static Real farthest(const SeriesEquation<T>& e, Real limit) {
+    const Real reach = std::min(limit, e.input_reach());
+    return e.across.rate < 0 ? std::min(reach, -plain(e.across.value) / plain(e.across.rate))
+                             : reach;
+  }
+
+  /// Length of a first step of creep from a state, up to a limit, s; 0 for a pin that cannot creep.
+  Real span(const SeriesEquation<T>& e, const SeriesState<T>& s, Real limit) {
+    if (e.held || e.side != 0 || !e.finger_load.straight()) return Real(0);
+    if (!(e.load.value * e.plate_force > 0) || !solve(e, s, e.plate_velocity.rate)) return Real(0);
+    return std::min(time_scale(e, s), limit);
+  }
+
+  /// Computes t at a state, for an acceleration (m/s²); true if friction can balance all further forces.
+  bool solve(const SeriesEquation<T>& e, const SeriesState<T>& s, const T& acceleration) {
+    const T needed = (e.force.value - e.mass * acceleration - e.damping * e.plate_velocity.value -
+                      e.stiffness * s.x - e.skin_factor.value * s.skin) /
+                     e.load.value;
+    const T linear = (e.plate_slope + e.damping / e.load.value) * e.across.value;
+    T t = ratio_;
+    for (int tries = 0; tries < 60; ++tries) {
+      const T root = sqrt(1 + t * t), along = t / root;
+      T friction = e.plate_force, falls{0}, others{0};
+      if (e.plate_falling.present()) {
+        friction += e.plate_falling.at(e.across.value * root);
+        falls = e.plate_falling.slope(e.across.value * root) * e.across.value * along * along;
+      }
+      if (e.finger_falling.present()) {
+        const T side = T(e.finger_side), pressed = e.finger_load.value / e.load.value;
+        const T v = side * (e.plate_velocity.value + e.across.value * t);
+        others = side * pressed * e.finger_falling.at(v);
+        falls += pressed * e.finger_falling.slope(v) * e.across.value;
+      }
+      const T direct = friction * along + others;
+      const T slope = friction / (root * root * root) + falls + linear;
+      const T missing = needed - direct - linear * t, move = missing / slope;
+      const bool balanced =
+          abs(missing) <= rounding<Real> * (abs(needed) + abs(direct) + abs(linear * t));
+      const T most = 1 + abs(t);  // a longer move overshoots near the friction limit
+      t += move > most ? most : move < -most ? -most : move;
+      if (!(slope > 0 && abs(t) < Real(steepest_creep)))
+        return false;  // falling friction balances nothing
+      if (!balanced) continue;
+      ratio_ = t;
+      return true;
+    }
+    return false;
+  }
+
+  const T& ratio() const { return ratio_; }
+
+ private:
+  /// Estimate of the time scale of creep, s.
+  Real time_scale(const SeriesEquation<T>& e, const SeriesState<T>& s) const {
+    const Real t = plain(ratio_), load = plain(e.load.value), F = plain(e.plate_force);
+    const Real w = plain(e.across.value), v = plain(e.plate_velocity.value) + w * t;
+    const Real root = sqrt(1 + t * t), k = plain(e.stiffness);
+    const Real changes = k * abs(v) + abs(plain(e.force.rate)) + abs(plain(e.load.rate)) * F +
+                         abs(plain(e.skin_stiffness) * v) +
+                         abs(plain(e.skin_decay) * plain(s.skin)) + abs(plain(e.skin_drift)) +
+                         abs(plain(e.damping_rate) * v);
+    const Real f = plain(e.skin_factor.value);
+    const Real left = load * F * (1 - abs(t) / root);
+    return 1 / (changes / left + k * w * root * root * root / (load * F) +
+                (f != 0 ? abs(plain(e.skin_decay) / f) : Real(0)) +
+                abs(plain(e.across.rate)) * k / (load * F) + sqrt(k / plain(e.mass)) / 64);
+  }
+
+  T ratio_{0};
+};
+
+/// Length of a first step of creep from a state, up to a limit, s; 0 for a pin that cannot creep.
+template <class T>
+Real<T> creep_span(SeriesEquation<T> e, const SeriesState<T>& start, T limit) {
+  e.across = CreepBalance<T>::forward(e.across);
+  return CreepBalance<T>().span(e, start, CreepBalance<T>::farthest(e, plain(limit)));
+}
+
+}  // namespace pindrive::detail
