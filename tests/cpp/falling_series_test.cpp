@@ -87,9 +87,31 @@ void derivatives() {
     }
 }
 
+/// A law that is too small for a number at the begin of a step has no orders, but grows: its error is all of it.
+void underflows() {
+  for (const Shape shape : {Shape::exponential, Shape::gaussian}) {
+    const pd::FallingFriction<double> law{shape, 0.02, shape == Shape::gaussian ? 1e-3 : 3e-5};
+    pd::detail::Polynomial<double> speed;
+    speed.degree = pd::detail::series_order;
+    speed.c[0] = 0.03;
+    for (const double slows_by : {0.03, 0.02, 1e-3}) {
+      speed.c[1] = -slows_by;
+      pd::detail::FallingSeries<double> series;
+      series.begin(1, pd::detail::series_order);
+      for (int n = 0; n <= pd::detail::series_order; ++n) series.extend(law, speed.c, 1.0, n);
+      const double bound = series.error(law, pd::detail::sums_of(speed.c), 0);
+      const auto missed = static_cast<double>(exact(law, 0.03L - slows_by));
+      expect(series.friction().size() == 0 && bound >= 0.999 * missed, "an underflow is no error",
+             bound);
+      if (slows_by == 1e-3) expect(bound < 1e-200, "an error where a law remains zero", bound);
+    }
+  }
+}
+
 }  // namespace
 
 int main() {
+  underflows();
   within_bounds();
   derivatives();
   return failures == 0 ? 0 : 1;

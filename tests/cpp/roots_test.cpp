@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -12,6 +13,8 @@
 namespace pd = pindrive;
 
 namespace {
+
+constexpr double never = std::numeric_limits<double>::infinity();
 
 template <int Degree>
 std::vector<double> isolated(const pd::Oscillator<double>& oscillator, const pd::Path<double>& path,
@@ -78,6 +81,18 @@ int main() {
         std::printf("missed: case %d, sign change by %.17g\n", i, tau);
         ++failures;
         break;
+      }
+    }
+    // Without an end: what is found is the first of all, also far beyond.
+    if (ratio >= 1) {
+      const double first = pd::detail::first_root(oscillator, path, side, never);
+      const double far = found.empty() ? never : found[0];
+      const bool beyond = first > horizon && first < never;
+      if (far < never ? std::abs(first - far) > 1e-9 * far
+          : beyond    ? !(side * path.at(oscillator, 1.01 * first) < 0)
+                      : line && side * path.drift < 0) {
+        std::printf("without an end: case %d, %.17g instead of %.17g\n", i, first, far);
+        ++failures;
       }
     }
     for (const double root : found) {

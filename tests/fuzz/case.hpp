@@ -19,6 +19,29 @@ struct Rows {
   std::vector<double> at, value;
 };
 
+/// Term (cosine·cos Ωτ + sine·sin Ωτ) e^(−δτ) of a function.
+struct Term {
+  double cosine{}, sine{}, decay{}, frequency{};
+};
+/// Piece of a function of time from its begin on.
+struct Piece {
+  double begin{};
+  std::array<double, 6> polynomial{};
+  std::vector<Term> terms;
+};
+using Function = std::vector<Piece>;
+
+/// Friction that falls with speed, beside a curve of one row; its shape is the number of a FallingShape.
+struct Falling {
+  int shape{0};
+  double excess{}, velocity{1}, viscous{};
+};
+
+/// Inputs that may be functions.
+enum Input { mouse_velocity, plate_load, force, finger_load };
+inline constexpr std::array<const char*, 4> input_names{"mouse_velocity", "plate_load", "force",
+                                                        "finger_load"};
+
 /// A drive and its inputs, owned.
 struct Case {
   double mass{}, stiffness{}, damping{};
@@ -26,7 +49,9 @@ struct Case {
   std::array<Rows, 2> curve;      ///< kinetic friction over speed; one row is Coulomb
   double skin{never};             ///< stiffness of the finger
   Rows mouse_velocity, plate_load, force{{0}, {0}}, across{{0}, {0}},
-      finger_load{{0}, {1}};  ///< over time; one row is a constant
+      finger_load{{0}, {1}};          ///< over time; one row is a constant
+  std::array<Function, 4> functions;  ///< in place of the rows of an Input, where not empty
+  std::array<Falling, 2> law;         ///< of plate and finger
   double displacement{}, velocity{}, duration{};
   double travel{never}, stop_stiffness{never}, stop_damping{};
 };
@@ -53,6 +78,47 @@ inline void write(std::ostream& out, const Case& c) {
   if (c.travel < never)
     out << "stops " << c.travel << ' ' << (std::isinf(c.stop_stiffness) ? 0.0 : c.stop_stiffness)
         << ' ' << c.stop_damping << '\n';
+  for (std::size_t i = 0; i < c.law.size(); ++i)
+    if (const Falling& law = c.law[i]; law.shape != 0)
+      out << "law " << i << ' ' << law.shape << ' ' << law.excess << ' ' << law.velocity << ' '
+          << law.viscous << '\n';
+  for (std::size_t i = 0; i < c.functions.size(); ++i) {
+    if (c.functions[i].empty()) continue;
+    out << "function " << i << ' ' << c.functions[i].size();
+    for (const Piece& piece : c.functions[i]) {
+      out << "  " << piece.begin;
+      for (const double p : piece.polynomial) out << ' ' << p;
+      out << ' ' << piece.terms.size();
+      for (const Term& t : piece.terms)
+        out << ' ' << t.cosine << ' ' << t.sine << ' ' << t.decay << ' ' << t.frequency;
+    }
+    out << '\n';
+  }
+}
+
+/// A law after its name; false if the text is none.
+inline bool read_law(std::istream& in, Case& c) {
+  std::size_t contact = 0;
+  if (!(in >> contact) || contact >= c.law.size()) return false;
+  Falling& law = c.law[contact];
+  in >> law.shape >> law.excess >> law.velocity >> law.viscous;
+  return law.shape >= 0 && law.shape <= 3;
+}
+/// A function after its name; false if the text is none.
+inline bool read_function(std::istream& in, Case& c) {
+  std::size_t input = 0, pieces = 0;
+  if (!(in >> input >> pieces) || input >= c.functions.size() || pieces > 1000) return false;
+  Function& function = c.functions[input];
+  function.resize(pieces);
+  for (Piece& piece : function) {
+    std::size_t terms = 0;
+    in >> piece.begin;
+    for (double& p : piece.polynomial) in >> p;
+    if (!(in >> terms) || terms > 1000) return false;
+    piece.terms.resize(terms);
+    for (Term& t : piece.terms) in >> t.cosine >> t.sine >> t.decay >> t.frequency;
+  }
+  return true;
 }
 
 /// False if the text is no such drive.
@@ -82,6 +148,10 @@ inline bool read(std::istream& in, Case& c) {
     if (name == "stops") {
       in >> c.travel >> c.stop_stiffness >> c.stop_damping;
       if (c.stop_stiffness == 0) c.stop_stiffness = never;
+      continue;
+    }
+    if (name == "law" || name == "function") {
+      if (!(name == "law" ? read_law(in, c) : read_function(in, c))) return false;
       continue;
     }
     if (name != "force" && name != "across" && name != "finger_load") return false;

@@ -30,9 +30,9 @@ class Random {
   std::uint64_t counter_;
 };
 
-/// Family of drives: an aligned or oblique hand, end stops, or a compliant finger with a friction curve;
-/// any: one drive in ten with an oblique hand, and one in ten with stops.
-enum class Family { any, aligned, oblique, stops, skin };
+/// Family of drives: an aligned or oblique hand, end stops, a compliant finger with a friction curve, inputs that are
+/// functions, or friction that falls by a law; any: one drive in ten has each.
+enum class Family { any, aligned, oblique, stops, skin, functions, laws };
 
 class Draw {
  public:
@@ -83,6 +83,9 @@ class Draw {
       stop(c, critical, length);
     if (family_ == Family::skin || (family_ == Family::any && chance(0.1)))
       skin(c, critical, length);
+    if (family_ == Family::functions || (family_ == Family::any && chance(0.1)))
+      functions(c, omega, length);
+    if (family_ == Family::laws || (family_ == Family::any && chance(0.1))) laws(c);
     return c;
   }
 
@@ -155,6 +158,95 @@ class Draw {
       c.duration = std::min(c.duration, 3e2 * load * (c.limit[1] - least) / (c.skin * speed_));
     for (double& at : c.finger_load.at)  // within its time
       if (last > c.duration) at *= 0.8 * c.duration / last;
+  }
+
+  /// Functions in place of some inputs: strokes, sinusoids and exponentials, one after the other. The load of a
+  /// compliant finger has rows.
+  void functions(Case& c, double omega, double length) {
+    if (chance(0.7)) {
+      c.mouse_velocity = {{0}, {c.mouse_velocity.value[0]}};
+      // Where nothing pulls, rounding hides in which later derivative a pin leaves a plate without friction.
+      const double bend = c.limit[0] == 0 && c.displacement == 0 ? speed_ * omega * omega : 0;
+      c.functions[mouse_velocity] = function(omega, speed_, c.mouse_velocity.value[0], true, bend);
+      if (chance(0.3)) c.velocity = c.mouse_velocity.value[0];
+    }
+    if (chance(0.3)) {
+      c.force = {{0}, {0}};
+      // A stick force at its limit is judged by two derivatives of the force.
+      const double bend = c.stiffness * length * omega * omega;
+      c.functions[force] = function(omega, c.stiffness * length, 0, false, bend);
+    }
+    if (chance(0.3)) {
+      c.plate_load = {{0}, {1}};
+      c.functions[plate_load] = load(omega);
+    }
+    if (std::isinf(c.skin) && chance(0.3)) {
+      c.finger_load = {{0}, {1}};
+      c.functions[finger_load] = load(omega);
+    }
+  }
+  /// Function of one to three pieces from a value on; continuous where asked for.
+  Function function(double omega, double size, double value, bool continuous, double bend = 0) {
+    Function pieces;
+    double begin = 0;
+    for (int left = static_cast<int>(uniform(1, 4)); left > 0; --left) {
+      Piece piece{begin, {}, {}};
+      const double lasts = tidy(period_ * decade(-1.5, 0.2));
+      if (chance(0.4)) {  // a stroke, or another polynomial
+        const double height = size * uniform(-1, 1), s = 1 / lasts;
+        if (chance(0.5))
+          piece.polynomial = {0, 0, height * s * s, -2 * height * s * s * s, height * s * s * s * s,
+                              0};
+        else
+          for (std::size_t n = 1; n < 6; ++n)
+            if (chance(0.5)) piece.polynomial[n] = height * std::pow(s, static_cast<double>(n));
+      }
+      if (piece.polynomial[2] == 0) piece.polynomial[2] = bend;
+      if (chance(0.6)) {
+        const double height = tidy(size * uniform(-1, 1));
+        piece.terms.push_back({0, height, chance(0.2) ? omega * decade(-2, 0) : 0,
+                               chance(0.1) ? omega : omega * decade(-1, 1)});
+      }
+      if (chance(0.3))
+        piece.terms.push_back({size * uniform(-1, 1), 0, omega * decade(-1, 1.5), 0});
+      if (continuous || chance(0.5)) {
+        piece.polynomial[0] = value;
+        for (const Term& term : piece.terms) piece.polynomial[0] -= term.cosine;
+      }
+      begin += lasts;
+      value = at_end(piece, lasts);
+      pieces.push_back(piece);
+    }
+    return pieces;
+  }
+  /// Load that begins at 1 and remains above zero: a sinusoid, a decay, or both.
+  Function load(double omega) {
+    const double depth = uniform(0, 0.95), part = chance(0.5) ? 1 : uniform(0, 1);
+    Piece piece{0, {1 - depth * part, 0, 0, 0, 0, 0}, {}};
+    if (part > 0) piece.terms.push_back({depth * part, 0, omega * decade(-1, 1.5), 0});
+    if (part < 1) piece.terms.push_back({0, depth * (1 - part), 0, omega * decade(-1, 1)});
+    return {piece};
+  }
+  static double at_end(const Piece& piece, double tau) {
+    double value = 0;
+    for (std::size_t n = 6; n-- > 0;) value = value * tau + piece.polynomial[n];
+    for (const Term& t : piece.terms)
+      value += (t.cosine * std::cos(t.frequency * tau) + t.sine * std::sin(t.frequency * tau)) *
+               std::exp(-t.decay * tau);
+    return value;
+  }
+
+  /// Laws on plate and rigid finger.
+  void laws(Case& c) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      if (chance(0.3) || (i == 1 && !std::isinf(c.skin))) continue;
+      c.curve[i] = {{0}, {c.curve[i].value[0]}};
+      c.law[i] = {1 + static_cast<int>(uniform(0, 2.999)), force_ * decade(-2.5, 0),
+                  tidy(speed_ * decade(-1.5, 0.5)),
+                  chance(0.5) ? 0 : force_ / speed_ * decade(-3, 0)};
+      c.limit[i] =
+          (c.curve[i].value[0] + c.law[i].excess) * (chance(0.5) ? 1 : tidy(uniform(1, 2.5)));
+    }
   }
 
   Rows curve() {

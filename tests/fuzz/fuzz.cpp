@@ -196,7 +196,7 @@ int main(int argc, char** argv) {
   if (!parse(words, options)) {
     std::fprintf(stderr,
                  "usage: fuzz COUNT SEED [--from NUMBER] [--threads N] [--log FILE]\n"
-                 "                       [--family any|aligned|oblique|stops|skin]\n"
+                 "                       [--family any|aligned|oblique|stops|skin|functions|laws]\n"
                  "       fuzz --replay FILE...\n");
     return 2;
   }

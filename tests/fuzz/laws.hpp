@@ -101,6 +101,14 @@ inline Case mirror(Case c) {
   turn(c.mouse_velocity);
   turn(c.force);
   turn(c.across);
+  for (const Input input : {mouse_velocity, force})
+    for (Piece& piece : c.functions[input]) {
+      for (double& p : piece.polynomial) p = 0 - p;
+      for (Term& term : piece.terms) {
+        term.cosine = 0 - term.cosine;
+        term.sine = 0 - term.sine;
+      }
+    }
   c.displacement = 0 - c.displacement;
   c.velocity = 0 - c.velocity;
   return c;
@@ -147,6 +155,8 @@ inline std::vector<double> all_rows(const Case& c) {
   std::vector<double> times;
   for (const Rows* rows : {&c.mouse_velocity, &c.plate_load, &c.force, &c.across, &c.finger_load})
     times.insert(times.end(), rows->at.begin(), rows->at.end());
+  for (const Function& function : c.functions)
+    for (const Piece& piece : function) times.push_back(piece.begin);
   std::sort(times.begin(), times.end());
   return times;
 }
@@ -167,6 +177,18 @@ inline Rows from(const Rows& rows, double t, const std::vector<double>& all) {
     if (!(rows.at[i] > t)) continue;
     later.at.push_back(as_one(all, rows.at[i]) - t);
     later.value.push_back(rows.value[i]);
+  }
+  return later;
+}
+
+/// A function from a time on.
+inline Function from(const Function& function, double t, const std::vector<double>& all) {
+  Function later;
+  for (std::size_t i = 0; i < function.size(); ++i) {
+    if (i + 1 < function.size() && function[i + 1].begin <= t) continue;
+    later.push_back(function[i]);
+    later.back().begin =
+        (function[i].begin > t ? as_one(all, function[i].begin) : function[i].begin) - t;
   }
   return later;
 }
@@ -205,11 +227,12 @@ struct Cut {
     for (Rows* rows :
          {&rest.mouse_velocity, &rest.plate_load, &rest.force, &rest.across, &rest.finger_load})
       *rows = from(*rows, time, all);
+    for (Function& function : rest.functions) function = from(function, time, all);
     rest.duration = whole.duration - time;
     const Place now = place(motion, *segment, tau);
     const pd::Mode mode = segment->mode;
     x = now[0];
-    v = mode.plate == pd::ContactState::stick    ? rest.mouse_velocity.value[0]
+    v = mode.plate == pd::ContactState::stick    ? motion.inputs().mouse_velocity.from(time).value
         : mode.finger == pd::ContactState::stick ? 0
                                                  : now[1];
     held = mode.stuck();
@@ -222,7 +245,9 @@ struct Cut {
   Followed follow(const Place& most, double part) const {
     Case moved = rest;
     moved.damping += part * std::sqrt(rest.mass * rest.stiffness);
-    for (double& force : moved.force.value) force += part * rest.stiffness * most[0];
+    for (double& value : moved.force.value) value += part * rest.stiffness * most[0];
+    for (Piece& piece : moved.functions[force])
+      piece.polynomial[0] += part * rest.stiffness * most[0];
     // No farther than a rigid stop, nor than the skin can hold.
     const double reach = std::isinf(rest.stop_stiffness) ? rest.travel : never;
     const double grip = rest.limit[1] * rest.finger_load.value[0] / rest.skin;

@@ -84,7 +84,8 @@ struct Totals {
   }
 };
 
-inline constexpr std::array<const char*, 5> families{"any", "aligned", "oblique", "stops", "skin"};
+inline constexpr std::array<const char*, 7> families{"any",  "aligned",   "oblique", "stops",
+                                                     "skin", "functions", "laws"};
 
 /// The family of a name; false if there is none.
 inline bool read(const std::string& name, Family& family) {

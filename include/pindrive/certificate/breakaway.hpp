@@ -35,9 +35,14 @@ T spare_stick_limit(const Drive<T>& drive, const Mode& mode, const Beginning<T>&
   const T at_finger = drive.finger.static_limit * now.finger_load;
   const T pull = drive.damping * now.v + drive.stiffness * now.x - now.force;
   const T inertia = drive.mass * now.plate_velocity.rate;
-  if (plate && finger && inertia == 0) return std::max(at_plate + at_finger - abs(pull), T(0));
+  const T second = now.plate_velocity.second();
+  const T parts =
+      inertia != 0  ? inertia
+      : second != 0 ? second
+                    : third_or_later(now.plate_velocity.template coefficients<beginning_orders>());
+  if (plate && finger && parts == 0) return std::max(at_plate + at_finger - abs(pull), T(0));
   // Each contact alone. If the surfaces part, the slipping contact slips in the direction of parting.
-  const int side = inertia > 0 ? 1 : -1;
+  const int side = parts > 0 ? 1 : -1;
   const T of_finger =
       plate && finger ? -side * drive.finger.kinetic * now.finger_load : now.finger_force;
   const T of_plate =

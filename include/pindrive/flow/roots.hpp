@@ -16,7 +16,7 @@
 namespace pindrive::detail {
 
 /// Sign changes of a path in (0, horizon], one by one; infinity after the last. Degree 1: an
-/// oscillation with a constant; 2: with a line too (finite horizon).
+/// oscillation with a constant; 2: with a line too (a finite horizon, unless overdamped).
 ///
 /// `side` is the sign of the path just after τ = 0, given by the mode: a path that starts at zero,
 /// or tangentially, leaves zero to this side, and its start is no root. Rounded numbers that
@@ -83,6 +83,12 @@ class Roots {
     return oscillator_.bend(path_.value, path_.slope) > 0 ? 1 : -1;
   }
 
+  /// True if a path that decays to its centre, or its line, ends on the other side.
+  bool ends_beyond() const {
+    if (oscillator_.alpha() > 0) return false;
+    return side_ * (Degree == 1 ? path_.centre() : path_.drift) < 0;
+  }
+
   /// Last extremum of a growing oscillation that turns back before zero.
   T skip_short_swings(T value) {
     const T growth = 2 * oscillator_.alpha() * extrema_.spacing();  // in a period
@@ -102,7 +108,7 @@ class Roots {
     const T rate = oscillator_.slowest_rate();
     if (rate > 0) return right < never || approaching_ ? std::min(right, left_ + 16 / rate) : left_;
     if (right < never) return right;
-    if (!shrinks() || !(side_ * path_.centre() < 0)) return left_;
+    if (!ends_beyond()) return left_;
     T step = -1 / rate;
     while (side_ * path_.at(oscillator_, left_ + step) > 0) step *= 2;
     return left_ + step;

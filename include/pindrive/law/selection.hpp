@@ -178,7 +178,9 @@ class Selection {
   /// Tests the mode in which a contact, and `other` if it sticks too, keeps the pin on its surface.
   bool try_stick(const ContactPoint& on, const ContactPoint& other) {
     if (!is_admissible_beside(on.surface, other)) return false;
-    if (!pin_.stop.is_consistent(pin_.state.v, on.surface.rate, {})) return false;
+    if (!pin_.stop.is_consistent(pin_.state.v, on.surface.rate,
+                                 {on.surface.second(), later(on.surface)}))
+      return false;
     const T own_limit = on.contact.static_limit;
     const T other_limit = other.stuck() ? other.contact.static_limit : T(0);
     const Line<T> limit{own_limit * on.load.value + other_limit * other.load.value,
@@ -189,6 +191,8 @@ class Selection {
       return false;
     Path<T> most = limit;
     most.curvature = own_limit * on.load.second() + other_limit * other.load.second();
+    const bool powerless = own_limit == 0 && other_limit == 0;
+    if (powerless && relative_beginning(on.surface) != 0) return false;
     T scale;
     selected_.stick_force = holding_force_from(force, on, other, scale);
     selected_.guards.clear();
@@ -256,7 +260,10 @@ class Selection {
       const T own = side.force_rate(pin_.state.v, selected_.acceleration).value,
               jerk = own - needed.drift;
       const bool none = abs(jerk) <= rounding<T> * (scale + abs(own));
-      return side.is_admissible(pin_.state, T(0), none ? T(0) : jerk, -needed.curvature);
+      const bool frictionless = side.contact.static_limit == 0 && side.start.friction == 0;
+      const T third = needed.curvature == 0 && frictionless ? relative_beginning(side.surface)
+                                                            : -needed.curvature;
+      return side.is_admissible(pin_.state, T(0), none ? T(0) : jerk, third);
     };
     return is_admissible(pin_.plate, pin_.finger, at_plate) &&
            is_admissible(pin_.finger, pin_.plate, at_finger);
@@ -280,9 +287,29 @@ class Selection {
     const T relative = surface.rate - side.surface.rate;
     if (relative != 0) return !side.stuck() && side.is_admissible(pin_.state, relative);
     const T second = surface.second() - side.surface.second();
-    const T third = surface.third() - side.surface.third();
+    const T third = later(surface) - later(side.surface);
     if (side.stuck()) return second == 0 && third == 0;
     return side.is_admissible(pin_.state, relative, second, third);
+  }
+
+  static T later(const Curve<T>& velocity) {
+    return third_or_later(velocity.template coefficients<beginning_orders>());
+  }
+  /// The first derivative from the third on in which a pin without friction leaves the velocity of a surface, by its
+  /// sign; 0 if it does not.
+  T relative_beginning(const Curve<T>& surface) const {
+    const auto plate = pin_.plate.surface.template coefficients<beginning_orders>();
+    const auto force = pin_.force.template coefficients<beginning_orders>();
+    auto relative = surface.template coefficients<beginning_orders>();
+    T x = pin_.state.x, v = pin_.state.v;
+    for (std::size_t n = 0; n + 1 < beginning_orders; ++n) {
+      const T inertia = pin_.drive.mass * T(n + 1);
+      const T next = plate[n + 1] + (force[n] - damping() * v - stiffness() * x) / inertia;
+      x = v / T(n + 1);
+      v = next;
+      relative[n + 1] = v - relative[n + 1];
+    }
+    return third_or_later(relative);
   }
 
   /// True if a slipping pin is consistent with the state of the stops.

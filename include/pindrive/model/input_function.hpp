@@ -218,6 +218,15 @@ struct Curve {
   /// Second and third derivative at the instant.
   T second() const { return straight() ? T(0) : derivatives(T(0))[2]; }
   T third() const { return straight() ? T(0) : derivatives(T(0))[3]; }
+  /// Taylor coefficients at the instant.
+  template <std::size_t count>
+  [[gnu::noinline]] std::array<T, count> coefficients() const {
+    std::array<T, count> c{};
+    if (!straight()) piece->expand(since, T(1), c, static_cast<int>(count) - 1);
+    c[0] = value;
+    c[1] = rate;
+    return c;
+  }
   /// The same input from τ on.
   Curve from(T tau) const {
     Curve later = *this;
@@ -237,4 +246,17 @@ struct Curve {
   }
 };
 
+namespace detail {
+
+/// Orders of a motion by which it is decided how it begins.
+inline constexpr std::size_t beginning_orders = 9;
+
+/// The first coefficient of order 3 or more that is not zero; 0 without one.
+template <class T>
+T third_or_later(const std::array<T, beginning_orders>& c) {
+  const auto first = std::find_if(c.begin() + 3, c.end(), [](const T& each) { return each != 0; });
+  return first == c.end() ? T(0) : *first;
+}
+
+}  // namespace detail
 }  // namespace pindrive

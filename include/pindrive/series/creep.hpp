@@ -128,6 +128,7 @@ class CreepFlow : public IteratedStep<T> {
       T others = e.stiffness * x[n] + e.skin_factor.value * y[n] - this->given_force(e, n, step) +
                  e.mass * acceleration_[n];
       if (n > 0) others += step * (e.damping_rate * v[n - 1] + e.skin_factor.rate * y[n - 1]);
+      others += this->bent_damper_force(e, n);
       if (n > 0 && n < N) {
         const T free = (1 - d[0] * d[0]) / s[0];
         T slope = e.plate_force * free + e.plate_slope * w, damping = e.damping, fallen{0};
@@ -185,7 +186,8 @@ class CreepFlow : public IteratedStep<T> {
               this->missed_inputs(e) +
               abs(S) * (load.beyond(v) + most_load * this->plate_velocity_.missed()) +
               F * (load.beyond(d) + most_load * direction);
-    Real falls{0};  // slopes of falling friction, N s/m
+    Real falls{0};           // slopes of falling friction, N s/m
+    Real least_friction{F};  // at a load factor of 1, N
     if (e.plate_falling.present()) {
       const auto& phi = falling_plate.friction().c;
       std::array<T, N + 2> directed{};
@@ -195,20 +197,19 @@ class CreepFlow : public IteratedStep<T> {
       missed += load.beyond(sums_of(directed)) +
                 most_load * (beyond(parts, d) + d[0] * error + parts[0] * direction);
       falls += most_load * falling_plate.steepest(e.plate_falling, r);
+      least_friction += max(Real(0), 2 * abs(plain(phi[0])) - parts[0] - error);
     }
     if (e.finger_falling.present()) {
-      const Real pressed = plain(e.finger_load.value), change = plain(e.finger_load.rate) * h;
-      const Sums parts = sums_of(falling_finger.friction().c);
+      const auto& pressed = this->finger_load_;
       const Real error = falling_finger.error(e.finger_falling, v, Real(0));
-      const Real most = max(pressed, pressed + change);
-      missed += most * (parts[N] + error) + abs(change) * (parts[N - 1] - parts[N]);
-      falls += most * falling_finger.steepest(e.finger_falling, v);
+      missed += pressed.beyond(sums_of(falling_finger.friction().c)) + pressed.most() * error;
+      falls += pressed.most() * falling_finger.steepest(e.finger_falling, v);
     }
     const Real missed_skin =
         K * last(velocity, N) + (abs(decay) + (N + 1) * abs(f_change) / h) * last(skin, N);
     const Real steep = sqrt(1 + t[0] * t[0]);
-    const Real gamma = std::min(b, b + b_change) +
-                       least_load * F / (most_w * steep * steep * steep) +
+    const Real gamma = std::min(b, b + b_change) - this->bent_damping(e) +
+                       least_load * least_friction / (most_w * steep * steep * steep) +
                        std::min(S * least_load, S * most_load) - falls;
     const Real grown = exp(max(Real(0), f < 0 ? -decay / f : Real(0)) * h) * h;
     const Real left = gamma - k * h - K * grown;
@@ -237,7 +238,7 @@ class CreepFlow : public IteratedStep<T> {
         abs(plain(e.plate_velocity.rate)) + abs(plain(e.across.rate * balance_.ratio()));
     const Real root = hypot(Real(1), plain(balance_.ratio()));
     const Real by_forces = difference_error<Real> * sizes * plain(e.across.value) /
-                           (plain(e.load.value) * plain(e.plate_force));
+                           plain(e.load.value * balance_.friction(e));
     const Real here =
         std::min(by_forces * root * root * root, creep_error<Real> * abs(plain(start.v)));
     return std::max(by_forces, here) + rounding<Real> * plain(start.time) * changes;

@@ -31,8 +31,9 @@ class CreepBalance {
 
   /// Length of a first step of creep from a state, up to a limit, s; 0 for a pin that cannot creep.
   Real span(const SeriesEquation<T>& e, const SeriesState<T>& s, Real limit) {
-    if (e.held || e.side != 0 || !e.finger_load.straight()) return Real(0);
-    if (!(e.load.value * e.plate_force > 0) || !solve(e, s, e.plate_velocity.rate)) return Real(0);
+    if (e.held || e.side != 0) return Real(0);
+    const bool drags = e.plate_force > 0 || e.plate_falling.present();
+    if (!(drags && e.load.value > 0) || !solve(e, s, e.plate_velocity.rate)) return Real(0);
     return std::min(time_scale(e, s), limit);
   }
 
@@ -56,11 +57,11 @@ class CreepBalance {
         others = side * pressed * e.finger_falling.at(v);
         falls += pressed * e.finger_falling.slope(v) * e.across.value;
       }
-      const T direct = friction * along + others;
+      const T at_plate = friction * along;
       const T slope = friction / (root * root * root) + falls + linear;
-      const T missing = needed - direct - linear * t, move = missing / slope;
-      const bool balanced =
-          abs(missing) <= rounding<Real> * (abs(needed) + abs(direct) + abs(linear * t));
+      const T missing = needed - at_plate - others - linear * t, move = missing / slope;
+      const bool balanced = abs(missing) <= rounding<Real> * (abs(needed) + abs(at_plate) +
+                                                              abs(others) + abs(linear * t));
       const T most = 1 + abs(t);  // a longer move overshoots near the friction limit
       t += move > most ? most : move < -most ? -most : move;
       if (!(slope > 0 && abs(t) < Real(steepest_creep)))
@@ -73,11 +74,15 @@ class CreepBalance {
   }
 
   const T& ratio() const { return ratio_; }
+  /// Friction of the plate at a load factor of 1, without its part that grows with the speed, N.
+  T friction(const SeriesEquation<T>& e) const {
+    return e.plate_force + e.plate_falling.at(e.across.value * sqrt(1 + ratio_ * ratio_));
+  }
 
  private:
   /// Estimate of the time scale of creep, s.
   Real time_scale(const SeriesEquation<T>& e, const SeriesState<T>& s) const {
-    const Real t = plain(ratio_), load = plain(e.load.value), F = plain(e.plate_force);
+    const Real t = plain(ratio_), load = plain(e.load.value), F = plain(friction(e));
     const Real w = plain(e.across.value), v = plain(e.plate_velocity.value) + w * t;
     const Real root = sqrt(1 + t * t), k = plain(e.stiffness);
     const Real changes = k * abs(v) + abs(plain(e.force.rate)) + abs(plain(e.load.rate)) * F +

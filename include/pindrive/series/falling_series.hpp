@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "pindrive/flow/polynomial.hpp"
 #include "pindrive/model/model.hpp"
+#include "pindrive/numbers/limits.hpp"
 
 namespace pindrive::detail {
 
@@ -58,10 +60,12 @@ class FallingSeries {
     const Sums<Real> phi = sums_of(friction_.c);
     const Real by_speed = steepest(law, speed) * of_speed, v = plain(law.velocity);
     if (law.shape == FallingShape::exponential)
-      return beyond(speed, phi) / v * exp(speed[1] / v) + by_speed;
+      return grown(beyond(speed, phi) / v, speed[1] / v) + by_speed +
+             underflow(law, plain(speed[0] - 2 * speed[1]) / v);
     const Sums<Real> q = sums_of(square_.c);
     const Real cut = beyond(speed, speed) / (v * v), residual = beyond(q, phi) + phi[0] * cut;
-    return (law.shape == FallingShape::gaussian ? residual * exp(q[1] + cut) : residual) + by_speed;
+    if (law.shape == FallingShape::rational) return residual + by_speed;
+    return grown(residual, q[1] + cut) + by_speed + underflow(law, q[0] - 2 * q[1] - cut);
   }
 
   /// Bound of |dφ/dr| over the step, N s/m.
@@ -75,6 +79,19 @@ class FallingSeries {
   }
 
  private:
+  static Real grown(Real residual, Real exponent) {
+    return residual > 0 ? residual * exp(exponent) : Real(0);
+  }
+  /// Bound of φ = excess·e^(−p) over a step with p >= `least`, if it underflows at the begin, so that all its orders
+  /// are lost, N; else 0.
+  Real underflow(const FallingFriction<T>& law, Real least) const {
+    constexpr Real smallest = std::numeric_limits<Real>::min() / rounding<Real>;
+    const Real excess = plain(law.excess);
+    if (!(excess > 0) || abs(plain(friction_.c[0])) > smallest * std::max(excess, Real(1)))
+      return Real(0);
+    return excess * exp(-std::max(least, Real(0)));
+  }
+
   Polynomial<T> friction_, square_;  // φ, q
 };
 

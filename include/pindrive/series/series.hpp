@@ -323,8 +323,9 @@ class SeriesFlow : public SeriesStep<T> {
                      turning.missed + this->missed_inputs(e);
     const Real missed_skin =
         K * last(velocity, N) + (abs(decay) + (N + 1) * abs(f_change) / h) * last(skin, N);
-    const Real falls = std::min(b, b + b_change) + std::min(Real(0), S * most_load) -
-                       most_load * steepest_fall(e) - steepest_fall_at_finger(e);
+    const Real falls = std::min(b, b + b_change) - this->bent_damping(e) +
+                       std::min(Real(0), S * most_load) - most_load * steepest_fall(e) -
+                       steepest_fall_at_finger(e);
     const Real growth = exp(max({Real(0), -falls / m, f < 0 ? -decay / f : Real(0)}) * h);
     const Real error =
         h * growth * (missed / sqrt(m) + (K > 0 ? missed_skin / sqrt(K) : Real(0)));  // sqrt(2 E²)
@@ -338,7 +339,8 @@ class SeriesFlow : public SeriesStep<T> {
         decay != 0 ? most_f * sums_of(skin.c)[0] + k * sums_of(position.c)[0] : Real(0);
     const Real of_velocity = rounding_of(sums_of(velocity.c));
     const auto over = [](Real missing, Real allowed) {
-      return missing <= allowed ? Real(0) : allowed > 0 ? missing / allowed : never;
+      if (missing <= allowed) return Real(0);
+      return missing < never && allowed > 0 ? missing / allowed : never;
     };
     Real excess = max(over(v_bound, of_velocity + step_error<Real> * forces * h / m),
                       over(speed_bound, rounding_of(from_rest(speed.c)) + of_velocity));

@@ -56,6 +56,13 @@ class InputSeries {
     const Real a = plain(c_[0]);
     return degree_ == 1 ? std::min(a, a + plain(c_[1])) : a - change();
   }
+  /// Bound of the distance from its tangent over the step.
+  Real bend() const {
+    using std::abs;
+    Real sum{0};
+    for (int n = 2; n <= degree_; ++n) sum += abs(plain(c_[n]));
+    return sum;
+  }
   /// Bound of the change over the step.
   Real change() const {
     using std::abs;

@@ -76,9 +76,9 @@ class SeriesMode {
       e.force.value -= friction * inputs_.finger_load.value;
       e.force.rate -= friction * inputs_.finger_load.rate;
       e.finger_force = friction;
-      e.finger_load = inputs_.finger_load;
     }
     const Curve<T>& load = inputs_.finger_load;
+    if (mode_.finger != ContactState::absent) e.finger_load = load;  // also limits a stick force
     if (has_slider_state()) {
       e.skin_factor = {finger().slope * load.value, finger().slope * load.rate};
       e.skin_stiffness = e.skin_decay = drive_.finger.stiffness;

@@ -93,15 +93,22 @@ class SeriesStep {
   T damper_force(const SeriesEquation<T>& e, int n, Real step) const {
     T force = e.damping * velocity.c[n];
     if (e.damping_rate != 0 && n > 0) force += step * e.damping_rate * velocity.c[n - 1];
-    if (!e.finger_load.straight())
-      for (int i = 2; i <= n; ++i) force += e.finger_slope * finger_load_[i] * velocity.c[n - i];
-    return force;
+    return force + bent_damper_force(e, n);
+  }
+  /// Part of it by a load of the finger beyond its tangent, N.
+  T bent_damper_force(const SeriesEquation<T>& e, int n) const {
+    if (e.finger_load.straight()) return T(0);
+    return e.finger_slope * sum_of_products(finger_load_, velocity.c, n, 2, n);
   }
   /// Order n of the falling friction of a rigid finger, in the direction of x', N.
   T falling_at_finger(const SeriesEquation<T>& e, int n) {
     const T side = T(e.finger_side);
     falling_finger.extend(e.finger_falling, velocity.c, side, n);
     return side * finger_load_.times(falling_finger.friction().c, n);
+  }
+  /// Bound of the change of the damping by that load, N s/m.
+  Real bent_damping(const SeriesEquation<T>& e) const {
+    return std::abs(plain(e.finger_slope)) * finger_load_.bend();
   }
   /// Bound of the residual from the terms of the inputs beyond the last order, N.
   Real missed_inputs(const SeriesEquation<T>& e) const {
