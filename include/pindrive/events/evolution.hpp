@@ -228,9 +228,10 @@ class Evolution {
   bool in_equilibrium() const {
     const State<T>& s = pin.state;
     if (!has_constant_inputs() || pin.held() || pin.finger.has_slider_state()) return false;
+    // Slow by strong damping is not at rest.
+    const T net = pin.drive.mass * abs(selected.acceleration) + pin.drive.damping * abs(s.v);
     return abs(s.v) <= rest_speed() &&
-           pin.drive.mass * abs(selected.acceleration) <=
-               T(rest_tolerance) * pin.drive.stiffness * s.position_scale;
+           net <= T(rest_tolerance) * pin.drive.stiffness * s.position_scale;
   }
   /// Begins the segment of a pin in equilibrium.
   void stay(Segment<T>& segment, const Force<T>& plate, const Force<T>& finger) {
