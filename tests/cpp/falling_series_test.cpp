@@ -87,7 +87,7 @@ void derivatives() {
     }
 }
 
-/// A law that is too small for a number at the begin of a step has no orders, but grows: its error is all of it.
+/// A law that underflows at the begin of a step loses all orders: the bound is the largest value of the law.
 void underflows() {
   for (const Shape shape : {Shape::exponential, Shape::gaussian}) {
     const pd::FallingFriction<double> law{shape, 0.02, shape == Shape::gaussian ? 1e-3 : 3e-5};

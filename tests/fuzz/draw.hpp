@@ -160,8 +160,8 @@ class Draw {
       if (last > c.duration) at *= 0.8 * c.duration / last;
   }
 
-  /// Functions in place of some inputs: strokes, sinusoids and exponentials, one after the other. The load of a
-  /// compliant finger has rows.
+  /// Functions in place of some inputs: strokes, sinusoids and exponentials in sequence. The load of a compliant finger
+  /// has rows.
   void functions(Case& c, double omega, double length) {
     if (chance(0.7)) {
       c.mouse_velocity = {{0}, {c.mouse_velocity.value[0]}};

@@ -61,7 +61,7 @@ class SeriesStep {
   Real suggested_part() const {
     constexpr Real never = std::numeric_limits<Real>::infinity();
     std::array<Real, 3> ratios{never, never,
-                               never};  // of the rounding to the terms from order N − 2 on
+                               never};  // least allowed over present, from order N − 2 on
     for (const Polynomial<T>* p : {&velocity, &skin, &speed}) {
       const auto size = [&](int n) { return abs(plain(p->c[n])); };
       const Real known = truncation_error<Real> * std::max({size(0), size(1), size(2)});

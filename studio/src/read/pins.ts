@@ -42,7 +42,7 @@ function failed(answer: Answer): answer is Failure {
   return answer !== null && "failed" in answer;
 }
 
-/** Samples of shares of the pins at the same times as those of all pins; it took as long as the slowest share. */
+/** Joins the samples of the shares; they took as long as the slowest share. */
 function together(parts: readonly Samples[], shares: readonly number[]): Samples {
   const { until, times } = parts[0]!;
   const pins = shares.reduce((sum, share) => sum + share, 0);
