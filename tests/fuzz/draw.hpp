@@ -165,14 +165,14 @@ class Draw {
   void functions(Case& c, double omega, double length) {
     if (chance(0.7)) {
       c.mouse_velocity = {{0}, {c.mouse_velocity.value[0]}};
-      // Where nothing pulls, rounding hides in which later derivative a pin leaves a plate without friction.
-      const double bend = c.limit[0] == 0 && c.displacement == 0 ? speed_ * omega * omega : 0;
+      // A stick force at its limit is judged by two derivatives. Round values bring it there, or no force at all.
+      const bool at_limit = round_ || (c.limit[0] == 0 && c.displacement == 0);
+      const double bend = at_limit ? speed_ * omega * omega : 0;
       c.functions[mouse_velocity] = function(omega, speed_, c.mouse_velocity.value[0], true, bend);
       if (chance(0.3)) c.velocity = c.mouse_velocity.value[0];
     }
     if (chance(0.3)) {
       c.force = {{0}, {0}};
-      // A stick force at its limit is judged by two derivatives of the force.
       const double bend = c.stiffness * length * omega * omega;
       c.functions[force] = function(omega, c.stiffness * length, 0, false, bend);
     }
