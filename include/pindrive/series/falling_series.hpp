@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -45,13 +46,8 @@ class FallingSeries {
     if (n == 0) return phi[0] = law.at(sign * speed[0]);
     if (law.shape == FallingShape::rational)
       return phi[n] = -sum_of_products(q, phi, n, 1, n) / (1 + q[0]);
-    T sum{0};
-    if (law.shape == FallingShape::gaussian) {
-      for (int i = 1; i <= n; ++i) sum += T(i) * q[i] * phi[n - i];
-      return phi[n] = -sum / T(n);
-    }
-    for (int i = 1; i <= n; ++i) sum += T(i) * speed[i] * phi[n - i];
-    return phi[n] = -scale * sum / T(n);
+    exponent_rate_[n] = T(n) * (law.shape == FallingShape::gaussian ? q[n] : scale * speed[n]);
+    return phi[n] = -sum_of_products(exponent_rate_, phi, n, 1, n) / T(n);
   }
 
   /// Bound of the error of φ over the step, N: from the terms of its equation beyond the last order,
@@ -92,7 +88,8 @@ class FallingSeries {
     return excess * exp(-std::max(least, Real(0)));
   }
 
-  Polynomial<T> friction_, square_;  // φ, q
+  Polynomial<T> friction_, square_;                  // φ, q
+  std::array<T, series_order + 1> exponent_rate_{};  // n p_n of φ = excess·e^(−p)
 };
 
 }  // namespace pindrive::detail

@@ -225,6 +225,7 @@ class SeriesFlow : public SeriesStep<T> {
   T directed_falling(const SeriesEquation<T>& e, int n, int known) {
     const auto &d = inner(0).c, &phi = falling_plate.friction().c;
     falling_plate.extend(e.plate_falling, speed.c, T(1), n);
+    if (e.side != 0) return inner(2).c[n] = T(e.side) * phi[n];
     return inner(2).c[n] = sum_of_products(phi, d, n, n - known, n);
   }
 
