@@ -156,7 +156,7 @@ inline constexpr int most_reductions = 200;
 /// slow_slider_test fails.
 inline constexpr double step_reduction = 0.75;
 /// Taylor steps that a step of creep replaces at least where it is tried: each of its 7 to 15 iterations costs as much
-/// as one. Saves a third of the time under oblique hands, and changes no result.
+/// as one. Saves a sixth of the time under a free hand, and changes no result.
 inline constexpr double creep_steps = 8;
 /// Iterations and reductions of a step of slow motion before the Taylor series of the whole motion
 /// is used instead. Without it: creep_test, slow_slider_test fails.

@@ -60,8 +60,8 @@ class SeriesStep {
   /// Part of the step at which the last terms are within the rounding of the first terms.
   Real suggested_part() const {
     constexpr Real never = std::numeric_limits<Real>::infinity();
-    std::array<Real, 3> ratios{never, never,
-                               never};  // least allowed over present, from order N − 2 on
+    // Least ratio of the rounding to the last terms, from order N − 2 on.
+    std::array<Real, 3> ratios{never, never, never};
     for (const Polynomial<T>* p : {&velocity, &skin, &speed}) {
       const auto size = [&](int n) { return abs(plain(p->c[n])); };
       const Real known = truncation_error<Real> * std::max({size(0), size(1), size(2)});
