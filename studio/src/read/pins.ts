@@ -10,7 +10,7 @@ export class Pins {
   private shares: readonly number[] = [];
 
   constructor(program: Program) {
-    const threads = Math.min(Math.max(navigator.hardwareConcurrency || 1, 1), MOST);
+    const threads = Math.min(navigator.hardwareConcurrency || 1, MOST);
     this.threads = Array.from({ length: threads }, () => new Thread(program));
   }
 
