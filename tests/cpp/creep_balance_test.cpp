@@ -49,7 +49,7 @@ void friction_balances_the_other_forces() {
     e.plate_slope = i % 3 == 0 ? 0.5 * std::abs(uniform(random)) : 0;
     if (i % 4 == 0) e.plate_falling = {pd::FallingShape::gaussian, 0.1, 0.2};
     const double x = 9e-3 * uniform(random), acceleration = 3 * uniform(random);
-    Balance balance;
+    Balance balance(e);
     if (!balance.solve(e, {x, 0.06}, acceleration)) continue;
     ++found;
     balanced &= std::abs(forces(e, x, balance.ratio(), acceleration)) < 1e-15;

@@ -23,9 +23,9 @@ const pd::Branch<double> branch{0.01, 0.5, 0.03, -0.02, 0};
 const pd::Branch<double> falling{0, inf, 0.03, 0.02, 0, {pd::FallingShape::gaussian, 0.01, 0.2}};
 
 /// −λ (F + S ρ) u/ρ, F at no speed, or with a part that falls.
-long double force(const pd::Branch<double>& of, const ObliqueSlip<double>& slip, const Line& load,
-                  long double t) {
-  const long double u = slip.u.value + slip.u.rate * t, w = slip.w.value + slip.w.rate * t;
+long double force(const pd::Branch<double>& of, const Line& along, const Line& across,
+                  const Line& load, long double t) {
+  const long double u = along.value + along.rate * t, w = across.value + across.rate * t;
   const long double r = std::sqrt(u * u + w * w);
   long double friction = of.force + of.slope * (r - of.from);
   if (!of.linear()) {
@@ -40,28 +40,27 @@ void changes(const pd::Branch<double>& of) {
   std::uniform_real_distribution<double> draw(-0.1, 0.1);
   bool rates = true, bends = true, steep = true, speeds = true;
   for (int i = 0; i < 500; ++i) {
-    const ObliqueSlip<double> slip{{draw(random), draw(random)}, {draw(random), draw(random)}};
+    const Line u{draw(random), draw(random)}, w{draw(random), draw(random)};
+    const ObliqueSlip<double> slip(u.value, u.rate, Line{}, w);
     const Line load{1 + draw(random), 10 * draw(random)};
-    const double speed = std::hypot(slip.u.value, slip.w.value);
+    const double speed = std::hypot(u.value, w.value);
     const pd::Branch<double> tangent = of.tangent(speed);
     const double curvature = of.linear() ? 0 : of.falling.curvature(speed);
     const long double h = 1e-4L * speed;  // of third order beside the speed's rates of change
-    const auto at = [&](int k) { return force(of, slip, load, k * h); };
+    const auto at = [&](int k) { return force(of, u, w, load, k * h); };
     const long double rate = (8 * (at(1) - at(-1)) - (at(2) - at(-2))) / (12 * h);
     const long double bend = (16 * (at(1) + at(-1)) - (at(2) + at(-2)) - 30 * at(0)) / (12 * h * h);
     const double size = 0.04 * (1 + 1 / speed);
     rates = rates && std::abs(slip.force_rate(tangent, load) - rate) < 1e-10 * size;
     const double second = slip.force_second_rate(tangent, curvature, load);
     bends = bends && std::abs(second - bend) < 1e-6 * size / speed;
-    ObliqueSlip<double> faster = slip, slower = slip;
-    faster.u.value += 1e-6 * speed;
-    slower.u.value -= 1e-6 * speed;
-    const long double fall = force(of, slower, load, 0) - force(of, faster, load, 0);
+    const Line faster{u.value + 1e-6 * speed, u.rate}, slower{u.value - 1e-6 * speed, u.rate};
+    const long double fall = force(of, slower, w, load, 0) - force(of, faster, w, load, 0);
     const auto steepness = static_cast<double>(fall / (2e-6L * speed));
     steep = steep && near(slip.steepness(tangent, load) / steepness, 1, 1e-5);
     const auto square = [&](long double t) {
-      const long double u = slip.u.value + slip.u.rate * t, w = slip.w.value + slip.w.rate * t;
-      return (u * u + w * w) / 2;
+      const long double along = u.value + u.rate * t, aside = w.value + w.rate * t;
+      return (along * along + aside * aside) / 2;
     };
     const auto closing = static_cast<double>((square(h) - square(-h)) / (2 * h));
     const auto parting = static_cast<double>((square(h) + square(-h) - 2 * square(0)) / (h * h));
@@ -131,18 +130,40 @@ void sets_out_and_lands() {
   expect(point.surface.value == state.v, "... and a pin on the finger keeps its own");
 }
 
+/// Velocities that begin with a later order, as with a stroke: the direction is that of this order.
+void begins_with_a_later_order() {
+  const double across[]{0, 0, 3, -4, 1, 0}, along[]{0, 0, 4, 1, -2, 0};
+  pd::InputPiece<double> u, w;
+  std::copy(along, along + 6, u.polynomial.begin());
+  std::copy(across, across + 6, w.polynomial.begin());
+  const ObliqueSlip<double> slip(0.0, 0.0, pd::Curve<double>(u, 0.0), pd::Curve<double>(w, 0.0));
+  const Line load{2, 0.5};
+  expect(near(slip.along(), -0.8, 1e-15), "a plate that begins to slide does so in this direction");
+  const auto at = [&](long double t) {
+    const long double a = -(4 + t - 2 * t * t), b = 3 - 4 * t + t * t;
+    return -0.03L * (load.value + load.rate * t) * a / std::sqrt(a * a + b * b);
+  };
+  const pd::Branch<double> flat{0, inf, 0.03, 0, 0};
+  const long double h = 1e-4L;
+  expect(near(slip.force_rate(flat, load), static_cast<double>((at(h) - at(-h)) / (2 * h)), 1e-9),
+         "... which turns as the later orders say");
+  const auto bend = static_cast<double>((at(h) + at(-h) - 2 * at(0)) / (h * h));
+  expect(near(slip.force_second_rate(flat, 0, load), bend, 1e-7), "... and bends");
+}
+
 void departures() {
   double worst = 0;
-  bool odd = true, grows = true;
+  bool odd = true, grows = true, directed = true;
   for (const double mass : {1e-3, 1.0})
     for (const double friction : {0.0, 1e-4, 1.0, 1e4})
       for (const double across : {1e-3, -1.0, 1e3}) {
         double before = 0;
         for (const double pull : {1e-6, 1e-2, 1.0, 1e3}) {
-          const double p = pd::detail::departure_acceleration(mass, friction, across, pull);
+          const auto [p, along] = pd::detail::departure_of(mass, friction, across, pull);
           const double force = mass * p + friction * p / std::hypot(p, across);
           worst = std::max(worst, std::abs(force - pull) / pull);
-          odd = odd && pd::detail::departure_acceleration(mass, friction, across, -pull) == -p;
+          odd = odd && pd::detail::departure_of(mass, friction, across, -pull).acceleration == -p;
+          directed = directed && near(along, p / std::hypot(p, across), 1e-14);
           grows = grows && p > before;
           before = p;
         }
@@ -150,13 +171,22 @@ void departures() {
   expect(worst < 1e-14, "the acceleration that sets out needs the force that pulls");
   expect(odd, "... to either side alike");
   expect(grows, "... and grows with the pull");
-  expect(pd::detail::departure_acceleration(1.0, 0.5, 1.0, 0.0) == 0, "without a pull it is zero");
+  expect(directed, "... in the direction of the relative acceleration");
+  expect(pd::detail::departure_of(1.0, 0.5, 1.0, 0.0).acceleration == 0,
+         "without a pull it is zero");
+  const auto follows = pd::detail::departure_of(0.1, 0.5, 0.0, -0.3);
+  expect(
+      follows.acceleration == 0 && follows.along == -0.3 / 0.5,
+      "a plate that begins to slide without an acceleration takes a pin along up to its friction");
+  const auto leaves = pd::detail::departure_of(0.1, 0.5, 0.0, -0.8);
+  expect(near(leaves.acceleration, -3, 1e-15) && leaves.along == -1, "... and no farther");
 }
 
 }  // namespace
 
 int main() {
   departures();
+  begins_with_a_later_order();
   changes(branch);
   changes(falling);
   asks();

@@ -240,7 +240,7 @@ void bounds() {
     fine.force = wide(e.force);
     fine.plate_velocity = wide(e.plate_velocity.line());
     fine.load = wide(e.load.line());
-    fine.across = wide(e.across);
+    fine.across = wide(e.across.line());
     fine.plate_force = e.plate_force;
     fine.plate_slope = e.plate_slope;
     fine.side = e.side;

@@ -38,9 +38,9 @@ struct Falling {
 };
 
 /// Inputs that may be functions.
-enum Input { mouse_velocity, plate_load, force, finger_load };
-inline constexpr std::array<const char*, 4> input_names{"mouse_velocity", "plate_load", "force",
-                                                        "finger_load"};
+enum Input { mouse_velocity, plate_load, force, finger_load, across_velocity };
+inline constexpr std::array<const char*, 5> input_names{"mouse_velocity", "plate_load", "force",
+                                                        "finger_load", "across_velocity"};
 
 /// A drive and its inputs, owned.
 struct Case {
@@ -50,7 +50,7 @@ struct Case {
   double skin{never};             ///< stiffness of the finger
   Rows mouse_velocity, plate_load, force{{0}, {0}}, across{{0}, {0}},
       finger_load{{0}, {1}};          ///< over time; one row is a constant
-  std::array<Function, 4> functions;  ///< in place of the rows of an Input, where not empty
+  std::array<Function, 5> functions;  ///< in place of the rows of an Input, where not empty
   std::array<Falling, 2> law;         ///< of plate and finger
   double displacement{}, velocity{}, duration{};
   double travel{never}, stop_stiffness{never}, stop_damping{};

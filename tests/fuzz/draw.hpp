@@ -31,8 +31,9 @@ class Random {
 };
 
 /// Family of drives: an aligned or oblique hand, end stops, a compliant finger with a friction curve, inputs that are
-/// functions, or friction that falls by a law; any: one drive in ten has each.
-enum class Family { any, aligned, oblique, stops, skin, functions, laws };
+/// functions, or friction that falls by a law; any: one drive in ten has each. strokes: a hand that strokes a plate at an
+/// angle, with none of the others.
+enum class Family { any, aligned, oblique, stops, skin, functions, laws, strokes };
 
 class Draw {
  public:
@@ -86,6 +87,7 @@ class Draw {
     if (family_ == Family::functions || (family_ == Family::any && chance(0.1)))
       functions(c, omega, length);
     if (family_ == Family::laws || (family_ == Family::any && chance(0.1))) laws(c);
+    if (family_ == Family::strokes) strokes(c);
     return c;
   }
 
@@ -218,6 +220,45 @@ class Draw {
       pieces.push_back(piece);
     }
     return pieces;
+  }
+  /// Hand that moves and rests in turn along straight paths, by strokes or other functions; now and then bent.
+  void strokes(Case& c) {
+    c.mouse_velocity = c.across = {{0}, {0}};
+    if (chance(0.7)) c.velocity = 0;
+    Function along, aside;
+    double begin = 0;
+    for (int left = static_cast<int>(uniform(1, 4)); left > 0; --left) {
+      const double angle = chance(0.1) ? 1.5707963267948966 : tidy(uniform(0, 1.5)), s = speed_;
+      const double lasts = tidy(period_ * decade(-1, 1)), rests = tidy(period_ * decade(-1.5, 0.3));
+      const double height = tidy(s * uniform(-16, 16)), rate = 1 / lasts;
+      Piece stroke{begin, {}, {}};
+      stroke.polynomial = {0,
+                           0,
+                           height * rate * rate,
+                           -2 * height * rate * rate * rate,
+                           height * rate * rate * rate * rate,
+                           0};
+      if (chance(0.2)) {  // a shaking hand
+        stroke.polynomial = {};
+        stroke.terms.push_back(
+            {0, tidy(s), 0, 3.141592653589793 * std::round(uniform(1, 6)) / lasts});
+      }
+      const auto scaled = [&](double part) {
+        Piece piece = stroke;
+        for (double& p : piece.polynomial) p *= part;
+        for (Term& t : piece.terms) t.sine *= part;
+        return piece;
+      };
+      along.push_back(scaled(chance(0.1) ? 0 : std::cos(angle)));
+      aside.push_back(scaled(std::sin(angle)));
+      if (chance(0.1) && !aside.back().terms.empty()) aside.back().terms[0].frequency *= 2;
+      begin += lasts;
+      for (Function* function : {&along, &aside}) function->push_back({begin, {}, {}});
+      begin += rests;
+    }
+    c.functions[mouse_velocity] = along;
+    c.functions[across_velocity] = aside;
+    c.duration = begin + period_ * uniform(0.1, 2);
   }
   /// Load that begins at 1 and remains above zero: a sinusoid, a decay, or both.
   Function load(double omega) {

@@ -50,7 +50,7 @@ class Given {
                input(plate_load, c.plate_load),
                std::numeric_limits<double>::quiet_NaN(),
                input(force, c.force),
-               profile(c.across),
+               input(across_velocity, c.across),
                input(finger_load, c.finger_load)} {}
   Given(const Given&) = delete;
   Given& operator=(const Given&) = delete;
@@ -63,17 +63,17 @@ class Given {
 
   std::vector<pd::Branch<double>> plate, finger;
   std::vector<pd::InputTerm<double>> terms;
-  std::array<std::vector<pd::InputPiece<double>>, 4> functions;
+  std::array<std::vector<pd::InputPiece<double>>, 5> functions;
   pd::Drive<double> drive;
   pd::Inputs<double> inputs;
 
  private:
   /// The pieces of all functions, after their terms.
-  std::array<std::vector<pd::InputPiece<double>>, 4> pieces(const Case& c) {
+  std::array<std::vector<pd::InputPiece<double>>, 5> pieces(const Case& c) {
     for (const Function& function : c.functions)
       for (const Piece& piece : function)
         for (const Term& t : piece.terms) terms.push_back({t.cosine, t.sine, t.decay, t.frequency});
-    std::array<std::vector<pd::InputPiece<double>>, 4> found;
+    std::array<std::vector<pd::InputPiece<double>>, 5> found;
     const pd::InputTerm<double>* next = terms.data();
     for (std::size_t i = 0; i < found.size(); ++i)
       for (const Piece& piece : c.functions[i]) {

@@ -101,7 +101,7 @@ inline Case mirror(Case c) {
   turn(c.mouse_velocity);
   turn(c.force);
   turn(c.across);
-  for (const Input input : {mouse_velocity, force})
+  for (const Input input : {mouse_velocity, force, across_velocity})
     for (Piece& piece : c.functions[input]) {
       for (double& p : piece.polynomial) p = 0 - p;
       for (Term& term : piece.terms) {

@@ -84,8 +84,8 @@ struct Totals {
   }
 };
 
-inline constexpr std::array<const char*, 7> families{"any",  "aligned",   "oblique", "stops",
-                                                     "skin", "functions", "laws"};
+inline constexpr std::array<const char*, 8> families{"any",  "aligned",   "oblique", "stops",
+                                                     "skin", "functions", "laws",    "strokes"};
 
 /// The family of a name; false if there is none.
 inline bool read(const std::string& name, Family& family) {

@@ -119,10 +119,14 @@ class Breakaways {
     // A given velocity is exact: next to that of the plate, the pin slides.
     const T still = segment.segment.begin > 0 ? T(still_velocity) * segment.scales.v : T(0);
     const bool with_plate = abs(s.v - plate_velocity.value) <= still;
-    // With both sliding velocities zero, the direction of the plate's friction is that of the relative acceleration.
-    const T drags = plate_velocity.rate, turns = hypot(drags, segment.across.rate);
-    if (segment.oblique() && turns > 0 && with_plate && abs(segment.across.value) <= still)
-      s.plate_force = segment.load.value * kinetic_friction(drive.plate, T(0)) * drags / turns;
+    // With both sliding velocities zero, the direction of the plate's friction is that in which the plate begins to
+    // slide.
+    Curve<T> across = segment.across;
+    if (segment.oblique() && with_plate && abs(across.value) <= still) {
+      across.value = T(0);
+      s.plate_force = -segment.load.value * kinetic_friction(drive.plate, T(0)) *
+                      ObliqueSlip<T>(T(0), -plate_velocity.rate, plate_velocity, across).along();
+    }
     // A rigid stop keeps the pin from going with the plate.
     const int end = s.x < 0 ? -1 : 1;
     const bool at_stop = drive.stops.rigid() && end * s.x >= drive.stops.travel;

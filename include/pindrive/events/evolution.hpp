@@ -286,6 +286,7 @@ class Evolution {
       pin.force = inputs_.force.from(pin.time);
       pin.plate.across =
           InputCurves<T>::across_from(inputs_, pin.time, pin.plate.surface, pin.held());
+      InputCurves<T>::stop_at_rest(pin.plate.surface, pin.plate.across, pin.time);
       next_breakpoint = std::min(inputs_.next_breakpoint(pin.time), next_period());
       if (next_breakpoint - pin.time > rounding<T> * pin.time) return;
     }

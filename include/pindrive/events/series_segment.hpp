@@ -75,6 +75,9 @@ class SeriesSegment {
       const T fall = path.derivative().at(guard.zero) * (tau - guard.zero);
       return stays_at_bound(fall, path.at(tau), force_error);
     });
+    if (equation.side == 0 && first_ < step.span() && !(step.span() < span) &&
+        rests(equation.plate_velocity, first_, span) && rests(equation.across, first_, span))
+      first_ = step.span();
     const T stick = step.stick_force.c[0];
     const T of_plate = plate.stuck() && !held ? stick : plate.force(state);
     const T of_finger = !finger.stuck() || held ? finger.force(state)
@@ -133,6 +136,14 @@ class SeriesSegment {
 
  private:
   static constexpr T never = std::numeric_limits<T>::infinity();
+
+  /// True if an input is zero within rounding from a time to another: at its ends and at a time between them that is
+  /// no period.
+  static bool rests(const Curve<T>& input, T from, T to) {
+    const T known = rounding<T> * input.size(T(0));
+    const auto is_zero = [&](T tau) { return abs(input.at(tau)) <= known; };
+    return is_zero(from) && is_zero(to) && is_zero(from + T(0.382) * (to - from));
+  }
 
   std::optional<SeriesStep<T>> step_;
   bool stops_{false};  ///< the plate comes to rest under a pin that is held, at the next breakpoint

@@ -295,4 +295,14 @@ T first_zero(const Polynomial<T>& guard) {
   return first;
 }
 
+/// First zero at which a quantity that begins positive becomes negative by more than its rounding; infinity if none. A
+/// quantity that only touches zero, as a velocity at the end of a stroke, has none.
+template <class T>
+Real<T> zero_beyond(const Polynomial<T>& p, Real<T> known) {
+  Polynomial<T> raised = p;
+  raised.c[0] += known;
+  const Real<T> never = std::numeric_limits<Real<T>>::infinity();
+  return first_zero(raised) < never ? plain(first_zero(p)) : never;
+}
+
 }  // namespace pindrive::detail

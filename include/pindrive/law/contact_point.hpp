@@ -259,7 +259,7 @@ struct ContactPoint {
       const T parting = speed.parting(second, across.second());
       const bool turns = closing == 0 || grazes(closing, parting, known);
       T faster = closing;
-      if (turns) faster = parting != 0 ? parting : speed.u.value * third;
+      if (turns) faster = parting != 0 ? parting : speed.velocity() * third;
       if (faster == 0) faster = second * second;  // the pin starts to turn
       return (mode.guard == ActiveGuard::lower ? faster : -faster) >= 0;
     }
@@ -278,7 +278,7 @@ struct ContactPoint {
   }
 
   ObliqueSlip<T> oblique_slip(T v, T acceleration) const {
-    return {{v - surface.value, acceleration - surface.rate}, across.line()};
+    return {v - surface.value, acceleration - surface.rate, surface, across};
   }
 
  private:

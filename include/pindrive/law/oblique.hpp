@@ -1,7 +1,9 @@
 /// Oblique slip: axial friction of a plate that also slides in the transverse direction.
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 #include "pindrive/flow/flow.hpp"
 #include "pindrive/law/contact_mode.hpp"
@@ -12,13 +14,26 @@
 
 namespace pindrive::detail {
 
-/// Relative acceleration p with which a pin of mass m leaves a plate that begins to slide across
-/// with acceleration w'.
-///
-/// Solves m p + λF p/√(p² + w'²) = pull (N); the left side is monotone, so the root is unique.
+/// Motion with which a pin leaves a plate that begins to slide across.
 template <class T>
-T departure_acceleration(T mass, T friction, T across_rate, T pull) {
+struct Departure {
+  T acceleration;  ///< p, relative to the plate, m/s²
+  T along;         ///< axial component of the sliding direction
+};
+
+/// Departure of a pin of mass m from a plate that begins to slide across with acceleration w'.
+///
+/// Solves m p + λF p/√(p² + w'²) = pull (N); the left side is monotone, so the root is unique. Without w', friction
+/// balances a pull up to λF: the pin follows the plate, and slides in the direction of that friction.
+template <class T>
+Departure<T> departure_of(T mass, T friction, T across_rate, T pull) {
   const T w = abs(across_rate);
+  if (w == 0) {
+    const T excess = abs(pull) - friction, side = pull < 0 ? T(-1) : T(1);
+    if (excess <= difference_error<T> * friction)
+      return {T(0), excess < 0 ? pull / friction : friction > 0 ? side : T(0)};
+    return {side * excess / mass, side};
+  }
   // Newton in t = p/w', from larger |t|, where the left side is convex.
   T t = pull / (mass * w);
   bool converged = false;  // a dual derivative converges one iteration later
@@ -34,59 +49,80 @@ T departure_acceleration(T mass, T friction, T across_rate, T pull) {
     t = kept;
     if (done) break;
   }
-  return t * w;
+  return {t * w, t / sqrt(1 + t * t)};
 }
 
-/// Axial and transverse sliding velocity u and w, linear from this instant on. A branch is linear;
-/// its curvature (N s²/m²) counts where a second derivative is asked for.
+/// Axial and transverse sliding velocity u and w by their Taylor coefficients at an instant, m/s, m/s², …
 ///
-/// On the branch F + S ρ with ρ = √(u² + w²) the axial force is −λ (F d + S u) with d = u/ρ, and u'
-/// w − u w' is constant.
+/// On the branch F + S ρ with ρ = √(u² + w²) the axial force is −λ (F d + S u) with d = u/ρ. Where both begin at
+/// order k, d is that of u/τᵏ and w/τᵏ. A branch is linear; its curvature (N s²/m²) counts where a second derivative
+/// is asked for.
 template <class T>
-struct ObliqueSlip {
-  Line<T> u, w;  ///< m/s
+class ObliqueSlip {
+ public:
+  using Coefficients = std::array<T, beginning_orders>;
+
+  /// Pin of constant acceleration, with relative velocity and acceleration u and u', on a surface.
+  ObliqueSlip(T velocity, T rate, const Curve<T>& surface, const Curve<T>& across)
+      : u_(surface.template coefficients<beginning_orders>()),
+        w_(across.template coefficients<beginning_orders>()) {
+    for (T& each : u_) each = -each;
+    u_[0] = velocity;
+    u_[1] = rate;
+    while (begins_ + 3 < beginning_orders && u_[begins_] == 0 && w_[begins_] == 0) ++begins_;
+    size_ = hypot(u(0), w(0));
+  }
 
   /// Derivative of ρ²/2, m²/s³; positive if the sliding speed grows.
-  T closing() const { return u.value * u.rate + w.value * w.rate; }
+  T closing() const { return u_[0] * u_[1] + w_[0] * w_[1]; }
   /// Second derivative of ρ²/2 with the second derivatives of u and w, where the first derivative
   /// is zero within its error.
   T parting(T jerk, T across) const {
-    return u.rate * u.rate + w.rate * w.rate + u.value * jerk + w.value * across;
+    return u_[1] * u_[1] + w_[1] * w_[1] + u_[0] * jerk + w_[0] * across;
   }
+  T velocity() const { return u_[0]; }  ///< u, m/s
   /// Error of the derivative of ρ²/2, for a surface with this velocity.
   T rounding_of(T surface) const { return rounding<T> * speed() * (speed() + abs(surface)); }
   /// Decrease of the force with the axial velocity, N s/m.
   T steepness(const Branch<T>& branch, const Curve<T>& load) const {
-    const T r = speed(), across = r > 0 ? w.value / r : T(0);
+    const T r = speed(), across = r > 0 ? w_[0] / r : T(0);
     return load.value * ((r > 0 ? branch.intercept() * across * across / r : T(0)) + branch.slope);
   }
+  /// d: axial component of the sliding direction; 0 without any sliding.
+  T along() const { return size_ > 0 ? u(0) / size_ : T(0); }
   T force_rate(const Branch<T>& branch, const Curve<T>& load) const {
     const T strength = branch.intercept();
-    return -load.rate * (strength * along() + branch.slope * u.value) -
-           load.value * (strength * turning() + branch.slope * u.rate);
+    return -load.rate * (strength * along() + branch.slope * u_[0]) -
+           load.value * (strength * turning() + branch.slope * u_[1]);
   }
   T force_second_rate(const Branch<T>& branch, T curvature, const Curve<T>& load) const {
     const T strength = branch.intercept();
     const T bend = curvature == 0 ? T(0) : curvature * faster() * faster() * along() * load.value;
-    return -2 * load.rate * (strength * turning() + branch.slope * u.rate) -
+    return -2 * load.rate * (strength * turning() + branch.slope * u_[1]) -
            load.value * strength * turning_rate() - bend;
   }
 
  private:
-  T speed() const { return hypot(u.value, w.value); }
+  /// Coefficients of u/τᵏ and w/τᵏ.
+  T u(std::size_t n) const { return u_[begins_ + n]; }
+  T w(std::size_t n) const { return w_[begins_ + n]; }
+
+  T speed() const { return hypot(u_[0], w_[0]); }
   /// Rate of the sliding speed ρ.
-  T faster() const { return speed() > 0 ? closing() / speed() : hypot(u.rate, w.rate); }
-  T along() const { return speed() > 0 ? u.value / speed() : u.rate / hypot(u.rate, w.rate); }
-  T turn() const { return u.rate * w.value - u.value * w.rate; }
-  /// First derivative of d; zero at zero speed.
-  T turning() const {
-    const T r = speed();
-    return r > 0 ? turn() * w.value / (r * r * r) : T(0);
-  }
+  T faster() const { return speed() > 0 ? closing() / speed() : hypot(u_[1], w_[1]); }
+  T turn() const { return u(1) * w(0) - u(0) * w(1); }
+  /// First derivative of d.
+  T turning() const { return size_ > 0 ? turn() * w(0) / (size_ * size_ * size_) : T(0); }
   T turning_rate() const {
-    const T r = speed();
-    return r > 0 ? turn() * (w.rate - 3 * w.value * closing() / (r * r)) / (r * r * r) : T(0);
+    if (!(size_ > 0)) return T(0);
+    const T square = size_ * size_, closing = u(0) * u(1) + w(0) * w(1);
+    const T turns = 2 * (u(2) * w(0) - u(0) * w(2));
+    return (turns * w(0) + turn() * (w(1) - 3 * w(0) * closing / square)) / (square * size_);
   }
+
+  Coefficients u_, w_;
+  std::size_t begins_{0};  ///< k
+  T size_;                 ///< of u/τᵏ and w/τᵏ at τ = 0
 };
 
 /// Enumerates the candidates of an oblique slip. Returns false if the plate does not slide across;
@@ -117,8 +153,7 @@ bool enumerate_oblique_candidates(Point& side, T u, ActiveGuard& guard) {
   if (guard == ActiveGuard::none && !(speed > range.from || side.mode.branch == 0))
     guard = ActiveGuard::lower;
   side.start.friction = range.at(speed);
-  const T rate = side.surface.rate;
-  side.direction = speed > 0 ? u / speed : -rate / hypot(rate, side.across.rate);
+  side.direction = side.oblique_slip(u + side.surface.value, T(0)).along();
   side.add_branches(guard);
   return true;
 }
@@ -128,10 +163,10 @@ bool enumerate_oblique_candidates(Point& side, T u, ActiveGuard& guard) {
 template <class T, class Point>
 T oblique_departure(T mass, Point& plate, T pull) {
   const T rest = pull - mass * plate.surface.rate;
-  const T p = departure_acceleration(mass, plate.load.value * plate.start.friction,
-                                     plate.across.rate, rest);
-  plate.direction = p / hypot(p, plate.across.rate);
-  return p;
+  const Departure<T> found =
+      departure_of(mass, plate.load.value * plate.start.friction, plate.across.rate, rest);
+  plate.direction = found.along;
+  return found.acceleration;
 }
 
 /// Ends an oblique slip at zero transverse velocity: a pin that has the velocity of the plate

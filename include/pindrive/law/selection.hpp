@@ -223,6 +223,7 @@ class Selection {
                             ? oblique_departure(pin_.drive.mass, pin_.plate,
                                                 selected_.applied_force - restoring_force_ + finger)
                             : T(0);
+    follows_ = starts && departure == 0 && pin_.plate.across.rate == 0;
     const T plate = pin_.plate.force(pin_.state);
     selected_.acceleration =
         starts ? pin_.plate.surface.rate + departure
@@ -251,6 +252,10 @@ class Selection {
                                   jerk.value - side.surface.second(), jerk.rate);
       }
       if (!selected_.tangential) return side.is_admissible(pin_.state, force);
+      if (follows_) {
+        const Line<T> jerk = this->jerk();
+        return side.is_admissible(pin_.state, T(0), jerk.value, jerk.rate);
+      }
       const T relative = selected_.acceleration - side.surface.rate;
       if (pin_.drive.mass * abs(relative) > pin_.state.force_error ||
           !side.is_decided_by_acceleration(pin_.state.v))
@@ -325,9 +330,19 @@ class Selection {
 
   /// Jerk of a slipping pin, m/s³, zero within its error; and the derivative of the jerk.
   Line<T> jerk() const {
+    if (follows_) return creeping_jerk();
     const auto [rate, scale, second] = force_rate();
     return {abs(rate) <= rounding<T> * scale ? T(0) : rate / pin_.drive.mass,
             second / pin_.drive.mass};
+  }
+  /// The same of a pin that follows a plate which begins to slide across, with u = w d/√(1 − d²); instead of the
+  /// derivative, by its sign, the first later one that is not zero.
+  Line<T> creeping_jerk() const {
+    auto velocity = pin_.plate.surface.template coefficients<beginning_orders>();
+    const auto across = pin_.plate.across.template coefficients<beginning_orders>();
+    const T d = pin_.plate.direction, ratio = d / sqrt(1 - d * d);
+    for (std::size_t n = 0; n < beginning_orders; ++n) velocity[n] += ratio * abs(across[n]);
+    return {2 * velocity[2], third_or_later(velocity)};
   }
   /// Derivatives of the force on a slipping pin.
   ForceRate<T> force_rate() const {
@@ -342,6 +357,8 @@ class Selection {
 
   Pin<T>& pin_;
   SelectedMotion<T>& selected_;
+  bool follows_{
+      false};  ///< the pin follows a plate that begins to slide across without an acceleration
   T restoring_force_{};  ///< force of spring and damper less that of a stop, N
 };
 

@@ -55,7 +55,32 @@ struct InputCurves {
       return {-line.rate * rest, line.rate};
     if (abs(line.value) <= detail::least_across<T> * (changes + abs(along.value)))
       line.value = T(0);
+    if (line.straight() || along.value != 0) return line;
+    if (passes_zero(line, time)) line.value = T(0);
+    if (along.rate == 0 && touches_zero(line)) line.value = line.rate = T(0);
     return line;
+  }
+  /// Makes exact that a plate turns back, or comes to rest, on a path: both its velocities are zero within rounding,
+  /// of which no direction follows.
+  static void stop_at_rest(Curve<T>& along, Curve<T>& across, T time) {
+    if (across.straight()) return;
+    if (passes_zero(along, time) && passes_zero(across, time)) along.value = across.value = T(0);
+    if (touches_zero(along) && touches_zero(across))
+      along.value = across.value = along.rate = across.rate = T(0);
+  }
+
+ private:
+  /// Rounding of a function, whose terms may cancel.
+  static T rounding_of(const Curve<T>& input) { return detail::rounding<T> * input.size(T(0)); }
+  static bool passes_zero(const Curve<T>& input, T time) {
+    using std::abs;
+    return abs(input.value) <= detail::rounding<T> * time * abs(input.rate);
+  }
+  static bool touches_zero(const Curve<T>& input) {
+    using std::abs;
+    if (input.straight()) return input.is_zero();
+    const T known = rounding_of(input);
+    return abs(input.value) <= known && abs(input.rate) <= known * input.piece->fastest();
   }
 };
 

@@ -79,10 +79,11 @@ class Instant {
       force += e.plate_falling.at(e.side != 0 ? T(e.side) * u : hypot(u, w));
     if (e.side == 0 && u == 0 && w == 0) {
       const T rest = pull - e.mass * e.plate_velocity.rate;
-      const T p = e.held ? e.surface.rate - e.plate_velocity.rate
-                         : detail::departure_acceleration(e.mass, e.load.value * force,
-                                                          e.across.rate, rest);
-      along = p / hypot(p, e.across.rate);
+      along = e.held
+                  ? detail::ObliqueSlip<T>(T(0), e.surface.rate - e.plate_velocity.rate,
+                                           e.plate_velocity, e.across)
+                        .along()
+                  : detail::departure_of(e.mass, e.load.value * force, e.across.rate, rest).along;
     } else if (e.side == 0) {
       along = u / hypot(u, w);
     }

@@ -173,6 +173,7 @@ class BySeries {
     if (segment.eliminated == EliminatedPart::of_friction)
       for (const bool within_step : {true, false})
         if (const auto slow = creep(e, start, span, within_step)) return *slow;
+    if (!e.held && e.side == 0 && follows_plate(e, start)) return carried_by_plate(e, start, span);
     return SeriesFlow<T>(e, start, span, true);
   }
   /// Friction of a rigid finger, or of slipping skin.

@@ -36,14 +36,16 @@ class CreepFlow : public IteratedStep<T> {
 
   /// Expands the series at a state, up to a limit (s; may be infinite) and to the zero of w;
   /// `within_step`: the limit is known to lie within one step.
-  CreepFlow(SeriesEquation<T> e, const SeriesState<T>& start, T limit, bool within_step = false) {
+  CreepFlow(const SeriesEquation<T>& e, const SeriesState<T>& start, T limit,
+            bool within_step = false)
+      : balance_(e) {
     this->eliminated = EliminatedPart::of_friction;
-    e.across = CreepBalance<T>::forward(e.across);
     acceleration_[0] = e.plate_velocity.rate;  // initial guess: acceleration of the plate
-    const Real farthest = CreepBalance<T>::farthest(e, plain(limit));
+    const Real farthest = balance_.farthest(e, plain(limit));
     const Real step = balance_.span(e, start, farthest);
     if (!(step > 0)) return;
     this->begin(e, step);
+    if (balance_.side() < 0) across_.negate();
     Real before{0}, last{0};  // preceding iteration: initial creep velocity, change
     // Best iterate, for a known step whose iterations do not converge within rounding.
     SeriesStep<T> nearest;
@@ -51,7 +53,7 @@ class CreepFlow : public IteratedStep<T> {
     for (int round = 0; round < slow_iterations && balance_.solve(e, start, acceleration_[0]);
          ++round) {
       // The iteration contracts.
-      const Real v = plain(e.plate_velocity.value + e.across.value * balance_.ratio());
+      const Real v = plain(e.plate_velocity.value + across_[0] * balance_.ratio());
       const Real off = plain(start.v) - v;
       if (!within_step && round > 0 &&
           abs(off) >
@@ -62,7 +64,7 @@ class CreepFlow : public IteratedStep<T> {
       expand(e, start, step, round == 0 ? 2 : N);
       if (round == 0) continue;
       const Real left = farthest / step;
-      Real part = within_step ? left : std::min(this->suggested_part(), left);
+      Real part = within_step ? left : until_zero(e, std::min(this->suggested_part(), left), step);
       const bool converged = converged_;
       const Real changed = last_change(part);
       converged_ = changed <= last_digit<Real> * this->size_of(plate_force, part) / plain(e.mass);
@@ -94,21 +96,30 @@ class CreepFlow : public IteratedStep<T> {
 
  private:
   using IteratedStep<T>::acceleration_, IteratedStep<T>::last_change;
+  using SeriesStep<T>::across_;
   using SeriesStep<T>::N, SeriesStep<T>::falling_plate, SeriesStep<T>::falling_finger;
   using typename SeriesStep<T>::Sums;
 
   Polynomial<T>& inner(int i) { return this->inner_[i]; }  // t, √(1 + t²), t/√(1 + t²)
+
+  /// Part of the step up to the first zero of a transverse velocity that is not linear.
+  Real until_zero(const SeriesEquation<T>& e, Real part, Real step) const {
+    if (e.across.straight() || !(part < std::numeric_limits<Real>::infinity())) return part;
+    const Real known = rounding<Real> * e.across.size(T(0));
+    const auto w = T(balance_.side()) * polynomial_of(e.across, part * step);
+    return std::min(part, zero_beyond(w, known) / step);
+  }
 
   /// One iteration in the time σ = τ/step: the series of t from that of a, and from t a new a below
   /// an order.
   void expand(const SeriesEquation<T>& e, const SeriesState<T>& start, Real step, int order) {
     auto &x = position.c, &v = velocity.c, &y = skin.c;
     auto &t = inner(0).c, &s = inner(1).c, &d = inner(2).c;
-    const T w = e.across.value, w_rate = e.across.rate * step;
+    const T w = across_[0];
     const bool falls = e.plate_falling.present(), finger_falls = e.finger_falling.present();
     // Falling friction at the plate, along the axis, and at the finger, whose speed is given.
     const auto at_plate = [&](int n) {
-      speed.c[n] = w * s[n] + (n > 0 ? w_rate * s[n - 1] : T(0));
+      speed.c[n] = across_.times(s, n);
       falling_plate.extend(e.plate_falling, speed.c, T(1), n);
       return sum_of_products(falling_plate.friction().c, d, n, 0, n);
     };
@@ -122,7 +133,7 @@ class CreepFlow : public IteratedStep<T> {
       t[n] = n == 0 ? balance_.ratio() : T(0);
       s[n] = n == 0 ? sqrt(1 + t[0] * t[0]) : squares / (2 * s[0]);
       d[n] = n == 0 ? t[0] / s[0] : -(product + s[n] * d[0]) / s[0];
-      T u = w * t[n] + (n > 0 ? w_rate * t[n - 1] : T(0));
+      T u = across_.times(t, n);
       friction[n] = e.plate_force * d[n] + e.plate_slope * u;
       const T v_p = this->plate_velocity_[n];
       T others = e.stiffness * x[n] + e.skin_factor.value * y[n] - this->given_force(e, n, step) +
@@ -153,7 +164,7 @@ class CreepFlow : public IteratedStep<T> {
       if (falls) friction[n] += at_plate(n);
       v[n] = v_p + u;
       if (finger_falls) this->falling_at_finger(e, n);
-      speed.c[n] = w * s[n] + (n > 0 ? w_rate * s[n - 1] : T(0));
+      speed.c[n] = across_.times(s, n);
       plate_force.c[n] = -this->load_.times(friction, n);
       x[n + 1] = T(step) / T(n + 1) * v[n];
       e.follow(y, v, n, T(step));
@@ -172,9 +183,8 @@ class CreepFlow : public IteratedStep<T> {
     const Real f = plain(e.skin_factor.value), f_change = plain(e.skin_factor.rate) * h;
     const Real K = plain(e.skin_stiffness);
     const Real F = plain(e.plate_force), S = plain(e.plate_slope);
-    const Real w = plain(e.across.value), w_end = w + plain(e.across.rate) * h;
     const auto& load = this->load_;
-    const Real most_load = load.most(), least_load = load.least(), most_w = max(w, w_end);
+    const Real most_load = load.most(), least_load = load.least(), most_w = across_.most();
     const auto last = [](const Polynomial<T>& p, int n) { return abs(plain(p.c[n])); };
     const Sums t = sums_of(inner(0).c), s = sums_of(inner(1).c), d = sums_of(inner(2).c);
     const Sums v = sums_of(velocity.c);
@@ -214,7 +224,8 @@ class CreepFlow : public IteratedStep<T> {
     const Real grown = exp(max(Real(0), f < 0 ? -decay / f : Real(0)) * h) * h;
     const Real left = gamma - k * h - K * grown;
     if (!(left > 0)) return false;
-    v_bound = (missed + grown * missed_skin) / left;
+    v_bound = (missed + grown * missed_skin) / left + beyond(sums_of(across_.from_order(0)), t) +
+              across_.missed() * t[0];
     x_bound = h * v_bound;
     skin_bound = e.skin_error(h, grown * (K * v_bound + missed_skin), v_bound, missed_skin);
     speed_bound = v_bound + most_w * root;
@@ -227,7 +238,7 @@ class CreepFlow : public IteratedStep<T> {
     return abs(plain(start.v - velocity.c[0])) <=
            difference_error<Real> * sums_of(velocity.c)[0] + unsure(e, start);
   }
-  /// Error of the creep velocity from the rounding of forces and time: large near the friction
+  /// Error of the creep velocity from the rounding of forces, inputs and time: large near the friction
   /// limit, but limited to a small part of the velocity.
   Real unsure(const SeriesEquation<T>& e, const SeriesState<T>& start) const {
     const Real sizes = abs(plain(e.force.value)) + abs(plain(e.mass) * plain(acceleration_[0])) +
@@ -235,13 +246,18 @@ class CreepFlow : public IteratedStep<T> {
                        plain(e.stiffness) * abs(plain(start.x)) +
                        abs(plain(e.skin_factor.value) * plain(start.skin));
     const Real changes =
-        abs(plain(e.plate_velocity.rate)) + abs(plain(e.across.rate * balance_.ratio()));
+        abs(plain(e.plate_velocity.rate)) + abs(plain(balance_.across().rate * balance_.ratio()));
     const Real root = hypot(Real(1), plain(balance_.ratio()));
-    const Real by_forces = difference_error<Real> * sizes * plain(e.across.value) /
+    const Real by_forces = difference_error<Real> * sizes * plain(balance_.across().value) /
                            plain(e.load.value * balance_.friction(e));
     const Real here =
         std::min(by_forces * root * root * root, creep_error<Real> * abs(plain(start.v)));
-    return std::max(by_forces, here) + rounding<Real> * plain(start.time) * changes;
+    return std::max(by_forces, here) + rounding<Real> * plain(start.time) * changes +
+           rounding_of(e.plate_velocity) + abs(plain(balance_.ratio())) * rounding_of(e.across);
+  }
+  /// Rounding of a function at the start, whose terms may cancel.
+  static Real rounding_of(const Curve<T>& input) {
+    return input.straight() ? Real(0) : rounding<Real> * input.size(T(0));
   }
 
   CreepBalance<T> balance_;  // at the start
@@ -257,6 +273,32 @@ std::optional<CreepFlow<T>> creep(const SeriesEquation<T>& e, const SeriesState<
   return flow;
 }
 
+/// True if a pin follows a plate that begins to slide across without an acceleration. The equation is singular there,
+/// and creep its only solution.
+template <class T>
+bool follows_plate(const SeriesEquation<T>& e, const SeriesState<T>& start) {
+  if (start.v != e.plate_velocity.value || e.across.value != 0 || e.across.rate != 0) return false;
+  return start.acceleration == e.plate_velocity.rate;
+}
+/// Step of a pin at its friction limit, which the plate takes along for a short time.
+template <class T>
+SeriesStep<T> carried_by_plate(SeriesEquation<T> e, const SeriesState<T>& start, T limit) {
+  const T pull = e.force.value - e.mass * e.plate_velocity.rate - e.damping * start.v -
+                 e.stiffness * start.x - e.skin_factor.value * start.skin;
+  e.held = true;
+  e.side = pull < 0 ? -1 : 1;
+  e.surface = e.plate_velocity;
+  return SeriesFlow<T>(e, start, limit);
+}
+/// Step of that pin: its series diverges, and holds to rounding over a short time.
+template <class T>
+SeriesStep<T> creep_from_rest(const SeriesEquation<T>& e, const SeriesState<T>& start, T limit) {
+  const Real<T> slowest = sqrt(plain(e.mass / e.stiffness));
+  for (T span = creep_span(e, start, limit); span > rounding<T> * slowest; span *= T(0.125))
+    if (const auto flow = creep(e, start, span)) return *flow;
+  return carried_by_plate(e, start, std::min(limit, T(1e-6) * slowest));
+}
+
 /// Step from a state: the Taylor series, or the slow motion where the fast transient is over: in
 /// creep, on a slider of stiff skin, or of an overdamped pin.
 template <class T>
@@ -264,6 +306,7 @@ SeriesStep<T> series_step(const SeriesEquation<T>& e, const SeriesState<T>& star
   if (const auto slow = slow_slider(e, start, limit)) return *slow;
   if (const auto slow = overdamped(e, start, limit)) return *slow;
   if (e.held || e.side != 0) return SeriesFlow<T>(e, start, limit);
+  if (follows_plate(e, start)) return creep_from_rest(e, start, limit);
   SeriesStep<T> step;
   const bool slides = plain(start.v) != plain(e.plate_velocity.value) || plain(e.across.value) != 0;
   if (slides) step = SeriesFlow<T>(e, start, limit);

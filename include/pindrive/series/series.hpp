@@ -14,6 +14,7 @@
 #include "pindrive/numbers/limits.hpp"
 #include "pindrive/series/series_equation.hpp"
 #include "pindrive/series/series_step.hpp"
+#include "pindrive/series/straight_path.hpp"
 
 namespace pindrive::detail {
 
@@ -32,9 +33,12 @@ class SeriesFlow : public SeriesStep<T> {
   SeriesFlow(const SeriesEquation<T>& equation, const SeriesState<T>& start, T limit,
              bool within_step = false) {
     const Real farthest = plain(limit);
+    if (equation.held && equation.side == 0)
+      path_ = straight_path(equation.plate_velocity, equation.across);
     const Real rate = linear_rate(equation) + falling_rate(equation, start);
     const Real reach = equation.input_reach();
-    Real step = std::min({1 / (rate + turning_rate(equation, start)), farthest, reach});
+    const Real turns = along_path() ? Real(0) : turning_rate(equation, start);
+    Real step = std::min({1 / (rate + turns), farthest, reach});
     expand(equation, start, step);
     if (within_step) {
       this->rescale(farthest / step);
@@ -52,23 +56,27 @@ class SeriesFlow : public SeriesStep<T> {
       // The error grows with the power N + 1 of the step.
       step = std::max(Real(0.25), Real(0.95) * exp(-log(std::min(excess, Real(1e30))) / (N + 1)));
     }
+    if (along_path()) this->rescale(turns_back(equation) / span());
     this->trim();
   }
 
  protected:
   using SeriesStep<T>::N;
-  using SeriesStep<T>::plate_velocity_, SeriesStep<T>::load_, SeriesStep<T>::finger_load_;
-  using SeriesStep<T>::surface_;
+  using SeriesStep<T>::plate_velocity_, SeriesStep<T>::load_, SeriesStep<T>::across_;
+  using SeriesStep<T>::finger_load_, SeriesStep<T>::surface_;
   using typename SeriesStep<T>::Sums;
 
  private:
-  int begins_{0};  // the order at which u and w begin
+  Slant<T> path_{T(0), T(0)};  // direction of a plate that moves along a straight path
+  bool along_path() const { return path_.along != 0 || path_.across != 0; }
+  int begins_{0};  // order k at which the first of u and w begins
 
   Polynomial<T>& inner(int i) { return this->inner_[i]; }  // d, u, φ d
 
-  /// Coefficient sums of p/σ, where p begins at 0.
+  /// Coefficient sums of p/σᵏ.
   Sums from_rest(std::array<T, N + 2> c) const {
-    if (begins_ > 0) std::copy(c.begin() + 1, c.end(), c.begin());
+    std::copy(c.begin() + begins_, c.end(), c.begin());
+    std::fill(c.end() - begins_, c.end(), T(0));
     return sums_of(c);
   }
 
@@ -86,8 +94,8 @@ class SeriesFlow : public SeriesStep<T> {
     const T v = e.held ? e.surface.value : s.v, u = v - e.plate_velocity.value;
     Real slopes{0};
     if (e.plate_falling.present()) {
-      const T speed = e.side != 0 ? T(e.side) * u : hypot(u, e.across.value);
-      slopes += abs(plain(e.load.value * e.plate_falling.slope(speed)));
+      const T slides = e.side != 0 ? T(e.side) * u : hypot(u, e.across.value);
+      slopes += abs(plain(e.load.value * e.plate_falling.slope(slides)));
     }
     if (e.finger_falling.present())
       slopes += abs(plain(e.finger_load.value * e.finger_falling.slope(T(e.finger_side) * v)));
@@ -99,7 +107,7 @@ class SeriesFlow : public SeriesStep<T> {
     const Real f = plain(e.skin_factor.value), rate = plain(e.skin_factor.rate);
     return f * rate > 0 ? rate / f : Real(0);
   }
-  /// True if the plate begins to slide now: u and w are 0 but their rates are not.
+  /// True if the plate begins to slide now: u and w are 0.
   static bool starts_to_slide(const SeriesEquation<T>& e, const SeriesState<T>& start) {
     return e.side == 0 && e.across.value == 0 &&
            plain(e.held ? e.surface.value : start.v) == plain(e.plate_velocity.value);
@@ -117,8 +125,11 @@ class SeriesFlow : public SeriesStep<T> {
                       plain(e.damping) * plain(s.v) - plain(e.skin_factor.value) * plain(s.skin) -
                       plain(e.load.value) * plain(e.plate_slope) * u;
     const Real turns = abs(plain(e.plate_velocity.rate)) + abs(plain(e.across.rate));
-    if (starts_to_slide(e, s))
-      return (e.held ? turns : (abs(pull) + friction) / m + turns) / turns * linear_rate(e);
+    if (starts_to_slide(e, s)) {
+      if (e.held) return linear_rate(e);
+      if (turns == 0) return abs(plain(e.across.second())) * m / abs(abs(pull) - friction);
+      return ((abs(pull) + friction) / m + turns) / turns * linear_rate(e);
+    }
     const Real speed = hypot(u, w), along = u / speed, across = w / speed;
     // Friction in the balance of forces, and its turning rate with the velocity.
     // The plate may accelerate.
@@ -136,19 +147,22 @@ class SeriesFlow : public SeriesStep<T> {
   };
   Turning bound_turning(const SeriesEquation<T>& e) {
     using std::max;
-    const Real h = span(), F = abs(plain(e.plate_force));
+    const Real F = abs(plain(e.plate_force));
     const Sums d = sums_of(this->inner_[0].c);
     Turning found;
-    if (e.side == 0) {
+    if (along_path()) {
+      found.root = plate_velocity_.missed() + across_.missed();
+    } else if (e.side == 0) {
       const Sums r = from_rest(speed.c), p = from_rest(this->inner_[1].c);
-      const Real w_rate = plain(e.across.rate) * h;
-      const Real w = begins_ > 0 ? w_rate : plain(e.across.value);
-      const Real w_end = begins_ > 0 ? w_rate : w + w_rate;
-      const Real w_least = w * w_end > 0 ? std::min(abs(w), abs(w_end)) : Real(0);
+      const auto across = across_.from_order(begins_);
+      const Sums w = sums_of(across);
+      const Real first = plain(across[0]), second = plain(across[0] + across[1]);
+      const Real w_least = first * second > 0 ? std::min(abs(first), abs(second)) - w[2] : Real(0);
       const Real least = max({w_least, r[0] - 2 * r[1], p[0] - 2 * p[1]});
       // The error of r² is the rounding of its largest value.
       found.known = least > r[0] / 16;
-      found.root = (beyond(r, r) + beyond(p, p)) / least + plate_velocity_.missed();
+      found.root = (beyond(r, r) + beyond(p, p) + beyond(w, w)) / least + plate_velocity_.missed() +
+                   across_.missed();
       found.direction = (beyond(r, d) + d[0] * found.root) / least;
     }
     if (e.side != 0) found.root = plate_velocity_.missed();
@@ -172,16 +186,15 @@ class SeriesFlow : public SeriesStep<T> {
 
   /// Evaluates the recurrences in the time σ = τ/step.
   void expand(const SeriesEquation<T>& e, const SeriesState<T>& start, Real step) {
-    if (starts_to_slide(e, start)) return expand_from_rest(e, start, step);
+    if (!along_path() && starts_to_slide(e, start)) return expand_from_rest(e, start, step);
     this->begin(e, step);
     auto &x = position.c, &v = velocity.c, &y = skin.c, &r = speed.c;
     auto &d = inner(0).c, &u_ = inner(1).c;
     x[0] = start.x;
     v[0] = e.held ? e.surface.value : start.v;
     y[0] = start.skin;
-    const std::array<T, 2> w{e.across.value, e.across.rate * step};
-    const std::array<T, 3> w_squared{w[0] * w[0], 2 * w[0] * w[1], w[1] * w[1]};
     const bool falls = e.plate_falling.present();
+    const T side = T(sense_of_path());
     std::array<T, N + 1> friction;  // F d + S u
     for (int n = 0;; ++n) {
       e.follow(y, v, n, T(step));
@@ -189,8 +202,11 @@ class SeriesFlow : public SeriesStep<T> {
       if (e.side != 0) {
         r[n] = T(e.side) * u;
         d[n] = n == 0 ? T(e.side) : T(0);
+      } else if (along_path()) {
+        r[n] = side * (path_.along * plate_velocity_[n] + path_.across * across_[n]);
+        d[n] = n == 0 ? -side * path_.along : T(0);
       } else {
-        const T squares = (n < 3 ? w_squared[n] : T(0)) + inner_square(u_, n) - inner_square(r, n);
+        const T squares = across_.square(n) + inner_square(u_, n) - inner_square(r, n);
         r[n] = n == 0 ? sqrt(squares + u * u) : (squares / 2 + u_[0] * u) / r[0];
         d[n] = (u - sum_of_products(r, d, n, 1, n)) / r[0];
       }
@@ -208,6 +224,20 @@ class SeriesFlow : public SeriesStep<T> {
       v[n + 1] = e.held ? surface_[n + 1] : part * forces / e.mass;
       if (n == 0 && !e.held && !isnan(start.acceleration)) v[1] = start.acceleration * step;
     }
+  }
+
+  /// Time at which a plate turns back on a straight path; the end of the step if the plate does not.
+  Real turns_back(const SeriesEquation<T>& e) const {
+    const Real known = rounding<Real> * (e.plate_velocity.size(T(0)) + e.across.size(T(0)));
+    return std::min(span(), zero_beyond(speed, known));
+  }
+  /// Sign of the velocity along a straight path with which the step begins.
+  int sense_of_path() const {
+    for (int n = 0; n <= N; ++n) {
+      const T order = path_.along * plate_velocity_[n] + path_.across * across_[n];
+      if (order != 0) return order < 0 ? -1 : 1;
+    }
+    return 1;
   }
 
   /// Bounds of the slopes of the falling parts of friction over the step, N s/m: at a load factor of
@@ -230,17 +260,24 @@ class SeriesFlow : public SeriesStep<T> {
   }
 
  private:
-  /// Evaluates the recurrences where u and w begin at 0. The direction is that of u/σ and w/σ, so
-  /// that order n needs the velocity of order n + 1, in which the equation is linear.
+  /// First order at which u or w is not 0, where the plate begins to slide: 1 for a pin that is not held.
+  int begin_of_sliding(const SeriesEquation<T>& e) const {
+    int k = 1;
+    while (e.held && k < N && across_[k] == 0 && surface_[k] == plate_velocity_[k]) ++k;
+    return k;
+  }
+  /// Evaluates the recurrences where u and w begin at order k. The direction is that of u/σᵏ and w/σᵏ. A pin that is
+  /// not held has k = 1, so that order n needs the velocity of order n + 1, in which the equation is linear.
   void expand_from_rest(const SeriesEquation<T>& e, const SeriesState<T>& start, Real step) {
     this->begin(e, step);
-    begins_ = 1;
+    begins_ = begin_of_sliding(e);
     auto &x = position.c, &v = velocity.c, &y = skin.c, &r = speed.c;
     auto &d = inner(0).c, &u = inner(1).c;
     x[0] = start.x;
     v[0] = e.plate_velocity.value;
     y[0] = start.skin;
-    const T w = e.across.rate * step;
+    const int k = begins_;
+    const T w = across_[k];
     const bool falls = e.plate_falling.present();
     const T at_rest = falls ? e.plate_force + e.plate_falling.excess : e.plate_force;
     const T strength = e.load.value * at_rest;
@@ -255,37 +292,40 @@ class SeriesFlow : public SeriesStep<T> {
                  e.stiffness * x[n] - e.skin_factor.value * y[n];
       if (n > 0) others -= step * e.skin_factor.rate * y[n - 1];
       if (e.finger_falling.present()) others -= this->falling_at_finger(e, n);
-      // d and ρ of this order without u of the next
-      const T product = -sum_of_products(r, d, n + 1, 2, n);
-      const T square = sum_of_products(u, u, n + 2, 2, n) - sum_of_products(r, r, n + 2, 2, n);
+      // d and ρ/σᵏ of this order without u/σᵏ
+      const int last = std::min(n + k - 1, N + 1), first = n + 2 * k - last;
+      const T product = -sum_of_products(r, d, n + k, k + 1, last);
+      const T square = sum_of_products(u, u, n + 2 * k, first, last) -
+                       sum_of_products(r, r, n + 2 * k, first, last) + across_.square(n + 2 * k);
       T known = e.plate_slope * u[n];
       if (falls && n > 0) known += directed_falling(e, n, n - 1);  // without its part of order 0
       if (n == 0) {
         const T rest = others - e.mass * e.plate_velocity.rate;
-        const T out = e.held ? e.surface.rate - e.plate_velocity.rate
-                             : departure_acceleration(e.mass, strength, e.across.rate, rest);
-        u[1] = out * step;
-        r[1] = sqrt(u[1] * u[1] + w * w);
-        d[0] = u[1] / r[1];
-        slope = w * w / (r[1] * r[1] * r[1]);
-        v[1] = u[1] + plate_velocity_[1];
+        u[k] = e.held ? surface_[k] - plate_velocity_[k]
+                      : departure_of(e.mass, strength, e.across.rate, rest).acceleration * step;
+        r[k] = sqrt(u[k] * u[k] + w * w);
+        d[0] = u[k] / r[k];
+        slope = w * w / (r[k] * r[k] * r[k]);
+        v[1] = e.held ? surface_[1] : u[1] + plate_velocity_[1];
       } else {
         // d is linear in û: first with û = 0, then its contribution.
-        r[n + 1] = square / (2 * r[1]);
-        d[n] = (product - r[n + 1] * d[0]) / r[1];
+        const T slower = square / (2 * r[k]);
+        d[n] = (product - slower * d[0]) / r[k];
         friction[n] = at_rest * d[n] + known;
         const T forces = others - load_.times(friction, n);
-        if (e.held && n < N) {
+        T further{0};  // u/σᵏ of this order
+        if (e.held) {
           v[n + 1] = surface_[n + 1];
-          u[n + 1] = v[n + 1] - plate_velocity_[n + 1];
-          r[n + 1] += d[0] * u[n + 1];
-          d[n] += slope * u[n + 1];
+          further = surface_[n + k] - plate_velocity_[n + k];
         } else if (n < N) {
           const T inertia = e.mass * plate_velocity_.rate(n);
-          u[n + 1] = (forces - inertia) / (e.mass / part + strength * slope);
-          r[n + 1] += d[0] * u[n + 1];
-          d[n] += slope * u[n + 1];
-          v[n + 1] = u[n + 1] + plate_velocity_[n + 1];
+          further = (forces - inertia) / (e.mass / part + strength * slope);
+          v[n + 1] = further + plate_velocity_[n + 1];
+        }
+        d[n] += slope * further;
+        if (n + k <= N + 1) {
+          u[n + k] = further;
+          r[n + k] = slower + d[0] * further;
         }
       }
       if (falls && n == 0) directed_falling(e, 0, 0);

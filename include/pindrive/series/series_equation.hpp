@@ -28,7 +28,7 @@ struct SeriesState {
 ///     m x'' + b x' + k x = force + R − f y,   R = −λ (F d + S u),   u = x' − v_p,   (f y)' = K x' − D y − E,
 ///
 /// where F also has a part that falls with the sliding speed, d is the sign of u or, with a transverse
-/// velocity w, u / √(u² + w²); u and w are then never both 0, and w and f are linear in time. y is the state of a compliant finger of
+/// velocity w, u / √(u² + w²); u and w are then never both 0, and f is linear in time. y is the state of a compliant finger of
 /// stiffness K. In elastic stick, y is the tension (f = 1, D = E = 0). In slip under a load λ_f on
 /// a branch F_c + S_c |y|, y is the slider velocity (f = S_c λ_f, D = K, E = ±F_c λ_f'), and its
 /// constant part belongs to `force`. If f begins at 0, y begins at its only finite value. A pin
@@ -45,7 +45,7 @@ struct SeriesEquation {
   T plate_slope{0};                     ///< S, N s/m
   FallingFriction<T> plate_falling{};   ///< part of F
   int side{0};                          ///< sign of u; 0: oblique slip
-  Line<T> across{T(0), T(0)};           ///< w, m/s
+  Curve<T> across{T(0), T(0)};          ///< w, m/s
   Line<T> skin_factor{T(0), T(0)};      ///< f: 1, or N s/m
   T skin_stiffness{0}, skin_decay{0};   ///< K and D, N/m
   T skin_drift{0};                      ///< E, N/s
@@ -61,12 +61,11 @@ struct SeriesEquation {
   SeriesEquation from(T tau) const {
     SeriesEquation later = *this;
     later.damping += damping_rate * tau;
-    for (Line<T> SeriesEquation::* line :
-         {&SeriesEquation::force, &SeriesEquation::across, &SeriesEquation::skin_factor})
+    for (Line<T> SeriesEquation::* line : {&SeriesEquation::force, &SeriesEquation::skin_factor})
       (later.*line).value = (this->*line).at(tau);
     for (Curve<T> SeriesEquation::* input :
          {&SeriesEquation::pushes, &SeriesEquation::plate_velocity, &SeriesEquation::load,
-          &SeriesEquation::surface, &SeriesEquation::finger_load})
+          &SeriesEquation::across, &SeriesEquation::surface, &SeriesEquation::finger_load})
       later.*input = (this->*input).from(tau);
     return later;
   }
@@ -74,7 +73,7 @@ struct SeriesEquation {
   /// Time over which the terms of the inputs beyond the last order stay within rounding, s.
   Real<T> input_reach() const {
     Real<T> least = std::numeric_limits<Real<T>>::infinity();
-    for (const Curve<T>* input : {&pushes, &plate_velocity, &load, &finger_load, &surface})
+    for (const Curve<T>* input : {&pushes, &plate_velocity, &load, &across, &finger_load, &surface})
       if (!input->straight())
         least = std::min(least, input->piece->reach(input->since, series_order, longest_input));
     return least;

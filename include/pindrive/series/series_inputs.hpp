@@ -45,6 +45,22 @@ class InputSeries {
   T times(const Coefficients& c, int n) const {
     return sum_of_products(c_, c, n, 0, std::min(n, degree_));
   }
+  /// Order n of the square.
+  T square(int n) const {
+    return sum_of_products(c_, c_, n, std::max(0, n - degree_), std::min(n, degree_));
+  }
+  /// Its coefficients from an order on, without those before, with zeros beyond the highest.
+  std::array<T, N + 2> from_order(int first) const {
+    std::array<T, N + 2> c{};
+    for (int n = first; n <= degree_; ++n) c[n - first] = c_[n];
+    return c;
+  }
+  void negate() {
+    curve_.value = -curve_.value;
+    curve_.rate = -curve_.rate;
+    for (int n = 0; n <= degree_; ++n) c_[n] = -c_[n];
+  }
+
   /// Bound of the absolute value over the step.
   Real most() const {
     using std::abs;

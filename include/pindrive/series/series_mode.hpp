@@ -69,7 +69,7 @@ class SeriesMode {
     e.side = sign(mode_.plate) < 0 ? -1 : 1;
     if (is_slip(mode_.plate) && inputs_.oblique()) {
       e.side = 0;
-      e.across = inputs_.across_velocity.line();
+      e.across = inputs_.across_velocity;
     }
     if (is_slip(mode_.finger)) {
       const T friction = along(mode_.finger, finger().intercept());

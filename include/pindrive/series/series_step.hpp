@@ -44,6 +44,7 @@ class SeriesStep {
     pushes_ = {e.pushes, step};
     plate_velocity_ = {e.plate_velocity, step};
     load_ = {e.load, step};
+    across_ = {e.across, step};
     finger_load_ = {e.finger_load, step};
     surface_ = {e.surface, step};
     each([&](Polynomial<T>& p) {
@@ -79,7 +80,8 @@ class SeriesStep {
     each([&](Polynomial<T>& p) { p.rescale(powers); });
     falling_plate.rescale(powers);
     falling_finger.rescale(powers);
-    for (InputSeries<T>* input : {&pushes_, &plate_velocity_, &load_, &finger_load_, &surface_})
+    for (InputSeries<T>* input :
+         {&pushes_, &plate_velocity_, &load_, &across_, &finger_load_, &surface_})
       input->rescale(powers);
   }
 
@@ -160,7 +162,7 @@ class SeriesStep {
   }
 
   std::array<Polynomial<T>, 3> inner_;  // auxiliary series of the recurrences
-  InputSeries<T> pushes_, plate_velocity_, load_, finger_load_, surface_;
+  InputSeries<T> pushes_, plate_velocity_, load_, across_, finger_load_, surface_;
 
  private:
   template <class Visitor>
