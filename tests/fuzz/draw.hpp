@@ -31,8 +31,7 @@ class Random {
 };
 
 /// Family of drives: an aligned or oblique hand, end stops, a compliant finger with a friction curve, inputs that are
-/// functions, or friction that falls by a law; any: one drive in ten has each. strokes: a hand that strokes a plate at an
-/// angle, with none of the others.
+/// functions, or friction that falls by a law; any: one drive in ten has each. Strokes: a hand at an angle.
 enum class Family { any, aligned, oblique, stops, skin, functions, laws, strokes };
 
 class Draw {
@@ -224,6 +223,7 @@ class Draw {
   /// Hand that moves and rests in turn along straight paths, by strokes or other functions; now and then bent.
   void strokes(Case& c) {
     c.mouse_velocity = c.across = {{0}, {0}};
+    if (c.plate_load.value[0] == 0) c.plate_load.value[0] = 1;  // a stroke begins on a loaded plate
     if (chance(0.7)) c.velocity = 0;
     Function along, aside;
     double begin = 0;

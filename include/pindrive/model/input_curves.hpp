@@ -53,8 +53,9 @@ struct InputCurves {
     if (held && along.rate != 0 && along.straight() && line.straight() &&
         abs(line.at(rest)) + abs(along.at(rest)) <= detail::difference_error<T> * changes)
       return {-line.rate * rest, line.rate};
-    if (abs(line.value) <= detail::least_across<T> * (changes + abs(along.value)))
-      line.value = T(0);
+    // Two functions may come to zero together: neither is then zero before the other.
+    const T beside = line.straight() || along.straight() ? changes : T(0);
+    if (abs(line.value) <= detail::least_across<T> * (beside + abs(along.value))) line.value = T(0);
     if (line.straight() || along.value != 0) return line;
     if (passes_zero(line, time)) line.value = T(0);
     if (along.rate == 0 && touches_zero(line)) line.value = line.rate = T(0);
@@ -74,7 +75,7 @@ struct InputCurves {
   static T rounding_of(const Curve<T>& input) { return detail::rounding<T> * input.size(T(0)); }
   static bool passes_zero(const Curve<T>& input, T time) {
     using std::abs;
-    return abs(input.value) <= detail::rounding<T> * time * abs(input.rate);
+    return abs(input.value) <= detail::difference_error<T> * time * abs(input.rate);
   }
   static bool touches_zero(const Curve<T>& input) {
     using std::abs;

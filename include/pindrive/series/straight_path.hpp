@@ -18,14 +18,14 @@ struct Slant {
   T along, across;
 };
 
-/// True if two velocities have the same or opposite directions within rounding.
+/// True if two velocities are parallel within rounding.
 template <class T>
 bool parallel(const Slant<T>& a, const Slant<T>& b) {
   using std::abs;
   const T one = a.along * b.across, other = a.across * b.along;
   return abs(one - other) <= difference_error<T> * (abs(one) + abs(other));
 }
-/// The same, with their derivatives.
+/// True if two velocities are parallel within rounding, with their derivatives.
 template <class T>
 bool parallel(const Slant<Dual<T>>& a, const Slant<Dual<T>>& b) {
   const auto value = [](const Slant<Dual<T>>& v) {
@@ -43,8 +43,8 @@ bool parallel(const Slant<Dual<T>>& a, const Slant<Dual<T>>& b) {
   return abs(sum) <= difference_error<T> * size;
 }
 
-/// Direction of two inputs that are functions, if it is constant: unit vector (cos φ, sin φ) such that along and
-/// across are cos φ and sin φ times a common function; zero otherwise.
+/// Constant direction of a pair of functions: unit vector (cos φ, sin φ), of which along and across are multiples by a
+/// common function; zero without a constant direction.
 template <class T>
 Slant<T> straight_path(const Curve<T>& along, const Curve<T>& across) {
   const Slant<T> none{T(0), T(0)};
