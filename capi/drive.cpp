@@ -322,8 +322,6 @@ pindrive_error pindrive_c::check(const pindrive_drive& drive, const pindrive_rel
   if (!error) error = check_input("force", release.force, true, true);
   if (!error) error = check_input("across_velocity", release.across_velocity, true, false);
   if (!error) error = check_input("finger_load", release.finger_load, false, true);
-  if (!error && !release.across_velocity.pieces.empty())
-    error = fail(PINDRIVE_UNSUPPORTED, "across_velocity must be constant or a profile");
   if (!error && !release.finger_load.pieces.empty() && drive.finger.stiffness != infinity)
     error = fail(PINDRIVE_UNSUPPORTED,
                  "finger_load must be constant or a profile beside a finger.stiffness");

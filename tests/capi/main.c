@@ -689,8 +689,6 @@ static void functions(void) {
   pindrive_release_set_function(bad, "plate_load", &load, 1);
   refuses(pindrive_simulate(drive, bad, NULL, NULL, &motion), PINDRIVE_BAD_VALUE, "must not be negative");
   pindrive_release_set(bad, "plate_load", 1);
-  pindrive_release_set_function(bad, "across_velocity", &hand, 1);
-  refuses(pindrive_simulate(drive, bad, NULL, NULL, &motion), PINDRIVE_UNSUPPORTED, "across_velocity");
   pindrive_motion_free(motion);
   pindrive_motion_free(derivative);
   pindrive_motion_free(greater);

@@ -130,7 +130,7 @@ void sets_out_and_lands() {
   expect(point.surface.value == state.v, "... and a pin on the finger keeps its own");
 }
 
-/// Velocities that begin with a later order, as with a stroke: the direction is that of this order.
+/// Direction of velocities whose first order that is not zero is a later one, as in a stroke.
 void begins_with_a_later_order() {
   const double across[]{0, 0, 3, -4, 1, 0}, along[]{0, 0, 4, 1, -2, 0};
   pd::InputPiece<double> u, w;

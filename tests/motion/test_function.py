@@ -110,8 +110,8 @@ def test_function_is_equal_to_its_copy() -> None:
         ),
         (lambda: pd.Release(pd.harmonic("0 N", "1 N", 3)), "mouse_velocity must be a Function of"),
         (
-            lambda: pd.Release(1.0, across_velocity=pd.harmonic(1, 2, 3)),
-            "across_velocity must be a number or a Profile, got a Function",
+            lambda: pd.Release(1.0, across_velocity=pd.harmonic(0, 1, 3).then(0.1, 2.0)),
+            "across_velocity must be without a step",
         ),
         (
             lambda: pd.simulate(
@@ -190,3 +190,27 @@ def test_driven_motion_repeats_with_its_input() -> None:
     assert motion.ending.period == pytest.approx(1 / 12, rel=1e-12)
     later = motion.ending.steady_since + np.linspace(0.0, 1 / 12, 9)
     assert motion.position(later + 100 / 12) == pytest.approx(motion.position(later), abs=1e-11)
+
+
+@pytest.mark.parametrize("stiffness", [None, 500.0])
+def test_rows_converge_to_a_stroke_at_an_angle(stiffness: float | None) -> None:
+    """The error falls with the square of the distance between two rows."""
+    finger = pd.Contact(0.005) if stiffness is None else pd.Contact(0.005, stiffness=stiffness)
+    drive = pd.Drive(mass=0.001, stiffness=50.0, damping=0.05, plate=pd.Contact(0.2), finger=finger)
+    distances = {"mouse_velocity": 0.0132, "across_velocity": 0.0072}
+    times = np.linspace(0.01, 0.1, 7)
+
+    def positions(rows: int) -> Any:
+        strokes: dict[str, Any] = {
+            name: pd.minimum_jerk(distance, 0.15) for name, distance in distances.items()
+        }
+        if rows:
+            t = np.linspace(0.0, 0.15, rows + 1)
+            strokes = {name: pd.Profile(t, stroke(t)) for name, stroke in strokes.items()}
+        release = pd.Release(**strokes, displacement=0.0)
+        return pd.simulate(drive, release, duration=0.2).position(times)
+
+    exact, coarse, fine = positions(0), positions(500), positions(1000)
+    assert np.max(np.abs(coarse - exact)) < 1e-7
+    extrapolated = fine + (fine - coarse) / 3
+    assert extrapolated == pytest.approx(exact, abs=3e-3 * np.max(np.abs(coarse - exact)))

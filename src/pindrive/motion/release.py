@@ -42,8 +42,8 @@ class Release:
         force: External force on the pin, N, up to 1e12 either way, positive the way of x; constant
             or a `Profile`, which may have steps.
         across_velocity: W, the velocity of the plate across the axis of the pin, m/s, up to 1e12
-            either way; constant or a `Profile` without steps. While it is not 0 the plate slips:
-            its friction opposes the whole sliding velocity.
+            either way; constant, a `Profile` or a `Function`, without steps. While it is not 0 the
+            plate slips: its friction opposes the whole sliding velocity.
         finger_load: Factor on the finger's friction, from 0 to 1e12: how the touch force changes,
             over the `touch_force` of a drive whose finger has a coefficient; constant or a
             `Profile`, which may have steps.
@@ -133,8 +133,6 @@ def input_of(name: str, given: float | str | Profile | Function) -> float | Prof
 
 def _check_function(name: str, given: Function) -> None:
     """Refuse a function that the input cannot be: one that jumps, or is negative."""
-    if name == "across_velocity":
-        raise ValueError(refusal(name, "a number or a Profile", "a Function"))
     (time, least), (jumps, before, after) = _core.function_range(given.core)
     if name in CONTINUOUS and jumps < inf:
         required = "without a step (a jump would take an infinite force)"
