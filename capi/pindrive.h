@@ -159,9 +159,9 @@ typedef struct {
   size_t count;
 } pindrive_piece;
 
-/* Gives a release "mouse_velocity", "plate_load", "force" or "finger_load" as a function of time: `count`
- * >= 1 pieces, begins increasing; before the first, its value there. A velocity has no jump, a load is not
- * negative. The pieces are copied. */
+/* Gives a release "mouse_velocity", "plate_load", "force", "across_velocity" or "finger_load" as a function
+ * of time: `count` >= 1 pieces, begins increasing; before the first, its value there. A velocity has no
+ * jump, a load is not negative. The pieces are copied. */
 PINDRIVE_API pindrive_error pindrive_release_set_function(pindrive_release *release,
                                                           const char *name,
                                                           const pindrive_piece *pieces,
