@@ -140,7 +140,7 @@ class SeriesSegment {
   /// True if an input is zero within rounding from a time to another: at its ends and at a time between them that is
   /// no period.
   static bool rests(const Curve<T>& input, T from, T to) {
-    const T known = rounding<T> * input.size(T(0));
+    const T known = input.rounding();
     const auto is_zero = [&](T tau) { return abs(input.at(tau)) <= known; };
     return is_zero(from) && is_zero(to) && is_zero(from + T(0.382) * (to - from));
   }

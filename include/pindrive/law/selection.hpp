@@ -335,8 +335,8 @@ class Selection {
     return {abs(rate) <= rounding<T> * scale ? T(0) : rate / pin_.drive.mass,
             second / pin_.drive.mass};
   }
-  /// The same of a pin that follows a plate which begins to slide across, with u = w d/√(1 − d²); instead of the
-  /// derivative, by its sign, the first later one that is not zero.
+  /// Jerk of a pin that follows a plate which begins to slide across, with u = w d/√(1 − d²); instead of its derivative,
+  /// the first later coefficient that is not zero, of which the sign is used.
   Line<T> creeping_jerk() const {
     auto velocity = pin_.plate.surface.template coefficients<beginning_orders>();
     const auto across = pin_.plate.across.template coefficients<beginning_orders>();

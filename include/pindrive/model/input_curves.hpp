@@ -71,8 +71,6 @@ struct InputCurves {
   }
 
  private:
-  /// Rounding of a function, whose terms may cancel.
-  static T rounding_of(const Curve<T>& input) { return detail::rounding<T> * input.size(T(0)); }
   static bool passes_zero(const Curve<T>& input, T time) {
     using std::abs;
     return abs(input.value) <= detail::difference_error<T> * time * abs(input.rate);
@@ -80,7 +78,7 @@ struct InputCurves {
   static bool touches_zero(const Curve<T>& input) {
     using std::abs;
     if (input.straight()) return input.is_zero();
-    const T known = rounding_of(input);
+    const T known = input.rounding();
     return abs(input.value) <= known && abs(input.rate) <= known * input.piece->fastest();
   }
 };

@@ -105,9 +105,8 @@ class CreepFlow : public IteratedStep<T> {
   /// Part of the step up to the first zero of a transverse velocity that is not linear.
   Real until_zero(const SeriesEquation<T>& e, Real part, Real step) const {
     if (e.across.straight() || !(part < std::numeric_limits<Real>::infinity())) return part;
-    const Real known = rounding<Real> * e.across.size(T(0));
     const auto w = T(balance_.side()) * polynomial_of(e.across, part * step);
-    return std::min(part, zero_beyond(w, known) / step);
+    return std::min(part, zero_beyond(w, e.across.rounding()) / step);
   }
 
   /// One iteration in the time σ = τ/step: the series of t from that of a, and from t a new a below
@@ -255,9 +254,9 @@ class CreepFlow : public IteratedStep<T> {
     return std::max(by_forces, here) + rounding<Real> * plain(start.time) * changes +
            rounding_of(e.plate_velocity) + abs(plain(balance_.ratio())) * rounding_of(e.across);
   }
-  /// Rounding of a function at the start, whose terms may cancel.
+  /// Rounding of a function at the start; a line is exact.
   static Real rounding_of(const Curve<T>& input) {
-    return input.straight() ? Real(0) : rounding<Real> * input.size(T(0));
+    return input.straight() ? Real(0) : input.rounding();
   }
 
   CreepBalance<T> balance_;  // at the start
@@ -290,13 +289,13 @@ SeriesStep<T> carried_by_plate(SeriesEquation<T> e, const SeriesState<T>& start,
   e.surface = e.plate_velocity;
   return SeriesFlow<T>(e, start, limit);
 }
-/// Step of that pin: its series diverges, and holds to rounding over a short time.
+/// Step of a pin that follows the plate: its series diverges, and holds to rounding over a short time.
 template <class T>
 SeriesStep<T> creep_from_rest(const SeriesEquation<T>& e, const SeriesState<T>& start, T limit) {
-  const Real<T> slowest = sqrt(plain(e.mass / e.stiffness));
-  for (T span = creep_span(e, start, limit); span > rounding<T> * slowest; span *= T(0.125))
+  const Real<T> natural_time = sqrt(plain(e.mass / e.stiffness));
+  for (T span = creep_span(e, start, limit); span > rounding<T> * natural_time; span *= T(0.125))
     if (const auto flow = creep(e, start, span)) return *flow;
-  return carried_by_plate(e, start, std::min(limit, T(1e-6) * slowest));
+  return carried_by_plate(e, start, std::min(limit, T(carried_time) * natural_time));
 }
 
 /// Step from a state: the Taylor series, or the slow motion where the fast transient is over: in
