@@ -228,7 +228,8 @@ class Draw {
     Function along, aside;
     double begin = 0;
     for (int left = static_cast<int>(uniform(1, 4)); left > 0; --left) {
-      const double angle = chance(0.1) ? 1.5707963267948966 : tidy(uniform(0, 1.5)), s = speed_;
+      const double off = chance(0.1) ? 0 : chance(0.05) ? decade(-12, -2) : uniform(0, 1.5708);
+      const double s = speed_;  // `off`: angle between the path and the transverse direction
       const double lasts = tidy(period_ * decade(-1, 1)), rests = tidy(period_ * decade(-1.5, 0.3));
       const double height = tidy(s * uniform(-16, 16)), rate = 1 / lasts;
       Piece stroke{begin, {}, {}};
@@ -249,8 +250,8 @@ class Draw {
         for (Term& t : piece.terms) t.sine *= part;
         return piece;
       };
-      along.push_back(scaled(chance(0.1) ? 0 : std::cos(angle)));
-      aside.push_back(scaled(std::sin(angle)));
+      along.push_back(scaled(std::sin(off)));
+      aside.push_back(scaled(std::cos(off)));
       if (chance(0.1) && !aside.back().terms.empty()) aside.back().terms[0].frequency *= 2;
       begin += lasts;
       for (Function* function : {&along, &aside}) function->push_back({begin, {}, {}});

@@ -130,6 +130,7 @@ class Certifier {
         const Numbers s = evaluated.at(tau);
         scales_.x = std::max({scales_.x, abs(s.x), abs(s.v) / omega0,
                               abs(evaluated.plate_velocity.at(tau)) / omega0});
+        scales_.across = std::max(scales_.across, abs(evaluated.across.at(tau)));
         scales_.force =
             std::max({scales_.force, abs(drive_.mass * s.a), abs(drive_.damping * s.v),
                       abs(s.plate_force), abs(s.finger_force), abs(evaluated.force.at(tau))});

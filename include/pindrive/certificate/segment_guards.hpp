@@ -46,7 +46,8 @@ class SegmentGuards {
       slipping(drive.plate, mode.plate, mode.plate_branch,
                along_.velocity() + T(-1) * along_.input(segment.plate_velocity));
     else if constexpr (std::is_same_v<Trajectory, BySeries<T>>)
-      within(drive.plate.branch(mode.plate_branch), along_.sliding_speed(), false);
+      within(drive.plate.branch(mode.plate_branch), along_.sliding_speed(), false,
+             std::max(segment.scales.v, segment.scales.across));
     // A slider is slower than the pin by what its skin stretches.
     if (drive.finger.compliant()) {
       const int others = count_;
@@ -85,8 +86,7 @@ class SegmentGuards {
   /// Adds the distance of a speed from the ends of its branch; at the begin of the first branch, a
   /// speed without a direction is excluded.
   template <class Path>
-  void within(const Branch<T>& branch, const Path& speed, bool directed) {
-    const T scale = evaluated_.scales.v;
+  void within(const Branch<T>& branch, const Path& speed, bool directed, T scale) {
     if (directed || branch.from > 0)
       watch(along_.above(speed, branch.from), &Certificate<T>::sliding_sign, scale);
     if (branch.to < never)
@@ -96,7 +96,8 @@ class SegmentGuards {
   void slipping(const Contact<T>& contact, ContactState does, int branch, const Path& sliding) {
     if (!is_slip(does)) return;
     const int last = std::max(contact.branches - 1, 0);
-    within(contact.branch(std::clamp(branch, 0, last)), T(sign(does)) * sliding, true);
+    within(contact.branch(std::clamp(branch, 0, last)), T(sign(does)) * sliding, true,
+           evaluated_.scales.v);
   }
   void sticking(const Quantity& force, const Quantity& most) {
     const T scale = evaluated_.scales.force;

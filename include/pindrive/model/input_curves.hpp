@@ -54,7 +54,10 @@ struct InputCurves {
         abs(line.at(rest)) + abs(along.at(rest)) <= detail::difference_error<T> * changes)
       return {-line.rate * rest, line.rate};
     // Two functions may come to zero together: neither is then zero before the other.
-    const T beside = line.straight() || along.straight() ? changes : T(0);
+    const T there = abs(along.value * line.rate - along.rate * line.value);
+    const bool together = !line.straight() && !along.straight() &&
+                          there <= detail::least_across<T> * changes * abs(line.rate);
+    const T beside = together ? T(0) : changes;
     if (abs(line.value) <= detail::least_across<T> * (beside + abs(along.value))) line.value = T(0);
     if (line.straight() || along.value != 0) return line;
     if (passes_zero(line, time)) line.value = T(0);
@@ -65,7 +68,9 @@ struct InputCurves {
   /// of which no direction follows.
   static void stop_at_rest(Curve<T>& along, Curve<T>& across, T time) {
     if (across.straight()) return;
-    if (passes_zero(along, time) && passes_zero(across, time)) along.value = across.value = T(0);
+    using std::abs;
+    const T known = detail::difference_error<T> * time * (abs(along.rate) + abs(across.rate));
+    if (abs(along.value) + abs(across.value) <= known) along.value = across.value = T(0);
     if (touches_zero(along) && touches_zero(across))
       along.value = across.value = along.rate = across.rate = T(0);
   }

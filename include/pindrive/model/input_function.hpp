@@ -215,8 +215,10 @@ struct Curve {
     if (straight()) return abs(plain(value)) + abs(plain(rate * tau));
     return piece->size(since + tau);
   }
-  /// Rounding of the value: the terms of a function may cancel.
-  detail::Real<T> rounding() const { return detail::rounding<detail::Real<T>> * size(T(0)); }
+  /// Rounding of the value after τ: the terms of a function may cancel.
+  detail::Real<T> rounding(T tau = T(0)) const {
+    return detail::rounding<detail::Real<T>> * size(tau);
+  }
   /// Second and third derivative at the instant.
   T second() const { return straight() ? T(0) : derivatives(T(0))[2]; }
   T third() const { return straight() ? T(0) : derivatives(T(0))[3]; }

@@ -17,7 +17,7 @@ namespace pindrive::detail {
 /// have a force scale of their own.
 template <class T>
 struct Scales {
-  T x{0}, v{0}, force{0}, stop{0};
+  T x{0}, v{0}, across{0}, force{0}, stop{0};
 };
 
 /// State of the pin, τ after the begin of its segment.

@@ -228,7 +228,8 @@ class SeriesFlow : public SeriesStep<T> {
 
   /// Time at which a plate turns back on a straight path; the end of the step if the plate does not.
   Real turns_back(const SeriesEquation<T>& e) const {
-    const Real known = e.plate_velocity.rounding() + e.across.rounding();
+    const T end(span());
+    const Real known = e.plate_velocity.rounding(end) + e.across.rounding(end);
     return std::min(span(), zero_beyond(speed, known));
   }
   /// Sign of the velocity along a straight path with which the step begins.
