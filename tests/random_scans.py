@@ -29,6 +29,34 @@ from pindrive.device import (
 )
 
 
+def sampled(path: HandPath, rows: int = 65) -> HandPath:
+    """The path with a velocity that is linear between `rows` times in each stretch."""
+    times = np.concatenate(
+        [
+            np.linspace(begin, end, rows if bend.any() else 2)[:-1]
+            for begin, end, bend in zip(
+                path.times[:-1], path.times[1:], path.bend_x + path.bend_y, strict=True
+            )
+        ]
+        + [path.times[-1:]]
+    )
+    return HandPath(times, *path.velocity(times), (float(path.x[0]), float(path.y[0])))
+
+
+def mirrored(path: HandPath) -> HandPath:
+    """The path reflected in the y axis."""
+    bends = {"bend_x": -path.bend_x, "bend_y": path.bend_y}
+    start = -float(path.x[0]), float(path.y[0])
+    return HandPath(path.times, -path.vx, path.vy, start, **bends)
+
+
+def later(path: HandPath, by: float) -> HandPath:
+    """The path on a clock that is ahead by a time, s."""
+    bends = {"bend_x": path.bend_x, "bend_y": path.bend_y}
+    start = float(path.x[0]), float(path.y[0])
+    return HandPath(path.times + by, path.vx, path.vy, start, **bends)
+
+
 @dataclass(frozen=True)
 class RandomScan:
     """A device, a scene and a path drawn from a seed, over decades of every number."""
@@ -85,7 +113,7 @@ class RandomScan:
         stops = [(0.001 - half, y), (half - 0.001, y)]
         if draw.random() < 0.4:
             stops.append(stops[0])  # and back
-        path = strokes(stops, between(0.01, 0.4), pause=either(0.0, 0.05), deviation=1e-3)
+        path = strokes(stops, between(0.01, 0.4), pause=either(0.0, 0.05))
         cut = float(draw.uniform(0.05, 0.95)) * path.end
         return cls(Device(drive=drive, magnet=magnet, control=control), scene, path, cut)
 
@@ -100,8 +128,13 @@ class RandomScan:
         halts = self.path.times[self.path.vx == 0.0][1]
         stroke = self.path.between(0.01 * halts, 0.99 * halts)
         x, y = (float(place) for place in self.path.position(stroke.begin))
-        path = HandPath(stroke.times - stroke.begin, stroke.vx, stroke.vy, (x, y))
+        bends = {"bend_x": stroke.bend_x, "bend_y": stroke.bend_y}
+        path = HandPath(stroke.times - stroke.begin, stroke.vx, stroke.vy, (x, y), **bends)
         return replace(self, device=device, path=path, cut=self.cut * path.end / self.path.end)
+
+    def linear(self) -> RandomScan:
+        """Scan with a sampled path, for the oracles."""
+        return replace(self, path=sampled(self.path))
 
     def scan(self) -> PinScan:
         return scan(self.device, self.scene, self.path, threads=1).pins[0]
@@ -114,8 +147,7 @@ class RandomScan:
 
     def mirrored(self) -> PinScan:
         path, scene = self.path, self.scene
-        start = -float(path.x[0]), float(path.y[0])
-        back = HandPath(path.times, -path.vx, path.vy, start)
+        back = mirrored(path)
         other = replace(scene, luminance=scene.luminance[:, ::-1])
         array = replace(self.device.array, axis=-self.device.array.axis)
         return scan(replace(self.device, array=array), other, back, threads=1).pins[0]
@@ -207,7 +239,8 @@ def main_sundials(count: int, seed: int, *, curved: bool, oblique: bool) -> None
     from oracle.watched_dop853 import dop853
 
     drawn = (
-        RandomScan.of(s, curved=curved, oblique=oblique).scan() for s in range(seed, seed + count)
+        RandomScan.of(s, curved=curved, oblique=oblique).linear().scan()
+        for s in range(seed, seed + count)
     )
     pins = [pin for pin in drawn if short(pin)]
     found: list[Distance] = []

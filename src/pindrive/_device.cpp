@@ -1,6 +1,7 @@
 // Page and hand: arrays in and out of include/pindrive/device. No logic lives here.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
@@ -18,6 +19,7 @@
 #include "pindrive/device/raster.hpp"
 
 namespace nb = nanobind;
+namespace pd = pindrive;
 namespace device = pindrive::device;
 using nb::literals::operator""_a;
 using pindrive_python::path_of;
@@ -127,10 +129,17 @@ void bind_device(nb::module_& m) {
       "plate_velocity",
       [](const PathNumbers& path, double axis) {
         const device::PlateVelocity found(path_of(path), device::Axis(axis));
-        return nb::make_tuple(to_array(std::vector<double>(found.times)),
-                              to_array(std::vector<double>(found.along)),
-                              to_array(std::vector<double>(found.across)), found.oblique());
+        const auto component = [](const device::PlateVelocity::Component& of) {
+          nb::list pieces;
+          for (const pd::InputPiece<double>& piece : of.pieces)
+            pieces.append(nb::make_tuple(piece.begin, nb::cast(piece.polynomial), nb::list()));
+          return nb::make_tuple(to_array(std::vector<double>(of.rows)), pieces);
+        };
+        return nb::make_tuple(to_array(std::vector<double>(found.times())),
+                              component(found.along_axis()), component(found.across_axis()),
+                              found.oblique());
       },
       "path"_a, "axis"_a,
-      "Times since the begin; velocity along and across the axis; whether across it moves.");
+      "Times since the begin; velocity along and across the axis, at these times and as pieces "
+      "where the path has bends; whether across it moves.");
 }

@@ -34,8 +34,8 @@ namespace device = pindrive::device;
 using Table = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 /// Luminance (rows, columns); size of a pixel; left and top of the page.
 using RasterNumbers = std::tuple<Table, double, double, double>;
-/// Times, velocity (x, y), place (x, y), one row each.
-using PathNumbers = std::tuple<Column, Column, Column, Column, Column>;
+/// Times, velocity (x, y), place (x, y), one row each; bends (x, y) of the stretches, or none.
+using PathNumbers = std::tuple<Column, Column, Column, Column, Column, Table, Table>;
 
 inline device::Raster raster_of(const RasterNumbers& given) {
   const auto& [luminance, pixel, left, top] = given;
@@ -46,8 +46,12 @@ inline device::Raster raster_of(const RasterNumbers& given) {
           {left, top}};
 }
 inline device::HandPath path_of(const PathNumbers& given) {
-  const auto& [times, vx, vy, x, y] = given;
-  return {times.data(), vx.data(), vy.data(), x.data(), y.data(), times.size()};
+  const auto& [times, vx, vy, x, y, bend_x, bend_y] = given;
+  const auto bends = [](const Table& of) {
+    return of.shape(0) > 0 ? reinterpret_cast<const device::Bend*>(of.data()) : nullptr;
+  };
+  return {times.data(), vx.data(),    vy.data(),     x.data(),
+          y.data(),     times.size(), bends(bend_x), bends(bend_y)};
 }
 
 /// Mass, stiffness, damping; plate, finger; travel, stiffness and damping of the end stops.

@@ -56,6 +56,24 @@ void a_straight_way_is_exact() {
   expect(std::abs(way(1) - 0.05) < 1e-17 && std::abs(way(0.5) - 0.025) < 1e-17, "of length 50 mm");
 }
 
+void strokes_are_exact() {
+  // 50 mm in 1 s along (3, 4), a rest, and back along x.
+  Rows rows({0, 1, 1.5, 2}, {0, 0, 0, 0}, {0, 0, 0, 0});
+  rows.x = {0, 0.03, 0.03, 0};
+  rows.y = {0, 0.04, 0.04, 0.04};
+  const auto stroke = [](double mean) { return device::Bend{{0, 30 * mean, -30 * mean}}; };
+  const std::vector<device::Bend> x{stroke(0.03), {}, stroke(-0.06)}, y{stroke(0.04), {}, {}};
+  device::HandPath path = rows.path();
+  path.bend_x = x.data();
+  path.bend_y = y.data();
+  expect(std::abs(path.velocity(0.5).x - 1.875 * 0.03) < 1e-16, "a stroke has its peak speed");
+  expect(std::abs(path.position(0.5).y - 0.02) < 1e-17, "half-way at half its time");
+  const device::Way way(path);
+  expect(std::abs(way(1) - 0.05) < 1e-16 && std::abs(way(2) - 0.08) < 1e-16, "its length is exact");
+  const std::vector<double> found = device::turnings(path, device::Axis(0));
+  expect(found.size() == 2 && found[0] == 1 && found[1] == 1.5, "stops are those between strokes");
+}
+
 void stops_and_turns() {
   const Rows rows({0, 0.1, 0.2, 0.3, 0.4}, {0.06, -0.02, 0, 0, 0.1}, {0, 0, 0, 0, 0});
   const std::vector<double> found = device::turnings(rows.path(), device::Axis(0));
@@ -71,6 +89,7 @@ void stops_and_turns() {
 int main() {
   places_are_the_integral_of_velocities();
   a_straight_way_is_exact();
+  strokes_are_exact();
   stops_and_turns();
   return check::status();
 }

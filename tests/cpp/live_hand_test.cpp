@@ -20,7 +20,7 @@ void places_and_rows() {
   const device::Place middle = hand.path().position(1.05);
   expect(std::abs(middle.x - 0.0175) < 1e-16, "in between the velocity is linear");
   expect(std::abs(hand.finger_load().from(0.05).value - 0.75) < 1e-15, "so is the touch");
-  expect(hand.plate().times[1] == 1.1 - 1 && hand.plate().across[1] == 0.1,
+  expect(hand.plate().times()[1] == 1.1 - 1 && hand.plate().across_axis().rows[1] == 0.1,
          "the plate has the time since the begin");
 }
 
@@ -36,14 +36,15 @@ void rows_behind() {
   expect(hand.size() < 8 && whole.size() == 1001, "rows behind are forgotten");
   const device::Place one = hand.path().position(0.9985), other = whole.path().position(0.9985);
   expect(one.x == other.x && one.y == other.y, "the others remain to the bit");
-  expect(hand.plate().along.back() == whole.plate().along.back() && hand.begin() == 0,
+  expect(hand.plate().along_axis().rows.back() == whole.plate().along_axis().rows.back() &&
+             hand.begin() == 0,
          "with the velocity of the plate and the begin of all");
 
   std::vector<std::pair<device::LiveHand::Row, device::Place>> rows;
   rows.reserve(hand.size());
   for (std::size_t i = 0; i < hand.size(); ++i) rows.emplace_back(hand.row(i), hand.place(i));
   const device::LiveHand again(hand.begin(), rows, axis);
-  expect(again.path().position(0.9985).x == one.x && again.plate().times == hand.plate().times,
+  expect(again.path().position(0.9985).x == one.x && again.plate().times() == hand.plate().times(),
          "a hand can be made from its rows");
 }
 

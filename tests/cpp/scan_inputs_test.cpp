@@ -18,11 +18,13 @@ void oblique_hands() {
   Page page;
   page.vy = {0.02, 0.02};
   const device::PlateVelocity turned(page.path(), device::Axis(0));
-  expect(turned.oblique() && turned.across[0] == 0.02, "a hand across the axis is oblique");
+  expect(turned.oblique() && turned.across().from(0).value == 0.02,
+         "a hand across the axis is oblique");
   const double angle = std::atan2(0.02, 0.1);
   const device::PlateVelocity along(page.path(), device::Axis(angle));
   expect(!along.oblique(), "one along the axis is not, to rounding");
-  expect(std::abs(along.along[0] - std::hypot(0.1, 0.02)) < 1e-16, "and has its whole speed");
+  expect(std::abs(along.along().from(0).value - std::hypot(0.1, 0.02)) < 1e-16,
+         "and has its whole speed");
 }
 
 void what_pins_share() {

@@ -318,7 +318,7 @@ def test_no_pin_goes_beyond_its_excursion() -> None:
     """Random devices whose hands accelerate and decelerate."""
     closest_ = 0.0
     for seed in range(60):
-        one = RandomScan.of(seed, curved=seed < 8)
+        one = RandomScan.of(seed, curved=seed < 8).linear()
         body, path = one.device.drive, one.path
         hurry = np.abs(np.diff(path.vx) / np.diff(path.times)).max() * body.mass / body.stiffness
         most = one.device.excursion(path.peak_speed) + 2.0 * hurry

@@ -130,7 +130,7 @@ def test_at_the_cut_off_three_decibels_are_lost_and_no_time(cutoff: float) -> No
 def test_the_peak_that_is_lost_is_the_one_stated(lasts: float) -> None:
     """0.102 / (f_c T)^4 of the peak of a minimum-jerk stroke."""
     assert pytest.approx(0.102, rel=2e-3) == PEAK_LOSS
-    true = strokes([(0.0, 0.0), (SPEED * lasts / 1.875, 0.0)], SPEED, pause=0.5, deviation=1e-6)
+    true = strokes([(0.0, 0.0), (SPEED * lasts / 1.875, 0.0)], SPEED, pause=0.5)
     t = np.linspace(-0.5, true.end, 20_001)
     x = np.where(t > 0.0, true.position(np.maximum(t, 0.0))[0], 0.0)
     smooth = HandRecording(t, x, 0.0 * t).smoothed(20.0)

@@ -72,7 +72,7 @@ def test_commands_and_loads_of_random_scans(kind: str) -> None:
     """Luminance and commands to the bit, the load to the last digits."""
     switchings = 0
     for seed in range(40):
-        case = RandomScan.of(seed, oblique=kind == "oblique")
+        case = RandomScan.of(seed, oblique=kind == "oblique").linear()
         (pin,) = scan(case.device, case.scene, case.path).pins
         x, y = position(case.path, pin.sample_times)
         (dx, dy), *_ = case.device.array.on_page(case.device.array.spots)

@@ -27,6 +27,7 @@ from pindrive.device import (
     scan,
     strokes,
 )
+from random_scans import mirrored, sampled
 
 PLATE = Contact(0.022, 0.0265)
 RIGID = Contact(0.005, 0.0075)
@@ -48,7 +49,7 @@ def grating(*pitches: float, count: int = 2) -> Scene:
 def across(scene: Scene, speed: float = 0.06, margin: float = 0.003) -> HandPath:
     left, right, _, _ = scene.extent
     y = scene.lines[0]
-    return strokes([(left + margin, y), (right - margin, y)], speed, pause=0.1, deviation=1e-3)
+    return strokes([(left + margin, y), (right - margin, y)], speed, pause=0.1)
 
 
 def weak() -> Electromagnet:
@@ -78,7 +79,7 @@ def test_whole_cycles_against_sundials(
     speed: float,
 ) -> None:
     scene, device = grating(*pitches), Device(drive=drive(finger, plate), magnet=magnet)
-    (pin,) = scan(device, scene, across(scene, speed)).pins
+    (pin,) = scan(device, scene, sampled(across(scene, speed))).pins
     assert len(pin.energised) == 2 * len(pitches)
     found = distance(pin)
     assert found.events
@@ -195,15 +196,15 @@ def test_a_pin_that_is_off_is_dragged_no_further_than_the_plate_can() -> None:
 
 def test_mirrored_scene_and_path_mirror_the_motion_to_the_bit() -> None:
     scene = grating(0.002, 0.0071)
-    mirrored = replace(scene, luminance=scene.luminance[:, ::-1])
+    reversed_ = replace(scene, luminance=scene.luminance[:, ::-1])
     path = across(scene)
-    back = HandPath(path.times, -path.vx, path.vy, (-float(path.x[0]), float(path.y[0])))
+    back = mirrored(path)
     array = PinArray([(0.0, 0.0), (0.0011, 0.002)])
     turned = PinArray([(0.0, 0.0), (-0.0011, 0.002)])
     for finger in (RIGID, SKIN):
         device = Device(drive=drive(finger), magnet=weak(), array=array)
         one = scan(device, scene, path)
-        other = scan(replace(device, array=turned), mirrored, back)
+        other = scan(replace(device, array=turned), reversed_, back)
         t = np.linspace(0.0, path.end, 2001)
         for pin, mirror in zip(one.pins, other.pins, strict=True):
             assert (pin.commands.times == mirror.commands.times).all()

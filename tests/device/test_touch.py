@@ -14,6 +14,7 @@ from pindrive import Contact, Drive, Profile, load_device
 from pindrive.device import Device, Electromagnet, HandPath, PinArray, Scene, scan, strokes
 from pindrive.device.touch import spans
 from pindrive.evaluation.tactile_image import paint
+from random_scans import sampled
 
 RIGID = Contact(coefficient=0.5, static_coefficient=0.75)
 SKIN = Contact(coefficient=0.5, static_coefficient=0.75, stiffness=300.0)
@@ -39,7 +40,7 @@ def page() -> tuple[Scene, HandPath]:
     scene = Scene.from_grating([0.004], count=5, margin=0.010)
     left, right, _, _ = scene.extent
     y = scene.lines[0]
-    return scene, strokes([(left + 0.005, y), (right - 0.005, y)], 0.06, pause=0.1, deviation=1e-3)
+    return scene, strokes([(left + 0.005, y), (right - 0.005, y)], 0.06, pause=0.1)
 
 
 @pytest.mark.parametrize("finger", [RIGID, SKIN], ids=["rigid", "skin"])
@@ -58,7 +59,8 @@ def test_one_row_is_the_touch_force_of_the_drive(finger: Contact) -> None:
 @pytest.mark.parametrize("touch_force", [0.010, 0.025])
 def test_a_finger_that_lifts_against_sundials(touch_force: float) -> None:
     """Whatever the force is that its coefficient is given with."""
-    (pin,) = scan(device(touch_force=touch_force), *page(), touch=LIFTS).pins
+    scene, path = page()
+    (pin,) = scan(device(touch_force=touch_force), scene, sampled(path), touch=LIFTS).pins
     assert isinstance(pin.finger_load, Profile)
     assert pin.finger_load(0.5) == pytest.approx(0.030 / touch_force, rel=1e-15)
     found = distance(pin)

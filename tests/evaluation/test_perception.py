@@ -26,7 +26,7 @@ from pindrive.device import (
 )
 from pindrive.evaluation import Evaluation, Line, evaluate
 from pindrive.evaluation.line_crossings import FATES, printed_lines
-from random_scans import RandomScan
+from random_scans import RandomScan, later, mirrored
 
 PLATE = Contact(0.022, 0.0265)
 RIGID = Contact(0.005, 0.0075)
@@ -238,7 +238,7 @@ def test_lag_is_latency_times_an_even_speed() -> None:
 def test_a_later_clock_changes_nothing() -> None:
     scene = grating(0.004, 0.009)
     path = across(scene)
-    late = HandPath(path.times + 16.0, path.vx, path.vy, (float(path.x[0]), float(path.y[0])))
+    late = later(path, 16.0)
     for finger in (RIGID, SKIN):
         one, other = (evaluate(scan(Device(drive=drive(finger)), scene, p)) for p in (path, late))
         assert one.counts == other.counts
@@ -249,12 +249,12 @@ def test_a_later_clock_changes_nothing() -> None:
 
 def test_mirrored_scene_and_path_are_evaluated_alike() -> None:
     scene = grating(0.002, 0.0071)
-    mirrored = replace(scene, luminance=scene.luminance[:, ::-1])
+    other_way = replace(scene, luminance=scene.luminance[:, ::-1])
     path = across(scene, 0.1)
-    back = HandPath(path.times, -path.vx, path.vy, (-float(path.x[0]), float(path.y[0])))
+    back = mirrored(path)
     for finger in (RIGID, SKIN):
         device = Device(drive=drive(finger))
-        one, other = evaluate(scan(device, scene, path)), evaluate(scan(device, mirrored, back))
+        one, other = evaluate(scan(device, scene, path)), evaluate(scan(device, other_way, back))
         assert one.counts == other.counts
         assert [e.stroke for e in one.false_lines] == pytest.approx(
             [e.stroke for e in other.false_lines]

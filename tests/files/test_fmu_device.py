@@ -31,6 +31,7 @@ from pindrive.files.fmu import ELSEWHERE, inputs_of, variables_of
 from pindrive.files.keys import FILE_KEYS
 from pindrive.motion.function import function_of
 from pindrive.motion.release import INPUTS
+from random_scans import sampled
 
 READER = Path(__file__).resolve().parents[2] / "examples" / "tactile-reader.toml"
 COIL = """
@@ -96,7 +97,8 @@ def scanned(magnet: str, folder: Path) -> tuple[DeviceFile, Scan]:
     path = folder / "device.toml"
     path.write_text(DEVICE.format(magnet=MAGNETS[magnet]), "utf-8")
     device = load_device(path, {"scan.hand_speed": "90 mm/s"})
-    return device, scan(device, Page(grating=["5 mm"]))
+    along = scan(device, Page(grating=["5 mm"]))  # the inputs of an FMU are rows
+    return device, scan(device, along.scene, sampled(along.path))
 
 
 @pytest.mark.parametrize("version", [2, 3])

@@ -2,11 +2,15 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
+#include <limits>
 #include <vector>
 
 #include "pindrive/device/raster.hpp"
+#include "pindrive/flow/polynomial.hpp"
 #include "pindrive/numbers/functions.hpp"
 
 namespace pindrive::device {
@@ -14,12 +18,27 @@ namespace pindrive::device {
 /// Velocity, or direction, on the page.
 using Vector = Place;
 
-/// Path of the hand with a velocity that is linear between its rows. Owns no memory.
+/// Velocity in a stretch between two rows, beside the line between them: s (1 − s) (b₀ + b₁ s + b₂ s²) with s from 0
+/// to 1, m/s.
+struct Bend {
+  double b[3];
+
+  bool straight() const { return b[0] == 0 && b[1] == 0 && b[2] == 0; }
+  double at(double s) const { return s * (1 - s) * (b[0] + s * (b[1] + s * b[2])); }
+  /// Integral from 0 to s.
+  double integral(double s) const {
+    return s * s * (b[0] / 2 + s * ((b[1] - b[0]) / 3 + s * ((b[2] - b[1]) / 4 - s * b[2] / 5)));
+  }
+};
+
+/// Path of the hand with a velocity that is linear between its rows, or a polynomial. Owns no memory.
 struct HandPath {
-  const double* times;    ///< s, increasing
-  const double *vx, *vy;  ///< velocity at each time, m/s
-  const double *x, *y;    ///< place at each time, m
-  std::size_t count;      ///< number of rows, >= 2
+  const double* times;          ///< s, increasing
+  const double *vx, *vy;        ///< velocity at each time, m/s
+  const double *x, *y;          ///< place at each time, m
+  std::size_t count;            ///< number of rows, >= 2
+  const Bend* bend_x{nullptr};  ///< of each stretch; null: linear
+  const Bend* bend_y{nullptr};
 
   double begin() const { return times[0]; }
   double end() const { return times[count - 1]; }
@@ -37,14 +56,19 @@ struct HandPath {
   /// Place at a time in a stretch.
   Place position(double t, std::size_t i) const {
     const double since = t - times[i], part = since / (times[i + 1] - times[i]);
-    const auto along = [&](const double* place, const double* v) {
-      return place[i] + since * (v[i] + 0.5 * ((v[i + 1] - v[i]) * part));
+    const auto along = [&](const double* place, const double* v, const Bend* bends) {
+      const double line = place[i] + since * (v[i] + 0.5 * ((v[i + 1] - v[i]) * part));
+      return bends ? line + (times[i + 1] - times[i]) * bends[i].integral(part) : line;
     };
-    return {along(x, vx), along(y, vy)};
+    return {along(x, vx, bend_x), along(y, vy, bend_y)};
   }
   Vector velocity(double t, std::size_t i) const {
     const double part = (t - times[i]) / (times[i + 1] - times[i]);
-    return {vx[i] + (vx[i + 1] - vx[i]) * part, vy[i] + (vy[i + 1] - vy[i]) * part};
+    const auto along = [&](const double* v, const Bend* bends) {
+      const double line = v[i] + (v[i + 1] - v[i]) * part;
+      return bends ? line + bends[i].at(part) : line;
+    };
+    return {along(vx, bend_x), along(vy, bend_y)};
   }
 };
 
@@ -55,10 +79,16 @@ class Axis {
   explicit Axis(double angle) : direction_{detail::cos(angle), detail::sin(angle)} {}
 
   Vector direction() const { return direction_; }
-  double along(Vector v) const { return v.x * direction_.x + v.y * direction_.y; }
-  double across(Vector v) const { return v.y * direction_.x - v.x * direction_.y; }
+  double along(Vector v) const { return significant(v.x * direction_.x + v.y * direction_.y, v); }
+  double across(Vector v) const { return significant(v.y * direction_.x - v.x * direction_.y, v); }
 
  private:
+  /// A component that is rounding of the speed is zero.
+  static double significant(double component, Vector v) {
+    constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
+    return std::abs(component) > rounding * detail::hypot(v.x, v.y) ? component : 0;
+  }
+
   Vector direction_;
 };
 
@@ -103,22 +133,80 @@ class Way {
   std::vector<double> lengths_;
 };
 
+/// Velocity of a path along one direction, without the rounding of a hand across it.
+class Speed {
+ public:
+  /// `component(v)`: that of a vector along the direction.
+  template <class Component>
+  Speed(const HandPath& path, Component&& component) : rows_(path.count), bends_(path.stretches()) {
+    for (std::size_t i = 0; i < path.count; ++i) rows_[i] = component({path.vx[i], path.vy[i]});
+    for (std::size_t i = 0; path.bend_x != nullptr && i < path.stretches(); ++i)
+      for (int k = 0; k < 3; ++k)
+        bends_[i].b[k] = component({path.bend_x[i].b[k], path.bend_y[i].b[k]});
+  }
+
+  double row(std::size_t i) const { return rows_[i]; }
+  const std::vector<double>& rows() const { return rows_; }
+  bool bent() const {
+    return std::any_of(bends_.begin(), bends_.end(), [](const Bend& b) { return !b.straight(); });
+  }
+  /// Coefficients in a stretch, of the time over its duration.
+  std::array<double, 5> coefficients(std::size_t i) const {
+    const auto& b = bends_[i].b;
+    return {rows_[i], rows_[i + 1] - rows_[i] + b[0], b[1] - b[0], b[2] - b[1], -b[2]};
+  }
+  /// Bound of the speed in a stretch, m/s.
+  double most(std::size_t i) const {
+    const auto& b = bends_[i].b;
+    return std::max(std::abs(rows_[i]), std::abs(rows_[i + 1])) +
+           0.25 * (std::abs(b[0]) + std::abs(b[1]) + std::abs(b[2]));
+  }
+  /// Drops what is smaller than a speed.
+  void drop(double below) {
+    const auto clear = [&](double& v) {
+      if (std::abs(v) < below) v = 0;
+    };
+    std::for_each(rows_.begin(), rows_.end(), clear);
+    for (Bend& each : bends_) std::for_each(std::begin(each.b), std::end(each.b), clear);
+  }
+
+ private:
+  std::vector<double> rows_;
+  std::vector<Bend> bends_;
+};
+
 /// Times at which the hand stops or turns back along the axis, s, in order.
 inline std::vector<double> turnings(const HandPath& path, const Axis& axis) {
   constexpr double across = 1e-9;  // part of the largest velocity that is rounding of a hand across
-  std::vector<double> v(path.count), found;
+  Speed speed(path, [&](Vector v) { return axis.along(v); });
   double most = 0;
-  for (std::size_t i = 0; i < path.count; ++i) {
-    v[i] = axis.along({path.vx[i], path.vy[i]});
-    most = std::max(most, std::abs(v[i]));
-  }
-  for (double& each : v)
-    if (std::abs(each) < across * most) each = 0;
+  for (std::size_t i = 0; i < path.stretches(); ++i) most = std::max(most, speed.most(i));
+  speed.drop(across * most);
+  std::vector<double> found;
   for (std::size_t i = 0; i < path.stretches(); ++i) {
-    if (i > 0 && v[i] == 0 && (v[i - 1] != 0 || v[i + 1] != 0)) found.push_back(path.times[i]);
-    if (v[i] * v[i + 1] < 0)
-      found.push_back(path.times[i] +
-                      v[i] / (v[i] - v[i + 1]) * (path.times[i + 1] - path.times[i]));
+    if (i > 0 && speed.row(i) == 0 && (speed.most(i - 1) > 0 || speed.most(i) > 0))
+      found.push_back(path.times[i]);
+    detail::Polynomial<double> along;
+    const auto c = speed.coefficients(i);
+    along.degree = 4;
+    along.span = 1;
+    std::copy(c.begin(), c.end(), along.c.begin());
+    // A part of the stretch between two zeros counts if its speed there is more than rounding.
+    const auto first = std::find_if(c.begin(), c.end(), [](double each) { return each != 0; });
+    if (first == c.end()) continue;
+    double since = 0, way = 0, turn = 0;
+    const auto part = [&](double until) {
+      const double v = along.at(0.5 * (since + until));
+      if (std::abs(v) > across * speed.most(i)) {
+        if (v * way < 0)
+          found.push_back(path.times[i] + turn * (path.times[i + 1] - path.times[i]));
+        way = v;
+      }
+      since = turn = until;
+      return true;
+    };
+    detail::sign_changes(along, *first > 0 ? 1 : -1, part);
+    part(1);
   }
   return found;
 }

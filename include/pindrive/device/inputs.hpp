@@ -51,7 +51,6 @@ constexpr Bounds finite{-infinity, infinity, false, false, none};
 constexpr Bounds positive{0, infinity, false, false, none};
 constexpr Bounds non_negative{0, infinity, true, false, none};
 constexpr Bounds share{0, 1, false, true, none};
-constexpr Bounds fine = between(1e-8, 0.1);  // points of a curve grow with one over its square root
 
 // Inputs of the core stay within 1e12 SI. Then rates, sqrt(k/m) and b/m, stay within 1e24, forces under load
 // below 1e24, lengths F/k below 1e36, energies below 1e84, and what the certificate bounds, the fifth derivative
@@ -159,7 +158,6 @@ inline constexpr InputQuantity input_quantities[] = {
     {"scan.hand_acceleration", "m/s^2", between(0.001, 1e6), any, 30},
     {"scan.mouse_resolution", "1/m", between(100, 1e8), any, 39370.07874015748},
     {"scan.smoothing_cutoff", "Hz", between(0.1, 100000), any, 20},
-    {"scan.path_deviation", "1", fine, any, 0.0001},
     {"criteria.felt", "m", between(1e-9, 1), any, 4.5e-5},
     {"criteria.direction", "m", between(1e-9, 1), any, 5e-5},
     {"criteria.direction_sure", "m", between(1e-9, 1), any, 0.0002},

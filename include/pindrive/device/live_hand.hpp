@@ -43,8 +43,8 @@ class LiveHand {
     std::size_t past = 0;
     while (past + 2 < times_.size() && times_[past + 1] < before) ++past;
     if (2 * past < times_.size()) return;  // so each row is moved once on average
-    for (auto* column :
-         {&times_, &vx_, &vy_, &x_, &y_, &loads_, &plate_.times, &plate_.along, &plate_.across})
+    plate_.forget(past);
+    for (auto* column : {&times_, &vx_, &vy_, &x_, &y_, &loads_})
       column->erase(column->begin(), column->begin() + static_cast<std::ptrdiff_t>(past));
   }
 

@@ -83,8 +83,17 @@ class PinFollower {
     return stepper_.step(end, false, go_on, sink);
   }
 
-  /// Ends the motion; returns its state for another scan that begins now.
-  StepperState<double> hand_over() { return stepper_.hand_over(); }
+  /// Ends the motion at the end of the path; returns its state for another scan that begins there.
+  StepperState<double> hand_over(const ScanInputs& scan) {
+    StepperState<double> found = stepper_.hand_over();
+    // The value of a piece at its end is rounded otherwise than that of the row.
+    const double end = scan.plate.end();
+    if (!scan.plate.along().straight())
+      found.mouse_velocity.line.value = scan.plate.along().from(end).value;
+    if (!scan.plate.across().straight())
+      found.across_velocity.line.value = scan.plate.across().from(end).value;
+    return found;
+  }
 
   const Stepper<double>& stepper() const { return stepper_; }  ///< time since the begin
   const Coil& coil() const { return coil_; }
@@ -96,11 +105,11 @@ class PinFollower {
   /// Release with the inputs at the begin.
   Inputs<double> release(const ScanInputs& scan, const PinState& from) {
     const PlateVelocity& plate = scan.plate;
-    const Line<double> along = plate.profile(plate.along).from(0).line();
+    const Held<double> along = detail::held_from(0.0, plate.along().from(0));
     Inputs<double> inputs{
-        {0, along}, from.position, std::isnan(from.velocity) ? along.value : from.velocity,
-        infinity,   load(),        scan.held_stretch(from.stretch)};
-    inputs.across_velocity = {0, plate.profile(plate.across).from(0).line()};
+        along,    from.position, std::isnan(from.velocity) ? along.line.value : from.velocity,
+        infinity, load(),        scan.held_stretch(from.stretch)};
+    inputs.across_velocity = detail::held_from(0.0, plate.across().from(0));
     inputs.finger_load = {0, scan.finger_load.from(0).line()};
     return inputs;
   }
@@ -144,8 +153,8 @@ class PinFollower {
     if (pulls) lines.plate_load = load().from(time);
     if (scan.next_row(passed_) <= time) {
       const PlateVelocity& plate = scan.plate;
-      lines.plate_velocity = plate.profile(plate.along).from(time);
-      lines.across_velocity = plate.profile(plate.across).from(time);
+      lines.plate_velocity = plate.along().from(time);
+      lines.across_velocity = plate.across().from(time);
       lines.finger_load = scan.finger_load.from(time);
     }
     passed_ = time;

@@ -28,6 +28,8 @@ struct PageAlongPath {
 
   /// Samples of the luminance per pixel of the way.
   static constexpr double samples_per_pixel = 4;
+  /// Bound of the speed in a stretch over its mean, for a stroke.
+  static constexpr double peak_over_mean = 2;
   /// Part of a pixel below which a crossing is a grazed edge, neither line nor gap.
   static constexpr double grazed = 0.5;
 
@@ -61,7 +63,8 @@ struct PageAlongPath {
     };
     for (std::size_t i = 0; i < path.stretches(); ++i) {
       const double lasts = path.times[i + 1] - path.times[i];
-      const double count = 1 + std::ceil(way.of_stretch(i) * samples_per_pixel / raster.pixel);
+      const double farthest = way.of_stretch(i) * (path.bend_x ? peak_over_mean : 1);
+      const double count = 1 + std::ceil(farthest * samples_per_pixel / raster.pixel);
       // The begin of a stretch was sampled as the end of the one before.
       for (double k = i == 0 ? 0 : 1; k < count; ++k)
         if (!sample(path.times[i] + lasts * k / count, i)) return found;

@@ -17,14 +17,6 @@
 
 namespace pindrive::device {
 
-/// Input with rows over time; a constant where all rows have one value.
-inline Profile<double> profile_of(const std::vector<double>& times,
-                                  const std::vector<double>& values) {
-  const auto differs = [&](double value) { return value != values[0]; };
-  if (std::none_of(values.begin(), values.end(), differs)) return {values[0]};
-  return {times.data(), values.data(), values.size()};
-}
-
 /// One pin of a scan: decisions of its control block, course of its coil, and its motion.
 struct PinRun {
   std::vector<double> switchings;  ///< switchings of the command within the path, s
@@ -82,15 +74,15 @@ struct PinRun {
   /// Inputs of the motion; refer to the rows of the scan and of the pin.
   Inputs<double> inputs(const ScanInputs& scan, const PinState& from) const {
     const PlateVelocity& plate = scan.plate;
-    const double velocity = std::isnan(from.velocity) ? plate.along[0] : from.velocity;
-    Inputs<double> found{profile_of(plate.times, plate.along), from.position, velocity,
-                         plate.times.back()};
+    const Profile<double> along = plate.whole_along();
+    const double velocity = std::isnan(from.velocity) ? along.from(0).value : from.velocity;
+    Inputs<double> found{along, from.position, velocity, plate.end()};
     if (loads.size() == 1 && loads[0].straight())
       found.plate_load = {loads[0].polynomial[0]};
     else
       found.plate_load = {loads.data(), loads.size()};
     found.skin_stretch = scan.held_stretch(from.stretch);
-    found.across_velocity = profile_of(plate.times, plate.across);
+    found.across_velocity = plate.whole_across();
     found.finger_load = scan.finger_load;
     return found;
   }
@@ -111,7 +103,7 @@ struct PinRun {
     };
     const bool whole = follower.advance(scan, scan.path.end(), go_on, sink);
     segments.push_back(follower.stepper().segment_until_now());
-    ended = follower.hand_over();
+    ended = follower.hand_over(scan);
     outcome = {follower.stepper().status()};
     outcome.until = segments.back().end;
     if (!whole && outcome.status == Status::ok) outcome.status = Status::stopped;

@@ -62,31 +62,79 @@ inline PinState at_rest(double time) {
   return state;
 }
 
-/// Velocity of the plate under the mouse, over the time since the begin of a path. A component across the
-/// axis that is rounding of the speed is zero.
-struct PlateVelocity {
-  std::vector<double> times, along, across;
+/// Velocity of the plate under the mouse along and across the axis, over the time since the begin of a path.
+class PlateVelocity {
+ public:
+  /// Velocity at the rows; of a path with bends, pieces.
+  struct Component {
+    std::vector<double> rows;
+    std::vector<InputPiece<double>> pieces;
 
+    Component() = default;
+    Component(const HandPath& path, const Speed& speed) : rows(speed.rows()) {
+      if (!speed.bent()) return;
+      for (std::size_t i = 0; i < path.stretches(); ++i) {
+        const double lasts = path.times[i + 1] - path.times[i];
+        InputPiece<double>& piece = pieces.emplace_back();
+        piece.begin = path.times[i] - path.begin();
+        double power = 1;
+        for (std::size_t k = 0; k < 5; ++k, power *= lasts)
+          piece.polynomial[k] = speed.coefficients(i)[k] / power;
+      }
+      InputPiece<double>& last = pieces.emplace_back();
+      last.begin = path.end() - path.begin();
+      last.polynomial[0] = rows.back();
+    }
+  };
   PlateVelocity() = default;
-  PlateVelocity(const HandPath& path, const Axis& axis) {
-    for (std::size_t i = 0; i < path.count; ++i)
-      add(path.times[i] - path.begin(), {path.vx[i], path.vy[i]}, axis);
+  PlateVelocity(const HandPath& path, const Axis& axis)
+      : along_(path, Speed(path, [&](Vector v) { return axis.along(v); })),
+        across_(path, Speed(path, [&](Vector v) { return axis.across(v); })) {
+    for (std::size_t i = 0; i < path.count; ++i) times_.push_back(path.times[i] - path.begin());
   }
+  /// Adds a row.
   void add(double time, Vector v, const Axis& axis) {
-    // Part of the speed to which the product with the direction of the axis is rounded.
-    constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
-    const double aside = axis.across(v);
-    times.push_back(time);
-    along.push_back(axis.along(v));
-    across.push_back(std::abs(aside) > rounding * detail::hypot(v.x, v.y) ? aside : 0);
+    times_.push_back(time);
+    along_.rows.push_back(axis.along(v));
+    across_.rows.push_back(axis.across(v));
+  }
+  /// Forgets the first rows.
+  void forget(std::size_t count) {
+    for (auto* column : {&times_, &along_.rows, &across_.rows})
+      column->erase(column->begin(), column->begin() + static_cast<std::ptrdiff_t>(count));
   }
 
+  double end() const { return times_.back(); }
+  const std::vector<double>& times() const { return times_; }
+  const Component& along_axis() const { return along_; }
+  const Component& across_axis() const { return across_; }
+  Profile<double> along() const { return profile(along_); }
+  Profile<double> across() const { return profile(across_); }
+  /// The same, a constant where it takes one value only.
+  Profile<double> whole_along() const { return whole(along_); }
+  Profile<double> whole_across() const { return whole(across_); }
   bool oblique() const {
-    return std::any_of(across.begin(), across.end(), [](double w) { return w != 0; });
+    return !across_.pieces.empty() ||
+           std::any_of(across_.rows.begin(), across_.rows.end(), [](double w) { return w != 0; });
   }
+  /// Input with a value at each row.
   Profile<double> profile(const std::vector<double>& values) const {
-    return {times.data(), values.data(), times.size()};
+    return {times_.data(), values.data(), times_.size()};
   }
+
+ private:
+  Profile<double> profile(const Component& of) const {
+    if (!of.pieces.empty()) return {of.pieces.data(), of.pieces.size()};
+    return profile(of.rows);
+  }
+  Profile<double> whole(const Component& of) const {
+    const auto differs = [&](double v) { return v != of.rows[0]; };
+    const bool changes = std::any_of(of.rows.begin(), of.rows.end(), differs);
+    return of.pieces.empty() && !changes ? Profile<double>(of.rows[0]) : profile(of);
+  }
+
+  std::vector<double> times_;
+  Component along_, across_;
 };
 
 /// Inputs of a scan that all pins share. Owns no memory.
@@ -104,8 +152,7 @@ struct ScanInputs {
   }
   /// Time of the next row of the hand or the touch after a time, s since the begin.
   double next_row(double after) const {
-    return std::min(plate.profile(plate.along).next_breakpoint(after),
-                    finger_load.next_breakpoint(after));
+    return std::min(plate.along().next_breakpoint(after), finger_load.next_breakpoint(after));
   }
   /// Stretch that the skin keeps as a load begins, m: beyond static friction it slips.
   double held_stretch(double stretch) const {

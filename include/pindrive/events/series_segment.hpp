@@ -67,17 +67,18 @@ class SeriesSegment {
     const auto speed_of = [&](bool on_plate) {
       return abs((on_plate ? step.speed : has_slider_state ? step.skin : step.velocity).c[0]);
     };
-    // A pin that creeps has the rounding of functions in its velocity.
+    // A function has the rounding of its terms; a pin that creeps has it in its velocity.
+    const auto unsure = [&](const Curve<T>& input) {
+      return input.straight() ? T(0) : T(input.rounding(step.span()));
+    };
+    const T of_plate_velocity = unsure(equation.plate_velocity) + unsure(equation.across);
     const bool creeps = step.eliminated == EliminatedPart::of_friction;
-    const T of_inputs =
-        creeps && !equation.across.straight()
-            ? equation.plate_velocity.rounding(step.span()) + equation.across.rounding(step.span())
-            : T(0);
     first_ = guards.defer_grazing(first_, breakpoint, [&](const Guard<T>& guard, T tau) {
       const Polynomial<T>& path = paths.begin()[&guard - guards.begin()].path;
       const T force_error = guard.bound == ActiveGuard::none || guard.bound == ActiveGuard::push
                                 ? state.force_error
-                                : rounding<T> * (path.size() + speed_of(guard.plate)) + of_inputs;
+                                : rounding<T> * (path.size() + speed_of(guard.plate)) +
+                                      (guard.plate || creeps ? of_plate_velocity : T(0));
       const T fall = path.derivative().at(guard.zero) * (tau - guard.zero);
       return stays_at_bound(fall, path.at(tau), force_error);
     });

@@ -22,6 +22,12 @@ Held<T> load_from(T now, const Line<T>& given) {
   return load;
 }
 
+/// Input from a time on, by a line or by a piece that outlives the input.
+template <class T>
+Held<T> held_from(T now, const Curve<T>& given) {
+  return given.straight() ? Held<T>(now, given.line()) : Held<T>(*given.piece);
+}
+
 /// Ends a velocity at a horizon at which it reaches zero within rounding.
 template <class T>
 void end_at(Held<T>& velocity, const T& now, const T& horizon) {
@@ -59,7 +65,8 @@ T change_to(const T& given, const Held<T>& held, T now) {
   const Curve<T> line = held.from(now);
   const T change = given - line.value;
   const T size = abs(held.line.value) + abs(line.rate * (now - held.since)) + abs(given);
-  return abs(change) <= rounding<T> * size ? change - plain(change) : change;
+  const T known = line.straight() ? rounding<T> * size : T(line.rounding());
+  return abs(change) <= known ? change - plain(change) : change;
 }
 
 /// True if an input differs from its continuation in value or rate.

@@ -68,6 +68,8 @@ class Stepper {
     restart();
     State found = with_inputs(kept());
     found.plate_velocity = evolution_.pin.plate.surface.line();
+    for (Held<T>* velocity : {&found.mouse_velocity, &found.across_velocity})
+      if (velocity->piece != nullptr) *velocity = {now_, velocity->from(now_).line()};
     return found.on_clock_from(now_);
   }
 
@@ -102,7 +104,7 @@ class Stepper {
   }
 
   /// Sets the inputs from now on, values and rates; a falling load stops at zero. The plate load may be a
-  /// piece of a function with at most two terms.
+  /// piece of a function with at most two terms, and so may a velocity, whose piece must outlive the stepper.
   ///
   /// A jump of the mouse velocity moves the housing in no time: the pin keeps its velocity relative
   /// to the housing, which no finite force could change. A jump of the transverse velocity acts
@@ -126,19 +128,26 @@ class Stepper {
     const bool across_jumps =
         plain(detail::change_to(given.across_velocity.value, across, now_)) != 0;
     const T from = detail::is_zero(jump) ? given.plate_velocity.value : velocity.from(now_).value;
-    if (turns) velocity = {now_, {from, given.plate_velocity.rate}};
+    const bool jumps = !detail::is_zero(jump);
+    if (turns)
+      velocity = jumps ? Held<T>(now_, {from, given.plate_velocity.rate})
+                       : detail::held_from(now_, given.plate_velocity);
     if (loads && given.plate_load.straight())
       load = detail::load_from(now_, given.plate_load.line());
     else if (loads)
       load_by(OwnedPiece<T>(*given.plate_load.piece));
-    if (drifts) across = {now_, given.across_velocity.line()};
+    if (drifts) across = detail::held_from(now_, given.across_velocity);
     if (pushes) force = {now_, given.force.line()};
     if (touches) touch = detail::load_from(now_, given.finger_load.line());
     for (Held<T>* each : {&velocity, &across}) detail::end_at(*each, now_, horizon);
     const bool ends = restart();
-    if (!detail::is_zero(jump)) {
+    if (jumps) {
       velocity.line.value = detail::moved(velocity.line.value, jump, given.plate_velocity.value);
       detail::shift(evolution_, jump, velocity.line.value);
+      if (!given.plate_velocity.straight()) {
+        velocity = Held<T>(*given.plate_velocity.piece);
+        evolution_.pin.plate.surface = given.plate_velocity;
+      }
     }
     if (across_jumps) detail::turn(evolution_.pin.plate, evolution_.pin.state.v);
     event_ = select(ends, sink);
@@ -233,7 +242,9 @@ class Stepper {
       restore(last_);
       evolution_.pin.time = now_;
       evolution_.time_error = T(0);
-      evolution_.pin.plate.surface.rate = inputs_.mouse_velocity.from(now_).rate;
+      Curve<T> surface = inputs_.mouse_velocity.from(now_);
+      surface.value = evolution_.pin.plate.surface.value;
+      evolution_.pin.plate.surface = surface;
       take_inputs(now_);
       evolution_.pin.stick_limit_side = 0;
       if (evolution_.pin.stop.rigid()) evolution_.pin.stop.released = false;  // the push may jump

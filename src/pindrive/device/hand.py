@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import ceil, cos, hypot, sin, sqrt
-from typing import Final
+from math import cos, hypot, sin
+from typing import Any, Final
 
 import numpy as np
+from numpy.polynomial import Polynomial
 from numpy.typing import ArrayLike, NDArray
 
 from pindrive import _core
+from pindrive.motion.function import Function, function_of
 from pindrive.motion.profile import Profile
 from pindrive.quantities import budgets
 from pindrive.quantities.refusal import refusal
@@ -20,6 +22,10 @@ from pindrive.quantities.value import concise, equal_by_value
 
 PEAK: Final = 1.875
 """Peak speed of a minimum-jerk stroke over its mean (Flash & Hogan 1985, J. Neurosci. 5:1688)."""
+STROKE: Final = (0.0, 30.0, -30.0)
+"""Bend of a minimum-jerk stroke over its mean speed."""
+MEANS: Final = np.array([1.0 / 6.0, 1.0 / 12.0, 1.0 / 20.0])
+"""Means over a stretch of s (1 - s), s² (1 - s) and s³ (1 - s)."""
 SLOW: Final = 0.1
 """Below this part of the peak speed the direction of motion says nothing."""
 RECORDED: Final = "time [s], x [m], y [m]"
@@ -37,9 +43,12 @@ class HandPath:
 
     Args:
         times: s, shape (n,), n >= 2, increasing.
-        vx, vy: Velocity on the page at these times, m/s, shape (n,); linear between them.
+        vx, vy: Velocity on the page at these times, m/s, shape (n,).
         start: Place on the page at the first, m.
         about: Description of the recording, for reports.
+        bend_x, bend_y: Coefficients b of the velocity between two times, m/s, shape (n - 1, 3);
+            None or empty: linear. With s from 0 to 1 between them, s (1 - s) (b₀ + b₁ s + b₂ s²)
+            is added.
 
     Raises:
         ValueError: Times do not increase, shapes differ, or a number is not finite.
@@ -50,10 +59,20 @@ class HandPath:
     vy: NDArray[np.float64]
     x: NDArray[np.float64]
     y: NDArray[np.float64]
+    bend_x: NDArray[np.float64]
+    bend_y: NDArray[np.float64]
     about: str
 
     def __init__(
-        self, times: ArrayLike, vx: ArrayLike, vy: ArrayLike, start: Point, about: str = ""
+        self,
+        times: ArrayLike,
+        vx: ArrayLike,
+        vy: ArrayLike,
+        start: Point,
+        about: str = "",
+        *,
+        bend_x: ArrayLike | None = None,
+        bend_y: ArrayLike | None = None,
     ) -> None:
         """Validate, and integrate."""
         object.__setattr__(self, "about", about)
@@ -69,11 +88,18 @@ class HandPath:
             if not np.isfinite(column).all():
                 raise ValueError(refusal(name, "finite", f"{column[~np.isfinite(column)][0]!r}"))
         check_increasing(t.tolist(), "s", label="times[{}]")
+        bends = {"bend_x": bend_x, "bend_y": bend_y}
+        bent = any(given is not None and np.size(given) > 0 for given in bends.values())
+        for name, given in bends.items():
+            columns[name] = _bends(name, given, len(t) - 1 if bent else 0)
         x0, y0 = (check("hand.place", place, label="start") for place in start)
         lasts = np.diff(t)
-        for name, v, at in (("x", columns["vx"], x0), ("y", columns["vy"], y0)):
-            paths = np.concatenate([[at], 0.5 * (v[1:] + v[:-1]) * lasts])
-            columns[name] = np.cumsum(paths)
+        for axis, at in (("x", x0), ("y", y0)):
+            v = columns[f"v{axis}"]
+            means = 0.5 * (v[1:] + v[:-1])
+            if bent:
+                means = means + columns[f"bend_{axis}"] @ MEANS
+            columns[axis] = np.cumsum(np.concatenate([[at], means * lasts]))
         for name, column in columns.items():
             column.flags.writeable = False
             object.__setattr__(self, name, column)
@@ -91,12 +117,24 @@ class HandPath:
     @property
     def peak_speed(self) -> float:
         """The largest speed, m/s."""
-        return float(np.hypot(self.vx, self.vy).max())
+        within = map(self._peak, range(len(self.bend_x)))
+        return max(float(np.hypot(self.vx, self.vy).max()), max(within, default=0.0))
+
+    def _peak(self, i: int) -> float:
+        """Largest speed within a stretch, m/s."""
+        s = Polynomial([0.0, 1.0])
+        x, y = (
+            v[i] + (v[i + 1] - v[i]) * s + s * (1.0 - s) * Polynomial(bend[i])
+            for v, bend in ((self.vx, self.bend_x), (self.vy, self.bend_y))
+        )
+        turns = (x * x + y * y).deriv().roots()
+        inside = turns.real[(abs(turns.imag) < 1e-6) & (turns.real > 0.0) & (turns.real < 1.0)]
+        return float(np.hypot(x(inside), y(inside)).max(initial=0.0))
 
     @property
-    def rows(self) -> tuple[Column, Column, Column, Column, Column]:
-        """Columns of the path: times, velocity (x, y) and place (x, y), SI, each of shape (n,)."""
-        return self.times, self.vx, self.vy, self.x, self.y
+    def rows(self) -> tuple[Column, Column, Column, Column, Column, Column, Column]:
+        """Columns of the path: times, velocity (x, y) and place (x, y), and bends (x, y), SI."""
+        return self.times, self.vx, self.vy, self.x, self.y, self.bend_x, self.bend_y
 
     def position(self, t: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Place (x, y) on the page at times t (s, any shape) from begin to end, m."""
@@ -128,7 +166,7 @@ class HandPath:
             raise ValueError(refusal("t", required, given))
         return times
 
-    def plate_velocity(self, axis: float = default("axis")) -> Profile:
+    def plate_velocity(self, axis: float = default("axis")) -> Profile | Function:
         """The velocity at which the plate passes under the mouse, over the time since `begin`.
 
         Args:
@@ -139,9 +177,9 @@ class HandPath:
             deflection, is positive against the mouse's own motion along the axis (docs/theory.md).
         """
         times, along, *_ = _core.plate_velocity(self.rows, axis)
-        return Profile(times.tolist(), along.tolist())
+        return _input(times, *along)
 
-    def across_velocity(self, axis: float = default("axis")) -> Profile | float:
+    def across_velocity(self, axis: float = default("axis")) -> Profile | Function | float:
         """The velocity of the plate across the drive axis, over the time since `begin`.
 
         Args:
@@ -152,7 +190,7 @@ class HandPath:
             moves along the axis, to the rounding of its speed.
         """
         times, _, across, oblique = _core.plate_velocity(self.rows, axis)
-        return Profile(times.tolist(), across.tolist()) if oblique else 0.0
+        return _input(times, *across) if oblique else 0.0
 
     def angles(self, axis: float = default("axis")) -> tuple[float, float]:
         """The angle between motion and drive axis, rad: the largest, and the mean over the way.
@@ -160,7 +198,7 @@ class HandPath:
         From 0 to a right angle; where the hand moves at less than a tenth of its peak speed it is
         left out, and 0 for a hand that never moves.
         """
-        vx, vy = (0.5 * (v[1:] + v[:-1]) for v in (self.vx, self.vy))
+        vx, vy = (np.diff(place) / np.diff(self.times) for place in (self.x, self.y))
         speed = np.hypot(vx, vy)
         moving = speed > SLOW * speed.max()
         if not moving.any():
@@ -180,7 +218,53 @@ class HandPath:
         times = np.concatenate([[begin], inner, [end]])
         vx, vy = self.velocity(times)
         x, y = self.position(begin)
-        return HandPath(times, vx, vy, (float(x), float(y)), self.about)
+        bends: dict[str, Column] = {}
+        if len(self.bend_x):
+            i = np.searchsorted(self.times, times[:-1], "right") - 1
+            lasts = np.diff(self.times)[i]
+            since, part = (times[:-1] - self.times[i]) / lasts, np.diff(times) / lasts
+            bends = {
+                name: _part_of_bends(np.diff(v)[i], np.diff(now), bend[i], since, part)
+                for name, v, now, bend in (
+                    ("bend_x", self.vx, vx, self.bend_x),
+                    ("bend_y", self.vy, vy, self.bend_y),
+                )
+            }
+        return HandPath(times, vx, vy, (float(x), float(y)), self.about, **bends)
+
+
+def _bends(name: str, given: ArrayLike | None, count: int) -> Column:
+    """Bends of the stretches; zeros where none are given."""
+    bends = (
+        np.zeros((count, 3))
+        if given is None or np.size(given) == 0
+        else np.array(given, np.float64)
+    )
+    if bends.shape != (count, 3):
+        raise ValueError(refusal(name, f"of shape ({count}, 3)", f"shape {bends.shape}"))
+    if not np.isfinite(bends).all():
+        raise ValueError(refusal(name, "finite", f"{bends[~np.isfinite(bends)][0]!r}"))
+    return bends
+
+
+def _part_of_bends(
+    whole: Column, change: Column, bends: Column, since: Column, part: Column
+) -> Column:
+    """Bends of parts of stretches that begin at `since` and last `part` of the stretches.
+
+    `whole` and `change`: change of the velocity over each stretch, and over the part.
+    """
+    b0, b1, b2 = bends.T
+    first, second, third, fourth = whole + b0, b1 - b0, b2 - b1, -b2  # coefficients by powers of s
+    rate = first + since * (2.0 * second + since * (3.0 * third + since * 4.0 * fourth))
+    curvature = second + since * (3.0 * third + since * 6.0 * fourth)
+    begins = part * rate - change  # so that a hand that begins from rest does so exactly
+    return np.stack([begins, part**2 * curvature + begins, -(part**4) * fourth], axis=-1)
+
+
+def _input(times: Column, rows: Column, pieces: list[Any]) -> Profile | Function:
+    """Velocity as an input of a motion."""
+    return function_of(pieces, "m/s") if pieces else Profile(times.tolist(), rows.tolist())
 
 
 # ---- strokes -------------------------------------------------------------------------------------
@@ -191,7 +275,6 @@ def strokes(
     speeds: float | str | Sequence[float | str],
     *,
     pause: float | str = 0.0,
-    deviation: float | str = default("path_deviation"),
 ) -> HandPath:
     """Straight strokes of minimum jerk from stop to stop, each from rest to rest.
 
@@ -199,15 +282,12 @@ def strokes(
         stops: Places on the page, m, at least two, each another than the one before.
         speeds: Peak speed of each stroke, m/s, greater than 0; one for all of them, or one each.
         pause: Rest after each stroke, s, at least 0.
-        deviation: Largest deviation of the piecewise-linear speed from minimum jerk, as a part of
-            its peak, in (0, 0.1].
 
     Raises:
-        ValueError: A value is not a number or out of its range, or there are too many rows.
+        ValueError: A value is not a number or out of its range, or there are too many strokes.
 
     A stroke of length D in time T has the speed (D/T) 30 s² (1 − s)² at t = s T (Flash & Hogan
-    1985). Its curvature is at most 60 D/T³, so that n even rows are within 60/(8 n²) D/T of it,
-    which is 4/n² of the peak. They carry the whole length D.
+    1985). The motion under a stroke is as exact as under a constant speed.
     """
     if len(stops) < 2:
         raise ValueError(refusal("stops", "at least two places", str(len(stops))))
@@ -215,13 +295,8 @@ def strokes(
     if len(peaks) != len(stops) - 1:
         raise ValueError(refusal("speeds", f"one or {len(stops) - 1}", str(len(peaks))))
     rest = check("pause", pause)
-    count = ceil(2.0 / sqrt(check("path_deviation", deviation, label="deviation")))
-    of = f"{len(peaks)} strokes of {count} rows"
-    budgets.INPUT_ROWS.check(len(peaks) * (count + 1), of)
-    s = np.arange(count + 1) / count
-    shape = (s * s[::-1]) ** 2  # alike both ways, to the bit
-    shape *= count / shape[1:-1].sum()  # the trapezoids under it have an area of 1
-    times, vx, vy = [np.zeros(1)], [np.zeros(1)], [np.zeros(1)]
+    budgets.INPUT_ROWS.check(len(peaks) * (2 if rest > 0.0 else 1) + 1, f"{len(peaks)} strokes")
+    times, means = [0.0], []  # mean velocity of each stretch, m/s
     places = [tuple(check("hand.place", at, label="stops") for at in stop) for stop in stops]
     paths = zip(places[:-1], places[1:], peaks, strict=True)
     for i, ((x0, y0), (x1, y1), speed) in enumerate(paths):
@@ -229,17 +304,15 @@ def strokes(
         label = f"the way from stops[{i}] to stops[{i + 1}]"
         length = check("stroke.length", hypot(dx, dy), label=label)
         lasts = PEAK * length / check("hand_speed", speed, label="speeds")
-        begin = times[-1][-1]
-        times.append(begin + lasts * s[1:])
-        vx.append(dx / lasts * shape[1:])
-        vy.append(dy / lasts * shape[1:])
+        times.append(times[-1] + lasts)
+        means.append((dx / lasts, dy / lasts))
         if rest > 0.0:
-            times.append(np.array([begin + lasts + rest]))
-            vx.append(np.zeros(1))
-            vy.append(np.zeros(1))
-    return HandPath(
-        np.concatenate(times), np.concatenate(vx), np.concatenate(vy), (places[0][0], places[0][1])
-    )
+            times.append(times[-1] + rest)
+            means.append((0.0, 0.0))
+    still = np.zeros(len(times))
+    bend_x, bend_y = (np.outer(v, STROKE) for v in np.transpose(means))
+    start = places[0][0], places[0][1]
+    return HandPath(times, still, still, start, bend_x=bend_x, bend_y=bend_y)
 
 
 def lines(
@@ -250,7 +323,6 @@ def lines(
     speed: float | str,
     return_speed: float | str,
     pause: float | str = 0.0,
-    deviation: float | str = default("path_deviation"),
 ) -> HandPath:
     """Line by line over a page: along each row from left to right, then back to the next.
 
@@ -261,7 +333,6 @@ def lines(
         speed: Peak speed while it reads, m/s.
         return_speed: Peak speed on the way back, m/s.
         pause: Rest after each stroke, s.
-        deviation: Largest deviation of the piecewise-linear speed, as for `strokes`.
 
     Raises:
         ValueError: A value is not a number or out of its range; no way between left and right.
@@ -270,4 +341,4 @@ def lines(
         raise ValueError(refusal("rows", "at least one line", "none"))
     stops = [place for y in rows for place in ((left, y), (right, y))]
     speeds = [return_speed if i % 2 else speed for i in range(len(stops) - 1)]
-    return strokes(stops, speeds, pause=pause, deviation=deviation)
+    return strokes(stops, speeds, pause=pause)

@@ -38,8 +38,6 @@ class Reading:
         hand_acceleration: m/s²; more in a record is a jump of its speed.
         mouse_resolution: Resolution of a mouse whose recording is in counts, counts per m.
         smoothing_cutoff: Cut-off frequency of the smoothing of a raw recording, Hz.
-        path_deviation: Largest deviation of the piecewise-linear speed of strokes, as a part of its
-            peak, in (0, 0.1].
 
     Raises:
         ValueError: A value is not a number or out of its range.
@@ -55,7 +53,6 @@ class Reading:
     hand_acceleration: Number = default("hand_acceleration")
     mouse_resolution: Number = default("mouse_resolution")
     smoothing_cutoff: Number = default("smoothing_cutoff")
-    path_deviation: Number = default("path_deviation")
 
     def text(self, text: str, array: PinArray, font: str | PathLike[str] | None = None) -> Scene:
         """A page of text on which the whole array finds room; errors as for `Scene.from_text`."""
@@ -106,7 +103,6 @@ class Reading:
             speed=self.hand_speed,
             return_speed=self.return_speed,
             pause=self.pause,
-            deviation=self.path_deviation,
         )
 
     def _rows(self, top: float, bottom: float) -> list[float]:

@@ -13,6 +13,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from pindrive.device.hand import PEAK
 from pindrive.device.scanning import Scan
 from pindrive.device.touch import spans
 from pindrive.quantities import budgets
@@ -84,7 +85,7 @@ def _reading(scan: Scan, cell: float) -> tuple[NDArray[np.float64], float]:
     """
     path = scan.path
     lengths = np.diff(path.way(path.times))
-    counts = np.ceil(lengths * FINER / cell).astype(int)
+    counts = np.ceil(PEAK * lengths * FINER / cell).astype(int)
     t = np.concatenate(
         [
             t0 + (t1 - t0) * (np.arange(n) + 0.5) / n

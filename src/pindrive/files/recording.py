@@ -9,6 +9,7 @@ from typing import Any, Final
 from pindrive.device.hand import RECORDED, HandPath
 from pindrive.device.recording import read_csv
 from pindrive.files.keys import FILE_KEYS, OVER_TIME, Tables, is_file, number
+from pindrive.motion.profile import Profile
 from pindrive.motion.release import CONTINUOUS
 from pindrive.quantities.csv_table import CsvTable
 from pindrive.quantities.quantity import Quantity, Rows, counted
@@ -95,8 +96,9 @@ def _rows(file: Path, key: str, tables: Tables) -> Rows:
     name = FILE_KEYS[key].name
     table = CsvTable.read(file, f"a CSV of {name}", profile_header(FILE_KEYS[key]))
     if name not in table and key == SPEED and ("x" in table or "dx" in table):
-        path = _path(file, tables)
-        return path.plate_velocity(_given(tables, "array.axis")).rows
+        velocity = _path(file, tables).plate_velocity(_given(tables, "array.axis"))
+        assert isinstance(velocity, Profile)  # a recorded path has no bends
+        return velocity.rows
     return _profile(table, key)
 
 

@@ -223,14 +223,6 @@ SCAN: Final = inputs(
         20.0,
         "assumed: hands move below 10 Hz; it takes 0.13 % off the peak of a stroke of 0.15 s",
     ),
-    Quantity(
-        "path_deviation",
-        "ε_v",
-        "1",
-        "largest deviation of the piecewise-linear speed from minimum jerk, over the peak",
-        1e-4,
-        "its slope, which is the force of inertia, is then within 3 % of its peak",
-    ),
 )
 
 DEVICE_PARTS: Final[tuple[Quantity, ...]] = (
