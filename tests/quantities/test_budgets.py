@@ -196,10 +196,10 @@ def test_a_picture_is_refused_before_it_is_read(tmp_path: Path) -> None:
 def test_segments_are_counted_as_the_pins_are_followed(monkeypatch: pytest.MonkeyPatch) -> None:
     """The first pin exceeds the budget: pins that have not begun never begin."""
     followed: list[int] = []
-    monkeypatch.setattr(budgets, "SEGMENTS", replace(budgets.SEGMENTS, most=10))
+    monkeypatch.setattr(budgets, "SEGMENTS", replace(budgets.SEGMENTS, most=5))
     path = strokes([(0.0005, 0.004), (0.0095, 0.004)], 0.1)
     words = (
-        r"the segments of the motions of all pins must be at most 10, got \d+ \(after 1 of 8 pins\)"
+        r"the segments of the motions of all pins must be at most 5, got \d+ \(after 1 of 8 pins\)"
     )
     with pytest.raises(ValueError, match=words):
         scan(device(8), tall(), path, threads=1, progress=lambda done, of: followed.append(done))
@@ -211,7 +211,7 @@ def test_switchings_and_rows_are_counted_pin_by_pin(monkeypatch: pytest.MonkeyPa
     rows = len(path.times)
     for name, most, words in (
         ("SWITCHINGS", 3, r"got 4 \(up to pin 0 of 2\)"),
-        ("INPUT_ROWS", 2 * rows + 2, r"got \d+ \(up to pin 1 of 2\)"),
+        ("INPUT_ROWS", 2 * rows + 5, r"got \d+ \(up to pin 1 of 2\)"),
         ("INPUT_ROWS", rows, rf"got {2 * rows} \(2 pins, {rows} rows of hand speed for each\)"),
         ("SAMPLES_OF_PAGE", 1000, r"2 pins, 0.009 m of way, pixels of 0.1 mm"),
     ):

@@ -84,6 +84,7 @@ FUNCTIONS: Final[dict[str, tuple[Quantity, ...]]] = {
 FUNCTIONS_OF: Final[dict[str, tuple[str, ...]]] = {
     "mouse_velocity": ("harmonic", "minimum_jerk", "exponential"),
     "plate_load": ("harmonic", "exponential"),
+    "across_velocity": ("harmonic", "minimum_jerk", "exponential"),
     "force": ("harmonic", "exponential"),
     "finger_load": ("harmonic", "exponential"),
 }
@@ -93,6 +94,7 @@ FUNCTIONS_OF: Final[dict[str, tuple[str, ...]]] = {
 _EXAMPLES: Final[dict[str, dict[str, float]]] = {
     "mouse_velocity": {"mean": 0.06, "amplitude": 0.01, "start": 0.06, "end": 0.0},
     "plate_load": {"mean": 3.0, "amplitude": 2.0, "start": 5.0, "end": 1.0},
+    "across_velocity": {"mean": 0.0, "amplitude": 0.01, "start": 0.01, "end": 0.0},
     "force": {"mean": 0.0, "amplitude": 0.1, "start": 0.3, "end": 0.0},
     "finger_load": {"mean": 1.0, "amplitude": 0.5, "start": 1.0, "end": 0.5},
 }
