@@ -112,7 +112,7 @@ def test_what_is_no_function_is_refused_in_a_line(tmp_path: Path, value: str, me
 
 def test_only_inputs_of_a_release_are_functions(tmp_path: Path) -> None:
     path = device(tmp_path, '"60 mm/s"', f"[scan]\ntouch = {SHAKEN}")
-    with pytest.raises(ConfigError, match="scan.touch must be a number, rows or a CSV"):
+    with pytest.raises(ConfigError, match=r"scan.touch must be a number, rows or a CSV"):
         pd.load_device(path)
 
 
