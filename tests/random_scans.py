@@ -45,16 +45,16 @@ def sampled(path: HandPath, rows: int = 65) -> HandPath:
 
 def mirrored(path: HandPath) -> HandPath:
     """The path reflected in the y axis."""
-    bends = {"bend_x": -path.bend_x, "bend_y": path.bend_y}
     start = -float(path.x[0]), float(path.y[0])
-    return HandPath(path.times, -path.vx, path.vy, start, **bends)
+    return HandPath(path.times, -path.vx, path.vy, start, bend_x=-path.bend_x, bend_y=path.bend_y)
 
 
 def later(path: HandPath, by: float) -> HandPath:
     """The path on a clock that is ahead by a time, s."""
-    bends = {"bend_x": path.bend_x, "bend_y": path.bend_y}
     start = float(path.x[0]), float(path.y[0])
-    return HandPath(path.times + by, path.vx, path.vy, start, **bends)
+    return HandPath(
+        path.times + by, path.vx, path.vy, start, bend_x=path.bend_x, bend_y=path.bend_y
+    )
 
 
 @dataclass(frozen=True)
@@ -128,8 +128,14 @@ class RandomScan:
         halts = self.path.times[self.path.vx == 0.0][1]
         stroke = self.path.between(0.01 * halts, 0.99 * halts)
         x, y = (float(place) for place in self.path.position(stroke.begin))
-        bends = {"bend_x": stroke.bend_x, "bend_y": stroke.bend_y}
-        path = HandPath(stroke.times - stroke.begin, stroke.vx, stroke.vy, (x, y), **bends)
+        path = HandPath(
+            stroke.times - stroke.begin,
+            stroke.vx,
+            stroke.vy,
+            (x, y),
+            bend_x=stroke.bend_x,
+            bend_y=stroke.bend_y,
+        )
         return replace(self, device=device, path=path, cut=self.cut * path.end / self.path.end)
 
     def linear(self) -> RandomScan:
