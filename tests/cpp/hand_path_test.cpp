@@ -80,7 +80,7 @@ void stops_and_turns() {
   expect(found.size() == 3 && std::abs(found[0] - 0.075) < 1e-15, "a turn within a stretch");
   expect(found[1] == 0.2 && found[2] == 0.3, "the begin and the end of a rest");
   const Rows across({0, 0.1, 0.2}, {1e-12, -1e-12, 1e-12}, {0.1, 0.1, 0.1});
-  expect(device::turnings(across.path(), device::Axis(1.5707963267948966)).empty(),
+  expect(device::turnings(across.path(), device::Axis(0)).empty(),
          "rounding of a hand across the axis is no turn");
 }
 

@@ -306,13 +306,13 @@ MUTANTS = (
     Mutant(
         "a rest of the hand is no turn",
         "device/hand_path.hpp",
-        "if (i > 0 && v[i] == 0",
-        "if (i > 0 && v[i] == 1",
+        "if (i > 0 && speed.row(i) == 0",
+        "if (i > 0 && speed.row(i) == 1",
     ),
     Mutant(
         "rounding across the axis is a turn",
         "device/hand_path.hpp",
-        "if (std::abs(each) < across * most) each = 0;",
+        "speed.drop(across * most);",
         "",
     ),
     Mutant(

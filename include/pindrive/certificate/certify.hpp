@@ -385,7 +385,13 @@ class Certifier {
       worst(result_.continuity, abs(left.x) - drive_.stops.travel, scales_.x);
     } else {
       // The time at which it is, and so how long the pin is accelerated, is known to its rounding.
-      const T known = detail::rounding<T> * before.end * std::max(abs(left.a), abs(right.a));
+      // A pin that creeps follows the transverse velocity.
+      const T drifts =
+          before.mode.plate == ContactState::slip_oblique
+              ? abs(motion_.inputs().across_velocity.from(before.begin).rate_at(left.tau))
+              : T(0);
+      const T known = before.end * (detail::rounding<T> * std::max(abs(left.a), abs(right.a)) +
+                                    detail::difference_error<T> * drifts);
       worst(result_.continuity, std::max(abs(left.v - right.v) - known, T(0)), scales_.v);
     }
     if (!drive_.finger.compliant()) return;

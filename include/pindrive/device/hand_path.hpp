@@ -177,10 +177,12 @@ class Speed {
 
 /// Times at which the hand stops or turns back along the axis, s, in order.
 inline std::vector<double> turnings(const HandPath& path, const Axis& axis) {
-  constexpr double across = 1e-9;  // part of the largest velocity that is rounding of a hand across
+  constexpr double across = 1e-9;  // part of the largest speed that is rounding of a hand across
   Speed speed(path, [&](Vector v) { return axis.along(v); });
+  const Speed aside(path, [&](Vector v) { return axis.across(v); });
   double most = 0;
-  for (std::size_t i = 0; i < path.stretches(); ++i) most = std::max(most, speed.most(i));
+  for (std::size_t i = 0; i < path.stretches(); ++i)
+    most = std::max({most, speed.most(i), aside.most(i)});
   speed.drop(across * most);
   std::vector<double> found;
   for (std::size_t i = 0; i < path.stretches(); ++i) {

@@ -113,7 +113,8 @@ class EvaluatedSegment {
     const T beside = abs(u * sqrt((1 - axial) * (1 + axial)) - abs(w) * axial);
     const T too_large = strength * abs(part - axial);
     // Without a scale nothing moves, and nothing pulls.
-    const T by_velocity = (scales.v > 0 ? beside / scales.v * scales.force : beside) + too_large;
+    const T largest = std::max(scales.v, scales.across);
+    const T by_velocity = (largest > 0 ? beside / largest * scales.force : beside) + too_large;
     return speed > 0 ? std::min(by_velocity, abs(s.plate_force + strength * u / speed))
                      : by_velocity;
   }
@@ -145,8 +146,9 @@ class EvaluatedSegment {
     const T strength = pressed * kinetic_friction(drive.plate, speed);
     const T moves = scales.v + time * (abs(s.a) + abs(plate_velocity.rate_at(s.tau)));
     if (!(speed > 0)) return T(0);
-    const T turns = w / speed;
-    return difference_error<T> * moves * strength * turns * turns / speed;
+    const T drifts = scales.across + time * abs(across.rate_at(s.tau));
+    const T turn = (moves * abs(w) + drifts * abs(u)) / speed;  // change of direction, times speed
+    return difference_error<T> * strength * abs(w) / speed * turn / speed;
   }
 
   T unsure_slider() const {
