@@ -140,7 +140,8 @@ class Speed {
   template <class Component>
   Speed(const HandPath& path, Component&& component) : rows_(path.count), bends_(path.stretches()) {
     for (std::size_t i = 0; i < path.count; ++i) rows_[i] = component({path.vx[i], path.vy[i]});
-    for (std::size_t i = 0; path.bend_x != nullptr && i < path.stretches(); ++i)
+    if (path.bend_x == nullptr || path.bend_y == nullptr) return;
+    for (std::size_t i = 0; i < path.stretches(); ++i)
       for (int k = 0; k < 3; ++k)
         bends_[i].b[k] = component({path.bend_x[i].b[k], path.bend_y[i].b[k]});
   }
