@@ -6,12 +6,12 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
-#include <limits>
 #include <vector>
 
 #include "pindrive/device/raster.hpp"
 #include "pindrive/flow/polynomial.hpp"
 #include "pindrive/numbers/functions.hpp"
+#include "pindrive/numbers/limits.hpp"
 
 namespace pindrive::device {
 
@@ -85,8 +85,8 @@ class Axis {
  private:
   /// A component that is rounding of the speed is zero.
   static double significant(double component, Vector v) {
-    constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
-    return std::abs(component) > rounding * detail::hypot(v.x, v.y) ? component : 0;
+    const double known = detail::rounding<double> * detail::hypot(v.x, v.y);
+    return std::abs(component) > known ? component : 0;
   }
 
   Vector direction_;

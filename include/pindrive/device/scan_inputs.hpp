@@ -110,7 +110,7 @@ class PlateVelocity {
   const Component& across_axis() const { return across_; }
   Profile<double> along() const { return profile(along_); }
   Profile<double> across() const { return profile(across_); }
-  /// The same, a constant where it takes one value only.
+  /// Velocities over the whole path, a constant where only one value occurs.
   Profile<double> whole_along() const { return whole(along_); }
   Profile<double> whole_across() const { return whole(across_); }
   bool oblique() const {
