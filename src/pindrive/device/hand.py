@@ -5,22 +5,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import cos, hypot, sin
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.polynomial import Polynomial
 from numpy.typing import ArrayLike, NDArray
 
 from pindrive import _core
+from pindrive.motion.function import Function, function_of
 from pindrive.motion.profile import Profile
 from pindrive.quantities import budgets
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.rows import check_increasing
 from pindrive.quantities.table import check, default
 from pindrive.quantities.value import concise, equal_by_value
-
-if TYPE_CHECKING:
-    from pindrive.motion.function import Function
 
 PEAK: Final = 1.875
 """Peak speed of a minimum-jerk stroke over its mean (Flash & Hogan 1985, J. Neurosci. 5:1688)."""
@@ -266,8 +264,6 @@ def _part_of_bends(
 
 def _input(times: Column, rows: Column, pieces: list[Any]) -> Profile | Function:
     """Velocity as an input of a motion."""
-    from pindrive.motion.function import function_of
-
     return function_of(pieces, "m/s") if pieces else Profile(times.tolist(), rows.tolist())
 
 
