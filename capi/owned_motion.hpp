@@ -290,14 +290,13 @@ class OwnedMotion : private OwnedInputs<T>, public StoredMotion<T> {
         StoredMotion<T>(OwnedInputs<T>::core_drive, OwnedInputs<T>::core_inputs, go_on) {}
 };
 
-/// Returns the bound of the acceleration of a segment that is a step of a series; NaN for a closed
-/// form.
+/// Returns the bound of the acceleration of a segment under functions or by series; NaN for a closed form.
 inline double acceleration_bound(const Motion<double>& motion, const Segment<double>& segment) {
   return motion.along(segment, [](const auto& along) {
-    if constexpr (std::is_same_v<std::decay_t<decltype(along)>, detail::BySeries<double>>)
-      return detail::largest_size(along.acceleration());
-    else
+    if constexpr (std::is_same_v<std::decay_t<decltype(along)>, detail::ClosedForm<double>>)
       return std::numeric_limits<double>::quiet_NaN();
+    else
+      return along.largest_size(along.acceleration());
   });
 }
 

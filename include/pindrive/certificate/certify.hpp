@@ -187,27 +187,36 @@ class Certifier {
     return from;
   }
 
-  /// Compares the laws along a step of a series, whose quantities are all smooth.
-  Numbers walk(const Evaluated<detail::BySeries<T>>& evaluated) {
+  /// Compares the laws along the parts of a segment in which all quantities are polynomials.
+  template <class Trajectory>
+  Numbers walk(const Evaluated<Trajectory>& evaluated) {
     Errors errors;
-    const auto from = evaluated.at(T(0)), to = evaluated.at(evaluated.span);
-    const T known = std::max(evaluated.unsure(from), evaluated.unsure(to));
-    for (const auto& [guard, law, scale, slid] : Guards<detail::BySeries<T>>(evaluated)) {
-      const T least = lowest(guard, T(detail::unseen_violation) * scale) +
-                      (law == &Certificate<T>::force_bound ? known : slid);
-      if (!(least >= 0)) worst(result_.*law, least, scale);
-    }
+    const Guards<Trajectory> guards(evaluated);
+    auto from = evaluated.at(T(0));
+    T shortest = evaluated.span;
     laws(evaluated, from, errors);
-    Sums sums;
-    detail::gauss_nodes(detail::gauss16, T(0), evaluated.span, [&](T tau, T weight) {
-      const auto now = evaluated.at(tau);
-      laws(evaluated, now, errors);
-      gather(evaluated, now, weight, sums);
+    evaluated.along.each_part(evaluated.span, [&](T low, auto length, const auto& expanded) {
+      const auto to = evaluated.at(low + length);
+      const T known = std::max(evaluated.unsure(from), evaluated.unsure(to));
+      for (const auto& [guard, law, scale, slid] : guards) {
+        const T least = lowest(expanded(guard), T(detail::unseen_violation) * scale) +
+                        (law == &Certificate<T>::force_bound ? known : slid);
+        if (!(least >= 0)) worst(result_.*law, least, scale);
+      }
+      Sums sums;
+      detail::gauss_nodes(detail::gauss16, low, T(low + length), [&](T tau, T weight) {
+        const auto now = evaluated.at(tau);
+        laws(evaluated, now, errors);
+        gather(evaluated, now, weight, sums);
+      });
+      laws(evaluated, to, errors);
+      balance(evaluated, from, to, sums);
+      shortest = std::min(shortest, T(length));
+      from = to;
+      return go_on_();
     });
-    laws(evaluated, to, errors);
-    balance(evaluated, from, to, sums);
-    judge(evaluated, errors, 1 / evaluated.span);
-    return to;
+    judge(evaluated, errors, 1 / shortest);
+    return from;
   }
 
   template <class Trajectory>

@@ -18,8 +18,8 @@ template <class T>
 PositivityBound<T> positive(const ClosedForm<T>& along, const Path<T>& path) {
   return {along.oscillator(), path};
 }
-template <class T>
-Polynomial<T> positive(const BySeries<T>&, const Polynomial<T>& path) {
+template <class Trajectory, class Quantity>
+Quantity positive(const Trajectory&, const Quantity& path) {
   return path;
 }
 

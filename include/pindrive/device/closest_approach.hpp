@@ -78,8 +78,8 @@ class BoundedPieces {
 
   template <class Trajectory>
   static double largest_acceleration(const Trajectory& along, double lasts) {
-    if constexpr (std::is_same_v<Trajectory, detail::BySeries<double>>) {
-      return detail::largest_size(along.acceleration());
+    if constexpr (!std::is_same_v<Trajectory, detail::ClosedForm<double>>) {
+      return along.largest_size(along.acceleration());
     } else {
       const auto acceleration = along.acceleration();
       const double now = along.start(acceleration);

@@ -72,6 +72,7 @@ class Evolution {
     segment.moved = {};
     segment.plate_velocity = pin.plate.surface;
     segment.eliminated = EliminatedPart::none;
+    segment.driven = false;
     series.reset();
     if (!SeriesMode<T>::closed_form(
             pin.drive, segment.mode,
@@ -79,7 +80,8 @@ class Evolution {
       if (in_equilibrium()) return stay(segment, plate, finger);
       series.begin(segment, selected.guards, pin.drive, pin.plate, pin.finger, pin.force, pin.state,
                    selected.acceleration, pin.stays_at_limit() ? pin.stick_limit_side : 0,
-                   pin.no_push(), std::min(until_breakpoint(), inputs_.duration - pin.time));
+                   pin.no_push(), std::min(until_breakpoint(), inputs_.duration - pin.time),
+                   repetition_.repeats() ? repetition_.period / driven_in_period : never);
       return;
     }
     segment.flow = mode_flow(pin, selected, plain_, plate, finger);
@@ -216,6 +218,8 @@ class Evolution {
 
  private:
   static constexpr T never = std::numeric_limits<T>::infinity();
+  static constexpr int driven_in_period =
+      8;  ///< least segments in a period, at whose ends a cycle is measured
 
   /// Speed below which a pin is at rest, m/s. The scale is the largest term of x, as the position
   /// of rest may be 0.

@@ -1,4 +1,4 @@
-/// Segment of a mode without a closed form: one step of its series.
+/// Segment of a mode under functions or a law that is not linear: one step of its series, or a closed form.
 #pragma once
 
 #include <algorithm>
@@ -10,16 +10,17 @@
 #include "pindrive/law/guards.hpp"
 #include "pindrive/model/model.hpp"
 #include "pindrive/numbers/limits.hpp"
+#include "pindrive/series/driven_motion.hpp"
 #include "pindrive/series/series_mode.hpp"
 
 namespace pindrive::detail {
 
-/// Series step of the present segment; empty for a mode with a closed form.
+/// Series step or driven motion of the present segment; empty for a mode whose closed form is a flow.
 template <class T>
 class SeriesSegment {
  public:
-  bool used() const { return step_.has_value(); }
-  /// Step of the present segment; null for a mode with a closed form.
+  bool used() const { return step_ || driven_; }
+  /// Step of the present segment; null for a closed form.
   const SeriesStep<T>* step() const { return step_ ? &*step_ : nullptr; }
 
   /// True if the slider has its stationary velocity, so that its force follows the load.
@@ -27,20 +28,23 @@ class SeriesSegment {
     return step_ && step_->eliminated == EliminatedPart::of_slider;
   }
 
-  void reset() { step_.reset(); }
+  void reset() {
+    step_.reset();
+    driven_.reset();
+  }
 
   /// Begins a segment of a mode without a closed form, whose mode, begin and plate velocity are
   /// set.
   ///
   /// The flow of the segment holds its initial values, with the acceleration as drift of the
   /// velocity. `at_limit`: side on which a stick force is at its limit. `no_push`: the push of a
-  /// stop is exactly zero. `span`: time until the next breakpoint or the end, s. Guards are added
-  /// with their zeros.
+  /// stop is exactly zero. `span`: time until the next breakpoint or the end, s. `longest`: longest closed form, s.
+  /// Guards are added with their zeros.
   template <class Point>
   [[gnu::noinline]] void begin(Segment<T>& segment, Guards<T>& guards, const Drive<T>& drive,
                                const Point& plate, const Point& finger, const Curve<T>& force,
                                const State<T>& state, T acceleration, int at_limit, bool no_push,
-                               T span) {
+                               T span, T longest) {
     const SeriesMode<T> mode(
         drive, segment.mode,
         {segment.plate_velocity, plate.load, plate.across, force, finger.load});
@@ -96,6 +100,13 @@ class SeriesSegment {
     segment.finger_force = {of_finger, T(0), T(0)};
     // With the stretch rate of skin that has a slider velocity.
     if (has_slider_state) segment.finger_force.drift = finger.force_rate(state.v, T(0)).value;
+    const bool passes =
+        first_ == step.span() && std::none_of(paths.begin(), paths.end(),
+                                              [](const auto& guard) { return guard.zero < never; });
+    if (passes && step.span() * shortest_driven < span && mode.has_constant_coefficients() &&
+        DrivenMotion<T>::holds(equation))
+      drive_on(segment, mode, DrivenMotion<T>(equation, start), state.position_scale,
+               std::min(span, longest));
   }
 
   /// Time to the earliest event, the end of the step or the breakpoint.
@@ -118,15 +129,15 @@ class SeriesSegment {
   /// Advances the state by τ, unless the mode has a closed form.
   template <class Point>
   void move(State<T>& state, const Drive<T>& drive, const Point& finger, T tau) const {
-    if (!step_) return;
-    const SeriesStep<T>& step = *step_;
-    const SeriesState<T> now = step.at(tau);
+    if (!used()) return;
+    const SeriesState<T> now = driven_ ? driven_->at(tau) : step_->at(tau);
     state.x = now.x;
     state.v = now.v;
     state.position_scale = std::max(state.position_scale, abs(state.x));
     if (finger.elastic()) state.skin = now.skin;
     if (!finger.has_slider_state()) return;
     state.slider_velocity = now.skin;
+    const SeriesStep<T>& step = *step_;
     // Pin and slider are at rest once their velocities are within the rounding of the position; the error of the
     // position of rest then follows from the remaining forces.
     const T size = std::max(abs(state.x), abs(step.position.c[0]));
@@ -144,6 +155,29 @@ class SeriesSegment {
  private:
   static constexpr T never = std::numeric_limits<T>::infinity();
 
+  /// Replaces a step at whose end no guard is zero by a motion in closed form: until the first step in which a
+  /// guard has a zero, which a series finds.
+  void drive_on(Segment<T>& segment, const SeriesMode<T>& mode, const DrivenMotion<T>& motion,
+                T largest, T span) {
+    const T first = step_->span();
+    const auto reach = [&](Real<T> tau) { return motion.reach(tau); };
+    T known = first;
+    int steps = 0;
+    each_step(first, span, reach, [&](T tau, Real<T> length) {
+      const auto guards = mode.from(tau).guards(motion.step(tau, length));
+      for (const auto& guard : guards)
+        if (!(guard.path.c[0] > 0) || guard.zero < never) return false;
+      if (!motion.is_accurate(largest, tau + length)) return false;
+      known = tau + length;
+      return ++steps < most_driven_steps;
+    });
+    if (!(known > shortest_driven * first)) return;
+    first_ = plain(span - known) <= 0 ? span : known;
+    segment.driven = true;
+    driven_ = motion;
+    step_.reset();
+  }
+
   /// True if an input is zero within rounding from a time to another: at its ends and at a time between them that is
   /// no period.
   static bool rests(const Curve<T>& input, T from, T to) {
@@ -152,7 +186,10 @@ class SeriesSegment {
     return is_zero(from) && is_zero(to) && is_zero(from + T(0.382) * (to - from));
   }
 
+  static constexpr int most_driven_steps = 4096;  ///< between which a simulation can be interrupted
+
   std::optional<SeriesStep<T>> step_;
+  std::optional<DrivenMotion<T>> driven_;
   bool stops_{false};  ///< the plate comes to rest under a pin that is held, at the next breakpoint
   T first_{0};         ///< time to the zero of the first guard, or to the end of the step, s
 };

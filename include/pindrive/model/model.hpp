@@ -429,6 +429,7 @@ struct Segment {
   /// friction on the pin, N; if both contacts stick, the plate force is their sum
   Path<T> plate_force, finger_force;
   EliminatedPart eliminated{EliminatedPart::none};  ///< fast transient that the series omits
+  bool driven{false};  ///< in closed form under functions (series/driven_motion.hpp)
 
   /// Propagator of the oscillator after τ.
   Propagator<T> after(T tau) const { return tau == end - begin ? moved : flow.after(tau); }

@@ -72,7 +72,8 @@ class ContactMeasurement {
     const T distance = moved(along, from, to);
     const Curve<T>& plate = segment.plate_velocity;
     const T carried = plate.straight() ? (plate.at(from) + plate.at(to)) / 2 * (to - from)
-                                       : gauss<T>([&](T tau) { return plate.at(tau); }, from, to);
+                                       : along.product_integral(along.input({T(1), T(0)}),
+                                                                along.input(plate), from, to);
     use(result.plate, along, segment, segment.mode.plate,
         along.velocity() + T(-1) * along.input(plate), along.plate_force(),
         whole && stops(segment.event.plate), from, to, distance - carried, times);

@@ -48,11 +48,11 @@ void extrema(const ClosedForm<T>& along, const Path<T>& path, T from, T to, Visi
   }
   visit(to, along.at(path, to));
 }
-template <class T, class Visitor>
-void extrema(const BySeries<T>& along, const Polynomial<T>& path, T from, T to, Visitor&& visit) {
+template <class Trajectory, class Quantity, class T, class Visitor>
+void extrema(const Trajectory& along, const Quantity& path, T from, T to, Visitor&& visit) {
   visit(from, path.at(from));
   if (!(to > from)) return;
-  const Polynomial<T> slope = path.derivative();
+  const Quantity slope = path.derivative();
   const int side = along.side_after_start(slope);
   if (side != 0)
     along.each_root(slope, side, to, [&](T tau) {
@@ -75,8 +75,8 @@ void highest_and_lowest(const ClosedForm<T>& along, const Path<T>& path, T from,
   extrema(along, path, from, from + period, visit);
   extrema(along, path, to - period, to, visit);
 }
-template <class T, class Visitor>
-void highest_and_lowest(const BySeries<T>& along, const Polynomial<T>& path, T from, T to,
+template <class Trajectory, class Quantity, class T, class Visitor>
+void highest_and_lowest(const Trajectory& along, const Quantity& path, T from, T to,
                         Visitor&& visit) {
   extrema(along, path, from, to, visit);
 }

@@ -15,20 +15,22 @@ namespace pindrive {
 enum class Side : signed char { left, right };
 
 /// Calls visit with the trajectory of a segment with known inputs from its begin on: a
-/// `detail::ClosedForm`, else a `detail::BySeries`. Returns the result of visit.
+/// `detail::ClosedForm`, else a `detail::ByTerms` or a `detail::BySeries`. Returns the result of visit.
 template <class T, class Visitor>
 auto visit_trajectory(const Drive<T>& drive, const Segment<T>& segment, const InputCurves<T>& lines,
                       Visitor&& visit) {
   if (!(segment.end > segment.begin) || segment.eliminated == EliminatedPart::motion ||
       detail::SeriesMode<T>(drive, segment.mode, lines).has_closed_form())
     return visit(detail::ClosedForm<T>(segment));
+  if (segment.driven) return visit(detail::ByTerms<T>(drive, segment, lines));
   return visit(detail::BySeries<T>(drive, segment, lines));
 }
-/// The same of a segment whose series step is known; null: it has a closed form.
+/// The same of a segment whose series step is known; null: it has none.
 template <class T, class Visitor>
 auto visit_trajectory(const Drive<T>& drive, const Segment<T>& segment, const InputCurves<T>& lines,
                       const detail::SeriesStep<T>* step, Visitor&& visit) {
   if (step) return visit(detail::BySeries<T>(drive, segment, lines, *step));
+  if (segment.driven) return visit(detail::ByTerms<T>(drive, segment, lines));
   return visit(detail::ClosedForm<T>(segment));
 }
 
@@ -119,8 +121,7 @@ class Motion {
     return {low, std::min(std::max(t - low->begin, T(0)), low->end - low->begin)};
   }
 
-  /// Calls visit with the trajectory of a segment: a ClosedForm, else a BySeries. Returns the
-  /// result of visit.
+  /// Calls visit with the trajectory of a segment; see `visit_trajectory`.
   template <class Visitor>
   auto along(const Segment<T>& segment, Visitor&& visit) const {
     const auto needs_series = [](const Contact<T>& contact, const Profile<T>& load) {

@@ -60,11 +60,12 @@ class Settling {
 
   /// Time in a segment from which |x − x_end| stays within the width, evaluated from extremum to
   /// extremum: 0 if never outside, infinite if outside at the end.
-  T entry(const BySeries<T>& along, const Segment<T>& segment, T x_end, T width) const {
+  template <class Trajectory>
+  T entry(const Trajectory& along, const Segment<T>& segment, T x_end, T width) const {
     T since{0};
     // Beyond the width on either side: where it comes within for good, or infinite.
     for (const int side : {1, -1}) {
-      Polynomial<T> beyond = T(side) * along.above(along.position(), x_end + side * width);
+      const auto beyond = T(side) * along.above(along.position(), x_end + side * width);
       int sign = along.side_after_start(beyond);
       T last = sign > 0 ? never : T(0);
       along.each_root(beyond, sign, segment.end - segment.begin, [&](T tau) {

@@ -1,5 +1,5 @@
-/// Trajectory of a segment: quantities as functions of the time τ since its begin, in closed form
-/// or by series, behind one interface.
+/// Trajectory of a segment: quantities as functions of the time τ since its begin, in closed form, under
+/// functions or by series, behind one interface.
 #pragma once
 
 #include <algorithm>
@@ -10,6 +10,7 @@
 #include "pindrive/flow/roots.hpp"
 #include "pindrive/model/model.hpp"
 #include "pindrive/motion/quadrature.hpp"
+#include "pindrive/series/driven_motion.hpp"
 #include "pindrive/series/series_mode.hpp"
 
 namespace pindrive {
@@ -84,6 +85,18 @@ class ClosedForm {
   const Segment<T>& segment_;
 };
 
+/// State with which a segment under functions begins, from its initial values.
+template <class T>
+SeriesState<T> start_of(const Drive<T>& drive, const Segment<T>& segment,
+                        const SeriesMode<T>& mode) {
+  const Path<T>& v = segment.flow.velocity;
+  const Path<T>& of_finger = segment.finger_force;
+  // The slider velocity of a finger is the pin velocity minus the stretch rate.
+  const T skin = mode.has_slider_state() ? v.start + of_finger.drift / drive.finger.stiffness
+                                         : -of_finger.start;
+  return {segment.flow.position.start, v.start, skin, v.drift};
+}
+
 /// Trajectory of a segment that is one step of a series.
 template <class T>
 class BySeries {
@@ -107,6 +120,14 @@ class BySeries {
     else if (is_slip(segment.mode.finger))
       finger_force_ = of_finger(drive, segment.mode, lines.finger_load);
   }
+
+  /// Calls visit(begin, length, expand) with each part of the segment until `to` in which quantities are
+  /// polynomials, as which expand(quantity) returns them, until visit returns false: one part.
+  template <class Visitor>
+  void each_part(T to, Visitor&& visit) const {
+    visit(T(0), plain(to), [](const Polynomial<T>& p) { return p; });
+  }
+  T largest_size(const Polynomial<T>& p) const { return detail::largest_size(p); }
 
   const Polynomial<T>& position() const { return step_.position; }
   const Polynomial<T>& velocity() const { return step_.velocity; }
@@ -158,12 +179,7 @@ class BySeries {
   static SeriesStep<T> expand(const Drive<T>& drive, const Segment<T>& segment,
                               const InputCurves<T>& lines) {
     const SeriesMode<T> mode(drive, segment.mode, lines);
-    const Path<T>& v = segment.flow.velocity;
-    const Path<T>& of_finger = segment.finger_force;
-    // The slider velocity of a finger is the pin velocity minus the stretch rate.
-    const T skin = mode.has_slider_state() ? v.start + of_finger.drift / drive.finger.stiffness
-                                           : -of_finger.start;
-    const SeriesState<T> start{segment.flow.position.start, v.start, skin, v.drift};
+    const SeriesState<T> start = start_of(drive, segment, mode);
     const T span = segment.end - segment.begin;
     const SeriesEquation<T> e = mode.equation();
     if (segment.eliminated == EliminatedPart::of_slider)
@@ -189,6 +205,107 @@ class BySeries {
 
   SeriesStep<T> step_;
   Polynomial<T> plate_force_, finger_force_;
+};
+
+/// Trajectory of a segment in closed form under functions.
+template <class T>
+class ByTerms {
+ public:
+  /// Computes the closed form anew; only the initial state is stored.
+  ByTerms(const Drive<T>& drive, const Segment<T>& segment, const InputCurves<T>& lines)
+      : ByTerms(drive, segment, lines, SeriesMode<T>(drive, segment.mode, lines)) {}
+
+  template <class Visitor>
+  void each_part(T to, Visitor&& visit) const {
+    const auto reach = [&](Real<T> tau) {
+      return std::min(motion_.reach(tau), finger_force_.reach(tau));
+    };
+    each_step(T(0), to, reach, [&](T from, Real<T> length) {
+      return goes_on(visit, from, length,
+                     [&](const TermSum<T>& sum) { return sum.expanded(from, length); });
+    });
+  }
+  T largest_size(const TermSum<T>& sum) const { return sum.size(lasts_); }
+
+  const TermSum<T>& position() const { return motion_.position; }
+  const TermSum<T>& velocity() const { return motion_.velocity; }
+  TermSum<T> acceleration() const { return motion_.velocity.derivative(); }
+  const TermSum<T>& plate_force() const { return plate_force_; }
+  const TermSum<T>& finger_force() const { return finger_force_; }
+  TermSum<T> input(const Curve<T>& curve) const { return curve; }
+  TermSum<T> above(TermSum<T> sum, T level) const { return sum += Line<T>{-level, T(0)}; }
+
+  T start(const TermSum<T>& sum) const { return sum.at(T(0)); }
+  T at(const TermSum<T>& sum, T tau) const { return sum.at(tau); }
+  struct Moment {
+    T tau;
+  };
+  Moment moment(T tau) const { return {tau}; }
+  T at(const TermSum<T>& sum, const Moment& now) const { return sum.at(now.tau); }
+  T change(const TermSum<T>& sum, T tau) const { return sum.at(tau) - sum.at(T(0)); }
+  TermSum<T> derivative(const TermSum<T>& sum) const { return sum.derivative(); }
+  bool constant(const TermSum<T>& sum) const { return sum.constant(); }
+  T terms(const TermSum<T>& sum, T tau) const { return sum.size(tau); }
+  T hurry_squared() const { return motion_.position.hurry_squared(); }
+
+  /// Sign of the first Taylor coefficient that is not zero; a value within rounding is zero.
+  int side_after_start(const TermSum<T>& sum) const {
+    const Real<T> reach = sum.reach(Real<T>(0));
+    const Polynomial<T> p = sum.expanded(T(0), std::min(reach, plain(lasts_)));
+    const T known = rounding<T> * sum.size(T(0));
+    for (const T& c : p.c)
+      if (abs(c) > (&c == p.c.data() ? known : T(0))) return c > 0 ? 1 : -1;
+    return 0;
+  }
+  template <class Visitor>
+  void each_root(const TermSum<T>& sum, int side, T horizon, Visitor&& visit) const {
+    bool goes_on = true;
+    const auto change = [&](T tau) {
+      side = -side;
+      return goes_on = tau <= horizon && visit(tau);
+    };
+    each_step(
+        T(0), horizon, [&](Real<T> tau) { return sum.reach(tau); },
+        [&](T from, Real<T> length) {
+          const Polynomial<T> p = sum.expanded(from, length);
+          // A change within the rounding of the end of the step before.
+          if (from > 0 && side * plain(p.c[0]) < 0 && !change(from)) return false;
+          sign_changes(p, side, [&](T tau) { return change(from + tau); });
+          return goes_on;
+        });
+  }
+  T product_integral(const TermSum<T>& p, const TermSum<T>& q, T from, T to) const {
+    T sum{0};
+    const auto reach = [&](Real<T> tau) { return std::min(p.reach(tau), q.reach(tau)); };
+    each_step(from, to, reach, [&](T low, Real<T> length) {
+      sum += gauss<T>([&](T tau) { return p.at(tau) * q.at(tau); }, low, low + length);
+      return true;
+    });
+    return sum;
+  }
+
+ private:
+  ByTerms(const Drive<T>& drive, const Segment<T>& segment, const InputCurves<T>& lines,
+          const SeriesMode<T>& mode)
+      : motion_(mode.equation(), start_of(drive, segment, mode)),
+        lasts_(segment.end - segment.begin) {
+    const Mode& does = segment.mode;
+    const bool on_plate = does.plate == ContactState::stick;
+    plate_force_ = on_plate ? motion_.stick_force : motion_.plate_force;
+    if (does.finger == ContactState::elastic_stick) {
+      finger_force_.add(T(-1), motion_.skin);
+    } else if (does.finger == ContactState::stick && !on_plate) {
+      finger_force_ = motion_.stick_force;
+    } else if (is_slip(does.finger)) {
+      const Branch<T> branch = drive.finger.branch(does.finger_branch);
+      finger_force_.add(-pindrive::along(does.finger, branch.intercept()), lines.finger_load)
+          .add(-branch.slope * lines.finger_load.value, motion_.velocity);
+    }
+  }
+
+  DrivenMotion<T> motion_;
+  TermSum<T> plate_force_, finger_force_;
+  T lasts_;
 };
 
 }  // namespace detail

@@ -149,6 +149,10 @@ inline constexpr double longest_step = 8;
 /// Longest step in units of the fastest time constant of the inputs: terms beyond order 24 are then
 /// below 2e-17 of theirs.
 inline constexpr double longest_input = 2;
+/// Size of the parts of a motion in closed form under functions over that of the motion, and its shortest duration
+/// in steps of a series. Beyond, or below, the motion is expanded in series. Without it: driven_motion_test fails.
+inline constexpr double most_cancelled = 32;
+inline constexpr double shortest_driven = 2;
 /// Factor between tried and used step of a series; the powers of the step must be finite. Without
 /// it: fuzz fails.
 inline constexpr double farthest_step = 1024;

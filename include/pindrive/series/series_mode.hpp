@@ -49,6 +49,23 @@ class SeriesMode {
   }
   bool has_closed_form() const { return closed_form(drive_, mode_, inputs_); }
 
+  /// True if the equation has constant coefficients, so that `DrivenMotion` is its solution.
+  bool has_constant_coefficients() const {
+    const auto constant = [](ContactState state, const Contact<T>& contact, int branch,
+                             const Curve<T>& load) {
+      if (!is_slip(state)) return true;
+      return contact.linear() && (load.steady() || contact.branch(branch).slope == 0);
+    };
+    const bool follows = is_slip(mode_.finger) && !drive_.finger.rigid();
+    return mode_.plate != ContactState::slip_oblique &&
+           constant(mode_.plate, drive_.plate, mode_.plate_branch, inputs_.plate_load) &&
+           constant(mode_.finger, drive_.finger, mode_.finger_branch, inputs_.finger_load) &&
+           !has_slider_state() && !(follows && !inputs_.finger_load.straight()) &&
+           !held_by_stop(drive_, mode_) && drive_.damping >= 0;
+  }
+  /// The mode with its inputs from τ on.
+  SeriesMode from(T tau) const { return {drive_, mode_, inputs_.from(tau)}; }
+
   bool has_slider_state() const { return has_slider_state(drive_.finger, mode_); }
 
   /// Equation of the mode. The skin state is the tension or, if the finger slips on a sloped
