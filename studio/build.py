@@ -75,7 +75,7 @@ def core() -> Path:
     target = BUILD / "core.wasm"
     compiler = (sys.executable, "-m", "ziglang", "c++", "-target", "wasm32-wasi")
     call(
-        *(*compiler, "-mexec-model=reactor", "-std=c++17", "-DNDEBUG", "-s"),
+        *(*compiler, "-mexec-model=reactor", "-std=c++17", "-DNDEBUG", "-DPINDRIVE_SMALL", "-s"),
         "-Os",  # a fifth slower than -O2, and 60 kB of the page smaller
         *("-fno-exceptions", "-fno-rtti", "-ffp-contract=off", "-Iinclude", "-Icapi"),
         *sorted((ROOT / "capi").glob("*.cpp")),

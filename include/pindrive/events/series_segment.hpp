@@ -44,7 +44,7 @@ class SeriesSegment {
   [[gnu::noinline]] void begin(Segment<T>& segment, Guards<T>& guards, const Drive<T>& drive,
                                const Point& plate, const Point& finger, const Curve<T>& force,
                                const State<T>& state, T acceleration, int at_limit, bool no_push,
-                               T span, T longest) {
+                               T span, T longest = never) {
     const SeriesMode<T> mode(
         drive, segment.mode,
         {segment.plate_velocity, plate.load, plate.across, force, finger.load});
@@ -100,13 +100,15 @@ class SeriesSegment {
     segment.finger_force = {of_finger, T(0), T(0)};
     // With the stretch rate of skin that has a slider velocity.
     if (has_slider_state) segment.finger_force.drift = finger.force_rate(state.v, T(0)).value;
-    const bool passes =
-        first_ == step.span() && std::none_of(paths.begin(), paths.end(),
-                                              [](const auto& guard) { return guard.zero < never; });
-    if (passes && step.span() * shortest_driven < span && mode.has_constant_coefficients() &&
-        DrivenMotion<T>::holds(equation))
-      drive_on(segment, mode, DrivenMotion<T>(equation, start), state.position_scale,
-               std::min(span, longest));
+    if constexpr (uses_driven_motion) {
+      const bool passes = first_ == step.span() &&
+                          std::none_of(paths.begin(), paths.end(),
+                                       [](const auto& guard) { return guard.zero < never; });
+      if (passes && step.span() * shortest_driven < span && mode.has_constant_coefficients() &&
+          DrivenMotion<T>::holds(equation))
+        drive_on(segment, mode, DrivenMotion<T>(equation, start), state.position_scale, step.span(),
+                 std::min(span, longest));
+    }
   }
 
   /// Time to the earliest event, the end of the step or the breakpoint.
@@ -129,13 +131,15 @@ class SeriesSegment {
   /// Advances the state by τ, unless the mode has a closed form.
   template <class Point>
   void move(State<T>& state, const Drive<T>& drive, const Point& finger, T tau) const {
-    if (!used()) return;
-    const SeriesState<T> now = driven_ ? driven_->at(tau) : step_->at(tau);
+    if (!step_ && !driven_) return;
+    const SeriesState<T> now = driven_ ? driven_->at(tau)
+                               : step_ ? step_->at(tau)
+                                       : SeriesState<T>{};
     state.x = now.x;
     state.v = now.v;
     state.position_scale = std::max(state.position_scale, abs(state.x));
     if (finger.elastic()) state.skin = now.skin;
-    if (!finger.has_slider_state()) return;
+    if (!finger.has_slider_state() || !step_) return;
     state.slider_velocity = now.skin;
     const SeriesStep<T>& step = *step_;
     // Pin and slider are at rest once their velocities are within the rounding of the position; the error of the
@@ -158,8 +162,7 @@ class SeriesSegment {
   /// Replaces a step at whose end no guard is zero by a motion in closed form: until the first step in which a
   /// guard has a zero, which a series finds.
   void drive_on(Segment<T>& segment, const SeriesMode<T>& mode, const DrivenMotion<T>& motion,
-                T largest, T span) {
-    const T first = step_->span();
+                T largest, T first, T span) {
     const auto reach = [&](Real<T> tau) { return motion.reach(tau); };
     T known = first;
     int steps = 0;

@@ -22,7 +22,8 @@ auto visit_trajectory(const Drive<T>& drive, const Segment<T>& segment, const In
   if (!(segment.end > segment.begin) || segment.eliminated == EliminatedPart::motion ||
       detail::SeriesMode<T>(drive, segment.mode, lines).has_closed_form())
     return visit(detail::ClosedForm<T>(segment));
-  if (segment.driven) return visit(detail::ByTerms<T>(drive, segment, lines));
+  if constexpr (detail::uses_driven_motion)
+    if (segment.driven) return visit(detail::ByTerms<T>(drive, segment, lines));
   return visit(detail::BySeries<T>(drive, segment, lines));
 }
 /// The same of a segment whose series step is known; null: it has none.
@@ -30,7 +31,8 @@ template <class T, class Visitor>
 auto visit_trajectory(const Drive<T>& drive, const Segment<T>& segment, const InputCurves<T>& lines,
                       const detail::SeriesStep<T>* step, Visitor&& visit) {
   if (step) return visit(detail::BySeries<T>(drive, segment, lines, *step));
-  if (segment.driven) return visit(detail::ByTerms<T>(drive, segment, lines));
+  if constexpr (detail::uses_driven_motion)
+    if (segment.driven) return visit(detail::ByTerms<T>(drive, segment, lines));
   return visit(detail::ClosedForm<T>(segment));
 }
 

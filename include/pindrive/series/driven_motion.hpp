@@ -14,6 +14,14 @@
 
 namespace pindrive::detail {
 
+/// True if motions under functions are in closed form where they can be. A library that must be small does without:
+/// by series it finds the same motion in more segments.
+#ifdef PINDRIVE_SMALL
+inline constexpr bool uses_driven_motion = false;
+#else
+inline constexpr bool uses_driven_motion = true;
+#endif
+
 /// Motion in a mode whose equation has constant coefficients, from its begin on.
 template <class T>
 class DrivenMotion {
