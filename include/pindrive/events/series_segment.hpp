@@ -67,7 +67,8 @@ class SeriesSegment {
              left <= difference_error<T> * (segment.begin + span) * turns;
     first_ = guards.earliest_known(step.span());
     // An immediate end may be deferred to the end of the step, as to a breakpoint.
-    const T breakpoint = step.span() < span && first_ > 0 ? never : step.span();
+    const bool ends_early = step.span() < (1 - rounding<T>)*span;
+    const T breakpoint = ends_early && first_ > 0 ? never : step.span();
     const auto speed_of = [&](bool on_plate) {
       return abs((on_plate ? step.speed : has_slider_state ? step.skin : step.velocity).c[0]);
     };
@@ -86,7 +87,7 @@ class SeriesSegment {
       const T fall = path.derivative().at(guard.zero) * (tau - guard.zero);
       return stays_at_bound(fall, path.at(tau), force_error);
     });
-    if (equation.side == 0 && first_ < step.span() && !(step.span() < span) &&
+    if (equation.side == 0 && first_ < step.span() && !ends_early &&
         rests(equation.plate_velocity, first_, span) && rests(equation.across, first_, span))
       first_ = step.span();
     const T stick = step.stick_force.c[0];
