@@ -1,6 +1,7 @@
 // Sums of a polynomial and damped sinusoids: values, derivatives, Taylor polynomials and their reach.
 #include "pindrive/series/term_sum.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -61,10 +62,29 @@ void steps() {
   expect(sum.reach(0) < 0.02 && sum.reach(1) > 0.2, "... and no longer counts");
 }
 
+/// Lower bounds over parts of two seconds, long and short, beside the lowest of many values.
+void bounds() {
+  static const std::array<pd::InputTerm<double>, 4> terms{
+      {{0.3, -0.2, 4, 7}, {0.1, 0, 200, 0}, {0.02, 0.03, -1.5, 300}, {-0.4, 0, 3, 0}}};
+  static const pd::InputPiece<double> piece{0, {1, 2, -3, 1, 0.5}, terms.data(), terms.size()};
+  const Sum sum = pd::Curve<double>(piece, 0.0);
+  double spare = 0;
+  for (double length = 2; length > 5e-4; length /= 2)
+    for (double begin = 0; begin < 2; begin += length) {
+      double lowest = sum.at(begin);
+      for (int i = 1; i <= 64; ++i) lowest = std::min(lowest, sum.at(begin + i * length / 64));
+      const double least = sum.least(begin, length);
+      expect(least <= lowest, "a sum does not fall below its lower bound");
+      if (length < 1e-3) spare = std::max(spare, lowest - least);
+    }
+  expect(spare < 0.02, "... which is close over a short time");
+}
+
 }  // namespace
 
 int main() {
   values();
+  bounds();
   steps();
   return check::status();
 }

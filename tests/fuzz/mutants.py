@@ -232,8 +232,20 @@ MUTANTS = (
     Mutant(
         "a step of a series begins without its acceleration",
         "events/series_segment.hpp",
-        "{step.velocity.c[0], T(0), T(0), rate}",
-        "{step.velocity.c[0], T(0), T(0), 0 * rate}",
+        "{velocity, T(0), T(0), rate}",
+        "{velocity, T(0), T(0), 0 * rate}",
+    ),
+    Mutant(
+        "a motion in closed form under functions is damped the wrong way",
+        "series/driven_motion.hpp",
+        "t.frequency * (b - 2 * a * t.decay)",
+        "t.frequency * (2 * a * t.decay - b)",
+    ),
+    Mutant(
+        "a growing oscillation is bounded by its begin",
+        "series/term_sum.hpp",
+        "amplitude_after(term, term.decay < 0 ? tau + length : tau)",
+        "amplitude_after(term, tau)",
     ),
     Mutant(
         "skin without static friction carries nothing until the next breakpoint",

@@ -65,7 +65,8 @@ class Breakaways {
     const Mode& mode = segment.mode();
     const T begin = segment.segment.begin;
     if (!brief_) instant_ = begin;
-    const PinState<T> s = segment.at(T(0));
+    PinState<T> s = segment.at(T(0));
+    s.v = segment.segment.flow.velocity.start;  // exact, while a sum of terms is rounded
     brief_ = is_brief(segment, s);
     const bool plate = began(plate_, mode.plate, begin);
     const bool finger = began(finger_, mode.finger, begin);

@@ -21,7 +21,7 @@ class SeriesSegment {
  public:
   bool used() const { return step_ || driven_; }
   /// Step of the present segment; null for a closed form.
-  const SeriesStep<T>* step() const { return step_ ? &*step_ : nullptr; }
+  const SeriesStep<T>* step() const { return step_ && !driven_ ? &*step_ : nullptr; }
 
   /// True if the slider has its stationary velocity, so that its force follows the load.
   bool has_eliminated_slider() const {
@@ -53,63 +53,69 @@ class SeriesSegment {
     const SeriesState<T> start{state.x, state.v,
                                has_slider_state ? state.slider_velocity : state.skin, acceleration,
                                segment.begin};
-    const SeriesStep<T>& step = step_.emplace(series_step(equation, start, span));
-    segment.eliminated = step.eliminated;
-    const auto paths = mode.guards(step, {plate.mode.guard, finger.mode.guard, at_limit, no_push});
+    const Reached reached{plate.mode.guard, finger.mode.guard, at_limit, no_push};
+    Paths paths;  // guards along the last step
+    T since{0};   // begin of that step
+    reset();
+    if constexpr (uses_driven_motion)
+      if (mode.has_constant_coefficients() && DrivenMotion<T>::holds(equation))
+        since = drive_on(mode, equation, start, reached, state.position_scale, span,
+                         std::min(span, longest), paths);
+    if (!used()) {
+      step_.emplace(series_step(equation, start, span));
+      paths = mode.guards(*step_, reached);
+    }
+    segment.driven = driven_.has_value();
+    segment.eliminated = step_ ? step_->eliminated : EliminatedPart::none;
     const bool held = held_by_stop(drive, segment.mode);
     guards.clear();
     for (const auto& guard : paths)
-      guards.add_known(guard.zero, guard.bound, guard.plate, guard.side,
+      guards.add_known(since + guard.zero, guard.bound, guard.plate, guard.side,
                        segment.mode.stuck() && !held && &guard - paths.begin() < 2);
     const T turns = abs(equation.across.rate) + abs(equation.plate_velocity.rate);
     const T left = abs(equation.across.at(span)) + abs(equation.plate_velocity.at(span));
     stops_ = equation.held && equation.side == 0 &&
              left <= difference_error<T> * (segment.begin + span) * turns;
-    first_ = guards.earliest_known(step.span());
+    const T end = step_ ? since + step_->span() : since;
+    first_ = guards.earliest_known(end);
     // An immediate end may be deferred to the end of the step, as to a breakpoint.
-    const bool ends_early = step.span() < (1 - rounding<T>)*span;
-    const T breakpoint = ends_early && first_ > 0 ? never : step.span();
+    const bool ends_early = end < (1 - rounding<T>)*span;
+    const T breakpoint = ends_early && first_ > 0 ? never : end;
     const auto speed_of = [&](bool on_plate) {
-      return abs((on_plate ? step.speed : has_slider_state ? step.skin : step.velocity).c[0]);
+      return abs((on_plate ? step_->speed : has_slider_state ? step_->skin : step_->velocity).c[0]);
     };
     // A function has the rounding of its terms; a pin that creeps has it in its velocity.
     const auto unsure = [&](const Curve<T>& input) {
-      return input.straight() ? T(0) : T(input.rounding(step.span()));
+      return input.straight() ? T(0) : T(input.rounding(end));
     };
     const T of_plate_velocity = unsure(equation.plate_velocity) + unsure(equation.across);
-    const bool creeps = step.eliminated == EliminatedPart::of_friction;
+    const bool creeps = segment.eliminated == EliminatedPart::of_friction;
     first_ = guards.defer_grazing(first_, breakpoint, [&](const Guard<T>& guard, T tau) {
       const Polynomial<T>& path = paths.begin()[&guard - guards.begin()].path;
       const T force_error = guard.bound == ActiveGuard::none || guard.bound == ActiveGuard::push
                                 ? state.force_error
                                 : rounding<T> * (path.size() + speed_of(guard.plate)) +
                                       (guard.plate || creeps ? of_plate_velocity : T(0));
-      const T fall = path.derivative().at(guard.zero) * (tau - guard.zero);
-      return stays_at_bound(fall, path.at(tau), force_error);
+      const T fall = path.derivative().at(guard.zero - since) * (tau - guard.zero);
+      return stays_at_bound(fall, path.at(tau - since), force_error);
     });
-    if (equation.side == 0 && first_ < step.span() && !ends_early &&
+    if (equation.side == 0 && first_ < end && !ends_early &&
         rests(equation.plate_velocity, first_, span) && rests(equation.across, first_, span))
-      first_ = step.span();
-    const T stick = step.stick_force.c[0];
+      first_ = end;
+    const T velocity = !driven_        ? step_->velocity.c[0]
+                       : equation.held ? equation.surface.value
+                                       : start.v;
+    const T stick = driven_ ? driven_->stick_force.start() : step_->stick_force.c[0];
     const T of_plate = plate.stuck() && !held ? stick : plate.force(state);
     const T of_finger = !finger.stuck() || held ? finger.force(state)
                         : plate.stuck()         ? T(0)
                                                 : stick;
     const T rate = equation.held ? equation.surface.rate : acceleration;
-    segment.flow = {{}, {state.x, T(0), T(0)}, {step.velocity.c[0], T(0), T(0), rate}};
+    segment.flow = {{}, {state.x, T(0), T(0)}, {velocity, T(0), T(0), rate}};
     segment.plate_force = {of_plate, T(0), T(0)};
     segment.finger_force = {of_finger, T(0), T(0)};
     // With the stretch rate of skin that has a slider velocity.
     if (has_slider_state) segment.finger_force.drift = finger.force_rate(state.v, T(0)).value;
-    if constexpr (uses_driven_motion) {
-      const bool passes = first_ == step.span() &&
-                          std::none_of(paths.begin(), paths.end(),
-                                       [](const auto& guard) { return guard.zero < never; });
-      if (passes && step.span() * shortest_driven < span && mode.has_constant_coefficients() &&
-          DrivenMotion<T>::holds(equation))
-        drive_on(segment, mode, DrivenMotion<T>(equation, start), state.position_scale, step.span(),
-                 std::min(span, longest));
-    }
   }
 
   /// Time to the earliest event, the end of the step or the breakpoint.
@@ -124,7 +130,7 @@ class SeriesSegment {
 
   /// Time at which a moving pin turns; infinite if the pin does not turn within the step.
   T turning_point() const {
-    if (!step_ || step_->velocity.c[0] == 0) return never;
+    if (step() == nullptr || step_->velocity.c[0] == 0) return never;
     const Polynomial<T>& velocity = step_->velocity;
     return first_zero(velocity.c[0] > 0 ? velocity : T(-1) * velocity);
   }
@@ -140,7 +146,7 @@ class SeriesSegment {
     state.v = now.v;
     state.position_scale = std::max(state.position_scale, abs(state.x));
     if (finger.elastic()) state.skin = now.skin;
-    if (!finger.has_slider_state() || !step_) return;
+    if (!finger.has_slider_state() || driven_) return;
     state.slider_velocity = now.skin;
     const SeriesStep<T>& step = *step_;
     // Pin and slider are at rest once their velocities are within the rounding of the position; the error of the
@@ -160,26 +166,52 @@ class SeriesSegment {
  private:
   static constexpr T never = std::numeric_limits<T>::infinity();
 
-  /// Replaces a step at whose end no guard is zero by a motion in closed form: until the first step in which a
-  /// guard has a zero, which a series finds.
-  void drive_on(Segment<T>& segment, const SeriesMode<T>& mode, const DrivenMotion<T>& motion,
-                T largest, T first, T span) {
-    const auto reach = [&](Real<T> tau) { return motion.reach(tau); };
-    T known = first;
-    int steps = 0;
-    each_step(first, span, reach, [&](T tau, Real<T> length) {
-      const auto guards = mode.from(tau).guards(motion.step(tau, length));
-      for (const auto& guard : guards)
-        if (!(guard.path.c[0] > 0) || guard.zero < never) return false;
-      if (!motion.is_accurate(largest, tau + length)) return false;
-      known = tau + length;
-      return ++steps < most_driven_steps;
-    });
-    if (!(known > shortest_driven * first)) return;
-    first_ = plain(span - known) <= 0 ? span : known;
-    segment.driven = true;
-    driven_ = motion;
+  using Reached = typename SeriesMode<T>::Reached;
+  using Paths = typename SeriesMode<T>::template Guards<Polynomial<T>>;
+
+  /// Begins a motion in closed form, until the first step in which a guard has a zero, with the guards along that
+  /// step; returns its begin. Where a guard is zero at the begin, a series step decides how the motion leaves it; the motion
+  /// is that step if a guard has a zero in it.
+  T drive_on(const SeriesMode<T>& mode, const SeriesEquation<T>& equation,
+             const SeriesState<T>& start, const Reached& reached, T largest, T span, T longest,
+             Paths& paths) {
+    const DrivenMotion<T> motion(equation, start);
+    const auto guards = mode.guards(motion);
+    T clear{0};  // no guard has a zero until then
+    if (reached.any() || std::any_of(guards.begin(), guards.end(), [](const auto& guard) {
+          return !(guard.path.start() > difference_error<T> * guard.path.size(T(0)));
+        })) {
+      step_.emplace(series_step(equation, start, span));
+      paths = mode.guards(*step_, reached);
+      const bool ends = paths.earliest() != nullptr || step_->span() * shortest_driven >= span;
+      if (ends || step_->eliminated != EliminatedPart::none) return T(0);
+      clear = T(0.9375) * step_->span();  // guards are positive there
+    }
+    const T reach = motion.reach(plain(clear));
+    const T latest = std::min(longest, T(clear + most_driven_steps * reach));
+    if (!(latest < never)) return T(0);
+    T end = clear;
+    for (T length = reach; end < latest; length *= 4) {
+      const T next = std::min(latest, T(clear + length));
+      if (!motion.is_accurate(largest, next)) break;
+      end = next;
+    }
+    if (!(end > clear)) return T(0);
+    T zero = never;
+    for (const auto& guard : guards)
+      sign_changes(guard.path, 1, clear, end, std::min(zero, end), [&](T tau) {
+        zero = std::min(zero, tau);
+        return false;
+      });
     step_.reset();
+    driven_.emplace(motion);
+    if (!(zero < never)) return end;
+    // The last step begins before the zero, where all guards are positive.
+    const T since = std::max(clear, T(zero - reach / 2));
+    const T within = std::min(T(motion.reach(plain(since))), T(end - since));
+    step_.emplace(motion.step(since, plain(std::max(within, T(zero - since)))));
+    paths = mode.from(since).guards(*step_);
+    return since;
   }
 
   /// True if an input is zero within rounding from a time to another: at its ends and at a time between them that is
@@ -190,9 +222,9 @@ class SeriesSegment {
     return is_zero(from) && is_zero(to) && is_zero(from + T(0.382) * (to - from));
   }
 
-  static constexpr int most_driven_steps = 4096;  ///< between which a simulation can be interrupted
+  static constexpr T most_driven_steps{4096};  ///< between which a simulation can be interrupted
 
-  std::optional<SeriesStep<T>> step_;
+  std::optional<SeriesStep<T>> step_;  ///< the segment or, of a driven motion, its last step
   std::optional<DrivenMotion<T>> driven_;
   bool stops_{false};  ///< the plate comes to rest under a pin that is held, at the next breakpoint
   T first_{0};         ///< time to the zero of the first guard, or to the end of the step, s

@@ -58,6 +58,8 @@ struct Polynomial {
   int degree{0};
   Real span{1};  ///< s
 
+  T start() const { return c[0]; }
+  void begin_at(const T& value) { c[0] = value; }
   /// Value τ after the begin of the step.
   T at(T tau) const {
     const T s = tau / span;
@@ -134,10 +136,9 @@ Real beyond(const Sums<Real>& p, const Sums<Real>& q) {
 
 /// Bernstein coefficients on [0, 1] of a polynomial in powers. The values lie between the smallest
 /// and the largest coefficient; the first and the last are the values at the ends.
-template <class Real>
-std::array<Real, series_order + 2> bernstein(const std::array<Real, series_order + 2>& powers,
-                                             int degree) {
-  std::array<Real, series_order + 2> b{};
+template <class Real, std::size_t size>
+std::array<Real, size> bernstein(const std::array<Real, size>& powers, int degree) {
+  std::array<Real, size> b{};
   Real binomial{1};  // (degree over j)
   for (int j = 0; j <= degree; ++j) {
     b[j] = powers[j] / binomial;

@@ -259,20 +259,7 @@ class ByTerms {
   }
   template <class Visitor>
   void each_root(const TermSum<T>& sum, int side, T horizon, Visitor&& visit) const {
-    bool goes_on = true;
-    const auto change = [&](T tau) {
-      side = -side;
-      return goes_on = tau <= horizon && visit(tau);
-    };
-    each_step(
-        T(0), horizon, [&](Real<T> tau) { return sum.reach(tau); },
-        [&](T from, Real<T> length) {
-          const Polynomial<T> p = sum.expanded(from, length);
-          // A change within the rounding of the end of the step before.
-          if (from > 0 && side * plain(p.c[0]) < 0 && !change(from)) return false;
-          sign_changes(p, side, [&](T tau) { return change(from + tau); });
-          return goes_on;
-        });
+    sign_changes(sum, side, T(0), horizon, horizon, visit);
   }
   T product_integral(const TermSum<T>& p, const TermSum<T>& q, T from, T to) const {
     T sum{0};

@@ -34,6 +34,8 @@ class DrivenMotion {
     return terms <= std::size_t{TermSum<T>::most_terms};
   }
 
+  using Path = TermSum<T>;
+
   TermSum<T> position, velocity;
   TermSum<T> skin;         ///< tension of skin in elastic stick, N; else 0
   TermSum<T> plate_force;  ///< R, N
@@ -47,7 +49,7 @@ class DrivenMotion {
     // All forces but those of the spring, the dampers and the skin.
     TermSum<T> given = e.pushes;
     given.add(e.mass, surface.derivative()).add(-e.finger_force, e.finger_load);
-    given.polynomial[0] += e.force.value - given.at(T(0));
+    given.begin_at(e.force.value);
     plate_force.add(-side * e.plate_force, e.load).add(drag, surface);
     given.add(T(1), plate_force);
     const T elastic = e.skin_factor.value * e.skin_stiffness;
@@ -59,11 +61,12 @@ class DrivenMotion {
       pull.polynomial[0] += elastic * start.x - e.skin_factor.value * start.skin;
       solve(e.mass, e.damping + drag, e.stiffness + elastic, pull, start);
       velocity = position.derivative();
+      velocity.begin_at(start.v);
     }
-    position.polynomial[0] += start.x - position.at(T(0));
+    position.begin_at(start.x);
     if (e.skin_stiffness != 0) {
       skin.add(e.skin_stiffness, position);
-      skin.polynomial[0] += start.skin - skin.at(T(0));
+      skin.begin_at(start.skin);
     }
     plate_force.add(-drag, velocity);
     if (e.held)
@@ -82,6 +85,7 @@ class DrivenMotion {
            T(most_cancelled) * std::max(largest, abs(position.at(tau)));
   }
   SeriesState<T> at(T tau) const { return {position.at(tau), velocity.at(tau), skin.at(tau)}; }
+  TermSum<T> input(const Curve<T>& curve) const { return curve; }
   /// Step from τ on, of a length within reach.
   SeriesStep<T> step(T tau, Real<T> length) const {
     SeriesStep<T> found;

@@ -10,6 +10,7 @@
 #include "pindrive/model/input_curves.hpp"
 #include "pindrive/model/model.hpp"
 #include "pindrive/series/creep.hpp"
+#include "pindrive/series/term_sum.hpp"
 
 namespace pindrive::detail {
 
@@ -135,26 +136,32 @@ class SeriesMode {
     ActiveGuard plate{ActiveGuard::none}, finger{ActiveGuard::none};
     int limit{0};
     bool push{false};  ///< the push of a stop
+
+    bool any() const {
+      return plate != ActiveGuard::none || finger != ActiveGuard::none || limit != 0 || push;
+    }
   };
 
-  /// Quantity that is positive during the mode, along a step: distance of a sliding speed from the
-  /// end of its branch or (none) margin of a stick force on one side.
+  /// Quantity that is positive during the mode: distance of a sliding speed from the end of its branch or (none)
+  /// margin of a stick force on one side.
+  template <class Path>
   struct Guard {
-    Polynomial<T> path;
+    Path path;
     ActiveGuard bound;
     bool plate;
     int side;
-    T zero;  ///< time at which the guard becomes negative, s; infinite if never
+    T zero{never};  ///< time at which a polynomial becomes negative, s; infinite if never
   };
 
+  template <class Path>
   class Guards {
    public:
-    const Guard* begin() const { return list_.data(); }
-    const Guard* end() const { return list_.data() + count_; }
+    const Guard<Path>* begin() const { return list_.data(); }
+    const Guard<Path>* end() const { return list_.data() + count_; }
     /// Guard with the earliest zero; null without one.
-    const Guard* earliest() const {
-      const Guard* first = nullptr;
-      for (const Guard& guard : *this)
+    const Guard<Path>* earliest() const {
+      const Guard<Path>* first = nullptr;
+      for (const Guard<Path>& guard : *this)
         if (guard.zero < (first == nullptr ? never : first->zero)) first = &guard;
       return first;
     }
@@ -169,6 +176,9 @@ class SeriesMode {
       const T zero = beyond ? T(0) : first_zero(path);
       list_[count_++] = {path, bound, plate, side, zero};
     }
+    void add(const TermSum<T>& path, bool, ActiveGuard bound, bool plate, int side) {
+      list_[count_++] = {path, bound, plate, side};
+    }
     /// Makes exact the start that the selection of the mode implies: coefficients of the wrong sign
     /// are rounding, or the path turns back within the rounding of its start.
     template <class Coefficients>
@@ -177,40 +187,41 @@ class SeriesMode {
       c[0] = turns ? c[1] * c[1] / (2 * c[2]) : T(0);  // twice the depth of the minimum
       for (int n = 1; n <= 3 && !turns && !(c[n] > 0); ++n) c[n] = T(0);
     }
-    std::array<Guard, 8> list_;
+    std::array<Guard<Path>, 8> list_;
     int count_{0};
   };
-  /// Guards of the mode; guards of a stick force come first.
-  Guards guards(const SeriesStep<T>& step, const Reached& at = {}) const {
-    Guards found;
+  /// Guards of the mode along a series step, with their zeros, or a motion in closed form; those of a stick force
+  /// come first.
+  template <class Along>
+  Guards<typename Along::Path> guards(const Along& along, const Reached& at = {}) const {
+    using Path = typename Along::Path;
+    Guards<Path> found;
     if (held_by_stop(drive_, mode_)) {
       const int end = stop_sign(mode_.stop);
-      found.add(T(-end) * step.stick_force, at.push, ActiveGuard::push, false, end);
+      found.add(T(-end) * along.stick_force, at.push, ActiveGuard::push, false, end);
     } else if (mode_.stuck()) {
-      Polynomial<T> most;
-      most.span = step.span();
+      Path most = along.input(Line<T>{T(0), T(0)});
       if (mode_.plate == ContactState::stick)
-        most += drive_.plate.static_limit * polynomial_of(inputs_.plate_load, step.span());
+        most += drive_.plate.static_limit * along.input(inputs_.plate_load);
       if (mode_.finger == ContactState::stick)
-        most += drive_.finger.static_limit * polynomial_of(inputs_.finger_load, step.span());
-      within(found, step.stick_force, most, at.limit, mode_.plate == ContactState::stick);
+        most += drive_.finger.static_limit * along.input(inputs_.finger_load);
+      within(found, along.stick_force, most, at.limit, mode_.plate == ContactState::stick);
     }
     if (is_slip(mode_.plate))
-      between(found, step.speed, plate(), at.plate, true, inputs_.oblique());
+      between(found, along.speed, plate(), at.plate, true, inputs_.oblique());
     if (is_slip(mode_.finger)) {
-      Polynomial<T> speed =
-          along(mode_.finger, T(1)) * (has_slider_state() ? step.skin : step.velocity);
+      Path speed =
+          pindrive::along(mode_.finger, T(1)) * (has_slider_state() ? along.skin : along.velocity);
       if (!has_slider_state() && !drive_.finger.rigid())
         speed += Line<T>{-follows(finger().force), T(0)};
       between(found, speed, finger(), at.finger, false, false);
     }
     if (mode_.finger == ContactState::elastic_stick) {
-      const int limit = at.finger == ActiveGuard::none ? 0 : begins_with(step.skin);
-      within(found, step.skin,
-             drive_.finger.static_limit * polynomial_of(inputs_.finger_load, step.span()), limit,
-             false);
+      const int limit = at.finger == ActiveGuard::none ? 0 : begins_with(along.skin);
+      within(found, along.skin, drive_.finger.static_limit * along.input(inputs_.finger_load),
+             limit, false);
     }
-    if (drive_.stops.present() && !held_by_stop(drive_, mode_)) stops(found, step, at);
+    if (drive_.stops.present() && !held_by_stop(drive_, mode_)) stops(found, along, at);
     return found;
   }
 
@@ -235,10 +246,12 @@ class SeriesMode {
       if (c != 0) return c < 0 ? -1 : 1;
     return 1;
   }
+  static int begins_with(const TermSum<T>& sum) { return sum.start() < 0 ? -1 : 1; }
 
-  void between(Guards& found, const Polynomial<T>& speed, const Branch<T>& range, ActiveGuard at,
+  template <class Path>
+  void between(Guards<Path>& found, const Path& speed, const Branch<T>& range, ActiveGuard at,
                bool is_plate, bool oblique) const {
-    Polynomial<T> above = speed, below = T(-1) * speed;
+    Path above = speed, below = T(-1) * speed;
     above += Line<T>{-range.from, T(0)};
     below += Line<T>{range.to, T(0)};
     if (!oblique || range.from > 0)  // otherwise the transverse velocity keeps the speed positive
@@ -246,12 +259,14 @@ class SeriesMode {
     if (range.to < never)
       found.add(below, at == ActiveGuard::upper, ActiveGuard::upper, is_plate, 0);
   }
-  void stops(Guards& found, const SeriesStep<T>& step, const Reached& at) const {
+  template <class Along>
+  void stops(Guards<typename Along::Path>& found, const Along& along, const Reached& at) const {
+    using Path = typename Along::Path;
     const Stops<T>& stops = drive_.stops;
     const auto beyond = [&](int end, int sense) {
-      Polynomial<T> path = T(sense * end) * step.position;
+      Path path = T(sense * end) * along.position;
       path += Line<T>{-sense * stops.travel, T(0)};
-      const bool exact = end * step.position.c[0] == stops.travel;
+      const bool exact = end * along.position.start() == stops.travel;
       found.add(path, exact, ActiveGuard::edge, false, end);
     };
     if (mode_.stop == StopState::apart) {
@@ -262,17 +277,18 @@ class SeriesMode {
     const int end = stop_sign(mode_.stop), sense = in_contact(mode_.stop) ? 1 : -1;
     if (stops.damping == 0 || sense < 0) beyond(end, 1);
     if (stops.damping == 0) return;
-    Polynomial<T> push = T(sense * end) * stops.stiffness * step.position;
-    push += T(sense * end) * stops.damping * step.velocity;
+    Path push = T(sense * end) * stops.stiffness * along.position;
+    push += T(sense * end) * stops.damping * along.velocity;
     // Added term by term: the sum may round more.
-    push.c[0] = sense * (stops.stiffness * (end * step.position.c[0] - stops.travel) +
-                         stops.damping * end * step.velocity.c[0]);
+    push.begin_at(sense * (stops.stiffness * (end * along.position.start() - stops.travel) +
+                           stops.damping * end * along.velocity.start()));
     found.add(push, at.push, ActiveGuard::push, false, end);
   }
-  void within(Guards& found, const Polynomial<T>& force, const Polynomial<T>& most, int at_limit,
+  template <class Path>
+  void within(Guards<Path>& found, const Path& force, const Path& most, int at_limit,
               bool is_plate) const {
     for (const int side : {1, -1}) {
-      Polynomial<T> left = T(-side) * force;
+      Path left = T(-side) * force;
       left += most;
       found.add(left, side == at_limit, ActiveGuard::none, is_plate, side);
     }

@@ -21,6 +21,7 @@ template <class T>
 class SeriesStep {
  public:
   using Real = detail::Real<T>;
+  using Path = Polynomial<T>;
 
   Polynomial<T> position, velocity, skin;
   Polynomial<T> plate_force;  ///< R, N
@@ -35,6 +36,7 @@ class SeriesStep {
 
   Real span() const { return velocity.span; }
   SeriesState<T> at(T tau) const { return {position.at(tau), velocity.at(tau), skin.at(tau)}; }
+  Polynomial<T> input(const Curve<T>& curve) const { return polynomial_of(curve, span()); }
 
  protected:
   static constexpr int N = series_order;

@@ -32,10 +32,12 @@ class TermSum {
     polynomial = moved_polynomial(curve.since);
     for (std::size_t j = 0; j < curve.piece->count; ++j)
       add(moved(curve.piece->terms[j], curve.since));
-    polynomial[0] += curve.value - at(T(0));
+    begin_at(curve.value);
   }
 
   std::array<T, degree + 1> polynomial{};
+  /// Sets its value at the begin by its constant.
+  void begin_at(const T& value) { polynomial[0] += value - start(); }
   const InputTerm<T>* begin() const { return terms_.data(); }
   const InputTerm<T>* end() const { return terms_.data() + count_; }
   /// Adds a term to that of its decay and frequency.
@@ -49,6 +51,11 @@ class TermSum {
     terms_[count_++] = term;
   }
 
+  T start() const {
+    T sum = polynomial[0];
+    for (const InputTerm<T>& term : *this) sum += term.cosine;
+    return sum;
+  }
   T at(T tau) const {
     T sum = polynomial[degree];
     for (int n = degree; n-- > 0;) sum = sum * tau + polynomial[n];
@@ -88,13 +95,47 @@ class TermSum {
     return most;
   }
 
+  /// Lower bound of the sum, or of its negative with a side of −1, over a length of time after τ, s: by Taylor terms of
+  /// low order, or by the amplitude of a term that turns far in that time.
+  Real least(Real tau, Real length, int side = 1) const {
+    std::array<Real, degree + 1> p{};
+    const std::array<T, degree + 1> later = moved_polynomial(tau);
+    Real power(side), missed{0}, size{0};
+    for (int n = 0; n <= degree; ++n, power *= length) {
+      p[n] = plain(later[n]) * power;
+      size += std::abs(p[n]);
+    }
+    for (const InputTerm<T>& term : *this) {
+      // A term that grows, as under friction that falls with the speed, is largest at the end.
+      const Real amplitude = amplitude_after(term, term.decay < 0 ? tau + length : tau);
+      const Real part = rate_of(term) * length;
+      size += amplitude;
+      Real beyond = amplitude;
+      for (int n = 0; n <= degree && beyond > 0; ++n) beyond *= part / Real(n + 1);
+      if (beyond < amplitude) {
+        missed += beyond;
+        const InputTerm<T> now = moved(term, tau);
+        add_taylor(InputTerm<Real>{side * plain(now.cosine), side * plain(now.sine),
+                                   plain(now.decay), plain(now.frequency)},
+                   length, degree, p);
+      } else if (term.frequency == 0) {  // from one value to another
+        const Real start = side * plain(term.cosine);
+        p[0] += std::min(start * exp(-plain(term.decay) * tau),
+                         start * exp(-plain(term.decay) * (tau + length)));
+      } else {
+        missed += amplitude;
+      }
+    }
+    const auto b = bernstein(p, degree);
+    return *std::min_element(b.begin(), b.end()) - missed - rounding<Real> * size;
+  }
   /// Time after τ over which its Taylor terms beyond the order of a series are within rounding, s.
   Real reach(Real tau) const {
     const Real whole = largest_after(tau);
     Real least = std::numeric_limits<Real>::infinity();
     for (const InputTerm<T>& term : *this) {
       const Real amplitude = amplitude_after(term, tau);
-      const Real rate = std::hypot(plain(term.decay), plain(term.frequency));
+      const Real rate = rate_of(term);
       if (amplitude > negligible * whole && rate > 0)
         least = std::min(
             least, Real(longest_input) / rate * exp(log(whole / amplitude) / (series_order + 1)));
@@ -112,16 +153,9 @@ class TermSum {
     const Real whole = largest_after(plain(tau));
     for (const InputTerm<T>& term : *this) {
       if (!(amplitude_after(term, plain(tau)) > negligible * whole)) continue;
-      const InputTerm<T> now = moved(term, tau);
-      // Real part of (cosine − i·sine) e^((iΩ − δ)τ), whose n-th coefficient follows from the last.
-      T real = now.cosine, imaginary = -now.sine;
-      for (int n = 0; n <= series_order; ++n) {
-        p.c[n] += real;
-        const T next = step / T(n + 1);
-        const T turned = -(term.decay * real + term.frequency * imaginary) * next;
-        imaginary = (term.frequency * real - term.decay * imaginary) * next;
-        real = turned;
-      }
+      // Negligible in the sums by whose reach the step was chosen.
+      if (rate_of(term) * step > farthest_reach) continue;
+      add_taylor(moved(term, tau), step, series_order, p.c);
       p.degree = series_order;
     }
     Real tail{0};
@@ -145,6 +179,12 @@ class TermSum {
  private:
   static constexpr Real negligible = std::numeric_limits<Real>::epsilon() / 64;  ///< part of a sum
 
+  /// Longest step over the time constant of a term that counts, by its reach: that of a negligible one.
+  static constexpr Real farthest_reach = 5.1 * longest_input;
+
+  static Real rate_of(const InputTerm<T>& term) {
+    return std::hypot(plain(term.decay), plain(term.frequency));
+  }
   /// Bound of a term from τ on.
   static Real amplitude_after(const InputTerm<T>& term, Real tau) {
     return (std::abs(plain(term.cosine)) + std::abs(plain(term.sine))) *
@@ -157,6 +197,20 @@ class TermSum {
     sum = std::abs(sum);
     for (const InputTerm<T>& term : *this) sum += amplitude_after(term, tau);
     return sum;
+  }
+
+  /// Adds the Taylor coefficients of a term in the time σ = τ/step, up to an order.
+  template <class Number, class Coefficients>
+  static void add_taylor(const InputTerm<Number>& term, Real step, int order, Coefficients& c) {
+    // Real part of (cosine − i·sine) e^((iΩ − δ)τ), whose n-th coefficient follows from the last.
+    Number real = term.cosine, imaginary = -term.sine;
+    for (int n = 0; n <= order; ++n) {
+      c[n] += real;
+      const Number next = step / Number(n + 1);
+      const Number turned = -(term.decay * real + term.frequency * imaginary) * next;
+      imaginary = (term.frequency * real - term.decay * imaginary) * next;
+      real = turned;
+    }
   }
 
   /// The term with its time counted from τ on.
@@ -189,6 +243,40 @@ void each_step(const T& from, const T& to, Reach&& reach, Visitor&& visit) {
     if (!(high > low)) high = to;  // so late that a step is lost in rounding
     if (!visit(low, plain(high - low))) return;
     low = high;
+  }
+}
+
+/// Calls visit(τ) at each sign change of a sum in (from, to], in order, until visit returns false. `side` is the sign just
+/// after `from`. Parts in which a bound excludes a zero are passed at once; in others Taylor polynomials isolate it. No
+/// part begins at or after `until`, which changes no other part: two mirrored sums have the same zeros, to the bit.
+template <class T, class Visitor>
+void sign_changes(const TermSum<T>& sum, int side, const T& from, const T& to, const T& until,
+                  Visitor&& visit) {
+  bool goes_on = true;
+  const auto change = [&](const T& tau) {
+    side = -side;
+    return goes_on = visit(tau);
+  };
+  T length = to - from;
+  for (T low = from; goes_on && low < until;) {
+    const T reach = sum.reach(plain(low));
+    length = std::min(length, T(to - low));
+    bool clear = sum.least(plain(low), plain(length), side) > 0;
+    while (!clear && length > reach) {
+      length = std::max(T(length / 4), reach);
+      clear = sum.least(plain(low), plain(length), side) > 0;
+    }
+    if (!clear) {
+      const Polynomial<T> p = sum.expanded(low, plain(length));
+      // A change within the rounding of the end of the step before.
+      const Real<T> value = side * plain(p.c[0]);
+      if (low > from && (value < 0 || (value == 0 && side * plain(p.c[1]) < 0)) && !change(low))
+        return;
+      sign_changes(p, side, [&](const T& tau) { return change(low + tau); });
+    }
+    const T high = low + length;
+    low = length < to - low && high > low ? high : to;  // so late that a step is lost in rounding
+    length *= 4;
   }
 }
 
