@@ -167,7 +167,7 @@ inline constexpr double step_reduction = 0.75;
 inline constexpr double creep_steps = 8;
 /// Iterations and reductions of a step of slow motion before the Taylor series of the whole motion
 /// is used instead. Without it: creep_test, slow_slider_test fails.
-inline constexpr int slow_iterations = 16, slow_reductions = 40;
+inline constexpr int slow_iterations = 24, slow_reductions = 40;
 /// Largest ratio t = (x' − v_p)/w of creep: closer to the friction limit the boundary layer is
 /// never thin. Saves 6 % of the time under oblique hands, and changes no result.
 inline constexpr double steepest_creep = 1e4;

@@ -35,9 +35,9 @@ class CreepFlow : public IteratedStep<T> {
   using SeriesStep<T>::speed_bound;
 
   /// Expands the series at a state, up to a limit (s; may be infinite) and to the zero of w;
-  /// `within_step`: the limit is known to lie within one step.
+  /// `within_step`: the limit is known to lie within one step. A step is not valid if it would be below `shortest`, s.
   CreepFlow(const SeriesEquation<T>& e, const SeriesState<T>& start, T limit,
-            bool within_step = false)
+            bool within_step = false, Real shortest = 0)
       : balance_(e) {
     this->eliminated = EliminatedPart::of_friction;
     acceleration_[0] = e.plate_velocity.rate;  // initial guess: acceleration of the plate
@@ -65,10 +65,16 @@ class CreepFlow : public IteratedStep<T> {
       if (round == 0) continue;
       const Real left = farthest / step;
       Real part = within_step ? left : until_zero(e, std::min(this->suggested_part(), left), step);
+      if (part * step < shortest) return;
       const bool converged = converged_;
       const Real changed = last_change(part);
-      converged_ = changed <= last_digit<Real> * this->size_of(plate_force, part) / plain(e.mass);
-      if (!within_step && round > 2 && !converged_ && changed > last / 2) return;  // no convergence
+      const Real known = last_digit<Real> * this->size_of(plate_force, part) / plain(e.mass);
+      converged_ = changed <= known;
+      // Changes decrease ever slower: at the present rate they would not be small in time.
+      if (!within_step && round > 2 && !converged_ &&
+          (changed > last / 2 ||
+           changed * exp(log(changed / last) * (slow_iterations - 2 - round)) > known))
+        return;
       last = changed;
       if (within_step && changed < least) {
         least = changed;
@@ -263,12 +269,12 @@ class CreepFlow : public IteratedStep<T> {
   bool converged_{false}, holds_{false};
 };
 
-/// Returns a step of creep; none if the pin has a fast transient.
+/// Returns a step of creep; none if the pin has a fast transient, or the step would be too short.
 template <class T>
 std::optional<CreepFlow<T>> creep(const SeriesEquation<T>& e, const SeriesState<T>& start, T limit,
-                                  bool within_step = false) {
+                                  bool within_step = false, Real<T> shortest = 0) {
   std::optional<CreepFlow<T>> flow;
-  if (!flow.emplace(e, start, limit, within_step).is_valid()) flow.reset();
+  if (!flow.emplace(e, start, limit, within_step, shortest).is_valid()) flow.reset();
   return flow;
 }
 
@@ -311,7 +317,8 @@ SeriesStep<T> series_step(const SeriesEquation<T>& e, const SeriesState<T>& star
   if (slides) step = SeriesFlow<T>(e, start, limit);
   if (slides && !(step.span() < plain(limit))) return step;
   if (slides && creep_span(e, start, limit) < Real<T>(creep_steps) * step.span()) return step;
-  if (const auto flow = creep(e, start, limit); flow && !(slides && flow->span() < step.span()))
+  if (const auto flow = creep(e, start, limit, false, slides ? step.span() : 0);
+      flow && !(slides && flow->span() < step.span()))
     return *flow;
   return slides ? step : SeriesFlow<T>(e, start, limit);
 }
