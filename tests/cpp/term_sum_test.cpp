@@ -47,9 +47,9 @@ void steps() {
   double worst = 0, end = 0;
   int count = 0;
   pd::detail::each_step(
-      0.0, 2.0, [&](double t) { return sum.reach(t); },
+      0.0, 2.0, [&](double t) { return sum.from(t).reach(); },
       [&](double t, double length) {
-        const auto p = sum.expanded(t, length);
+        const auto p = sum.from(t).expanded(length);
         for (const double part : {0.0, 0.4, 1.0})
           worst = std::max(worst, std::abs(p.at(part * length) - direct(t + part * length)));
         expect(t == end, "steps follow each other");
@@ -59,7 +59,7 @@ void steps() {
       });
   expect(worst < 1e-14, "a Taylor polynomial has the values of the sum within its reach");
   expect(end == 2 && count < 25, "steps become long as a fast term dies away");
-  expect(sum.reach(0) < 0.02 && sum.reach(1) > 0.2, "... and no longer counts");
+  expect(sum.reach() < 0.02 && sum.from(1).reach() > 0.2, "... and no longer counts");
 }
 
 /// Lower bounds over parts of two seconds, long and short, beside the lowest of many values.
@@ -73,7 +73,7 @@ void bounds() {
     for (double begin = 0; begin < 2; begin += length) {
       double lowest = sum.at(begin);
       for (int i = 1; i <= 64; ++i) lowest = std::min(lowest, sum.at(begin + i * length / 64));
-      const double least = sum.least(begin, length);
+      const double least = sum.from(begin).least(length);
       expect(least <= lowest, "a sum does not fall below its lower bound");
       if (length < 1e-3) spare = std::max(spare, lowest - least);
     }

@@ -244,8 +244,8 @@ MUTANTS = (
     Mutant(
         "a growing oscillation is bounded by its begin",
         "series/term_sum.hpp",
-        "amplitude_after(term, term.decay < 0 ? tau + length : tau)",
-        "amplitude_after(term, tau)",
+        "(decay < 0 ? exp(-decay * length) : Real(1))",
+        "Real(1)",
     ),
     Mutant(
         "skin without static friction carries nothing until the next breakpoint",

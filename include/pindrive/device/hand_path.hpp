@@ -27,7 +27,9 @@ struct Bend {
   double at(double s) const { return s * (1 - s) * (b[0] + s * (b[1] + s * b[2])); }
   /// Integral from 0 to s.
   double integral(double s) const {
-    return s * s * (b[0] / 2 + s * ((b[1] - b[0]) / 3 + s * ((b[2] - b[1]) / 4 - s * b[2] / 5)));
+    return s * s *
+           (0.5 * b[0] +
+            s * ((b[1] - b[0]) * (1.0 / 3) + s * (0.25 * (b[2] - b[1]) - 0.2 * s * b[2])));
   }
 };
 

@@ -57,10 +57,18 @@ class MonotonePieces {
   }
 
   template <class Trajectory>
+  double stretch(const Trajectory& along, double tau) const {
+    return -along.at(along.finger_force(), tau) / motion_->drive().finger.stiffness;
+  }
+  template <class Trajectory>
   Values values_of(const Trajectory& along, double tau, double x) const {
-    const Drive<double>& drive = motion_->drive();
-    x = drive.stops.within(x);
-    return {x, rigid_ ? x : -along.at(along.finger_force(), tau) / drive.finger.stiffness};
+    x = motion_->drive().stops.within(x);
+    return {x, rigid_ ? x : stretch(along, tau)};
+  }
+  template <class Trajectory>
+  double value_of(const Signal& of, const Trajectory& along, double tau) const {
+    if (of.skin && !rigid_) return of.sign * stretch(along, tau);
+    return of.sign * motion_->drive().stops.within(along.at(along.position(), tau));
   }
 
   void begin_piece(double time, const Values& now, const Segment<double>& segment, double begin) {
@@ -90,23 +98,20 @@ class MonotonePieces {
     return static_cast<std::size_t>(after - knots_.begin()) - 1;
   }
 
-  /// Calls f with the values at a time of a piece, whose trajectory is expanded once.
+  /// Calls f with a signal as a function of the time in a piece, whose trajectory is expanded once.
   template <class Function>
-  auto in_piece(std::size_t i, Function&& f) const {
+  auto in_piece(const Signal& of, std::size_t i, Function&& f) const {
     const Knot& knot = knots_[i];
     return motion_->along(*knot.segment, [&](const auto& along) {
-      return f([&](double t) {
-        const double tau = t - knot.segment_begin;
-        return values_of(along, tau, along.at(along.position(), tau));
-      });
+      return f([&](double t) { return value_of(of, along, t - knot.segment_begin); });
     });
   }
 
   /// First time in a piece at which f of a signal is no longer negative.
   template <class Function>
   double change(const Signal& of, std::size_t i, double low, double high, Function&& f) const {
-    return in_piece(i, [&](const auto& at) {
-      return sign_change([&](double t) { return f(value(of, at(t))); }, low, high);
+    return in_piece(of, i, [&](const auto& at) {
+      return sign_change([&](double t) { return f(at(t)); }, low, high);
     });
   }
 
@@ -158,7 +163,7 @@ class MonotonePieces {
     const std::size_t i = place(t, side);
     if (const Knot& knot = knots_[i + (side == Side::left ? 1 : 0)]; knot.time == t)
       return value(of, side == Side::left ? knot.before : knot.after);
-    return in_piece(i, [&](const auto& at) { return value(of, at(t)); });
+    return in_piece(of, i, [&](const auto& at) { return at(t); });
   }
 
   /// Largest value in [from, to], and its time.

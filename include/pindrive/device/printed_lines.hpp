@@ -28,8 +28,9 @@ struct PageAlongPath {
 
   /// Samples of the luminance per pixel of the way.
   static constexpr double samples_per_pixel = 4;
-  /// Bound of the speed in a stretch over its mean, for a stroke.
-  static constexpr double peak_over_mean = 2;
+  /// Parts of a stretch with bends, and bound of the speed in one over that at its ends and its middle.
+  static constexpr int parts_of_bend = 16;
+  static constexpr double over_known_speed = 1.0625;
   /// Part of a pixel below which a crossing is a grazed edge, neither line nor gap.
   static constexpr double grazed = 0.5;
 
@@ -43,6 +44,11 @@ struct PageAlongPath {
   /// Luminance of a spot above the threshold, in a stretch of the path.
   double lightness(Place spot, double t, std::size_t stretch) const {
     return raster.at(path.position(t, stretch) + spot) - threshold;
+  }
+
+  double speed_at(double t, std::size_t stretch) const {
+    const Vector v = path.velocity(t, stretch);
+    return std::sqrt(v.x * v.x + v.y * v.y);
   }
 
   /// Times at which a spot enters dark paper, and leaves it, by turns: edges between samples, s. At
@@ -61,14 +67,21 @@ struct PageAlongPath {
       before = t;
       return found.size() < most;
     };
+    // The begin of a part was sampled as the end of the one before.
+    if (!sample(path.begin(), 0)) return found;
     for (std::size_t i = 0; i < path.stretches(); ++i) {
-      const double lasts = path.times[i + 1] - path.times[i];
-      const double farthest = way.of_stretch(i) * (path.bend_x ? peak_over_mean : 1);
-      const double count = 1 + std::ceil(farthest * samples_per_pixel / raster.pixel);
-      // The begin of a stretch was sampled as the end of the one before.
-      for (double k = i == 0 ? 0 : 1; k < count; ++k)
-        if (!sample(path.times[i] + lasts * k / count, i)) return found;
-      if (!sample(path.times[i + 1], i)) return found;
+      const int parts = path.bend_x ? parts_of_bend : 1;
+      const double lasts = (path.times[i + 1] - path.times[i]) / parts;
+      for (int part = 0; part < parts; ++part) {
+        const double begin = path.times[i] + part * lasts;
+        const double speed = std::max(
+            {speed_at(begin, i), speed_at(begin + 0.5 * lasts, i), speed_at(begin + lasts, i)});
+        const double farthest = speed * lasts * (path.bend_x ? over_known_speed : 1);
+        const double count = 1 + std::ceil(farthest * samples_per_pixel / raster.pixel);
+        for (double k = 1; k < count; ++k)
+          if (!sample(begin + lasts * k / count, i)) return found;
+        if (!sample(part + 1 < parts ? begin + lasts : path.times[i + 1], i)) return found;
+      }
     }
     if (dark) found.push_back(path.end());
     return found;

@@ -198,8 +198,10 @@ class SeriesSegment {
     }
     if (!(end > clear)) return T(0);
     T zero = never;
+    const auto* first = guards.end();
     for (const auto& guard : guards)
       sign_changes(guard.path, 1, clear, end, std::min(zero, end), [&](T tau) {
+        if (tau < zero) first = &guard;
         zero = std::min(zero, tau);
         return false;
       });
@@ -208,8 +210,16 @@ class SeriesSegment {
     if (!(zero < never)) return end;
     // The last step begins before the zero, where all guards are positive.
     const T since = std::max(clear, T(zero - reach / 2));
-    const T within = std::min(T(motion.reach(plain(since))), T(end - since));
-    step_.emplace(motion.step(since, plain(std::max(within, T(zero - since)))));
+    const T rest = end - since;
+    const T length = std::max(std::min(T(motion.reach(plain(since))), rest), T(zero - since));
+    const auto is_alone = [&](const auto& guard) {
+      return &guard == first || guard.path.from(since).least(plain(length)) > 0;
+    };
+    if (length < rest && std::all_of(guards.begin(), guards.end(), is_alone)) {
+      paths.assign(guards, first);
+      return zero;
+    }
+    step_.emplace(motion.step(since, plain(length)));
     paths = mode.from(since).guards(*step_);
     return since;
   }

@@ -223,9 +223,9 @@ class SignIsolation {
     return true;
   }
 
-  /// Zero in a bracket, by Newton's iteration, kept inside.
+  /// Zero in a bracket, by Newton's iteration; by bisection where that leaves the bracket or does not halve its steps.
   Real root(Real low, Real high) const {
-    Real s = low + (high - low) / 2;
+    Real s = low + (high - low) / 2, last = high - low;  // last step
     for (int tries = 0; tries < 200 && low < s && s < high; ++tries) {
       Real sum = powers_[degree_], rate{0};
       for (int n = degree_; n-- > 0;) {
@@ -234,10 +234,14 @@ class SignIsolation {
       }
       if (sum == 0) return s;
       (beyond(sum) ? high : low) = s;
-      const Real newton = s - sum / rate;
-      const bool inside = newton > low && newton < high && tries % 4 != 3;
+      const Real newton = s - sum / rate, step = std::abs(newton - s);
+      const bool inside = newton > low && newton < high && step < last / 2;
       const Real next = inside ? newton : low + (high - low) / 2;
-      if (std::abs(next - s) <= last_digit<Real> * s) return next;
+      const Real ratio = inside ? step / last : Real(1);
+      last = inside ? step : high - low;
+      // Each ratio of two steps is the square of that before: the step that is left is below the last digit.
+      const bool close = last <= Real(near_root) * next;
+      if (close && last * ratio * ratio <= last_digit<Real> * next) return next;
       s = next;
     }
     return s;

@@ -218,11 +218,11 @@ class ByTerms {
   template <class Visitor>
   void each_part(T to, Visitor&& visit) const {
     const auto reach = [&](Real<T> tau) {
-      return std::min(motion_.reach(tau), finger_force_.reach(tau));
+      return std::min(motion_.reach(tau), finger_force_.from(tau).reach());
     };
     each_step(T(0), to, reach, [&](T from, Real<T> length) {
       return goes_on(visit, from, length,
-                     [&](const TermSum<T>& sum) { return sum.expanded(from, length); });
+                     [&](const TermSum<T>& sum) { return sum.from(from).expanded(length); });
     });
   }
   T largest_size(const TermSum<T>& sum) const { return sum.size(lasts_); }
@@ -250,8 +250,7 @@ class ByTerms {
 
   /// Sign of the first Taylor coefficient that is not zero; a value within rounding is zero.
   int side_after_start(const TermSum<T>& sum) const {
-    const Real<T> reach = sum.reach(Real<T>(0));
-    const Polynomial<T> p = sum.expanded(T(0), std::min(reach, plain(lasts_)));
+    const Polynomial<T> p = sum.expanded(std::min(sum.reach(), plain(lasts_)));
     const T known = rounding<T> * sum.size(T(0));
     for (const T& c : p.c)
       if (abs(c) > (&c == p.c.data() ? known : T(0))) return c > 0 ? 1 : -1;
@@ -263,7 +262,9 @@ class ByTerms {
   }
   T product_integral(const TermSum<T>& p, const TermSum<T>& q, T from, T to) const {
     T sum{0};
-    const auto reach = [&](Real<T> tau) { return std::min(p.reach(tau), q.reach(tau)); };
+    const auto reach = [&](Real<T> tau) {
+      return std::min(p.from(tau).reach(), q.from(tau).reach());
+    };
     each_step(from, to, reach, [&](T low, Real<T> length) {
       sum += gauss<T>([&](T tau) { return p.at(tau) * q.at(tau); }, low, low + length);
       return true;

@@ -21,6 +21,9 @@ inline constexpr T root_error = 2 * std::numeric_limits<T>::epsilon();
 template <class T>
 inline constexpr T last_digit = std::numeric_limits<T>::epsilon();
 
+/// Relative last step of Newton's iteration from which on it converges quadratically.
+inline constexpr double near_root = 1e-5;
+
 /// Relative error of the difference of two computed values: of two positions, of two friction
 /// forces of one sliding speed, of two velocities that reach zero together. Without it: fuzz
 /// --replay fails.

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include "pindrive/numbers/limits.hpp"
 #include "pindrive/series/series_equation.hpp"
@@ -89,17 +90,18 @@ class DrivenMotion {
   /// Step from τ on, of a length within reach.
   SeriesStep<T> step(T tau, Real<T> length) const {
     SeriesStep<T> found;
-    found.position = position.expanded(tau, length);
-    found.velocity = velocity.expanded(tau, length);
-    found.skin = skin.expanded(tau, length);
-    found.stick_force = stick_force.expanded(tau, length);
-    found.speed = speed.expanded(tau, length);
+    found.position = position.from(tau).expanded(length);
+    found.velocity = velocity.from(tau).expanded(length);
+    found.skin = skin.from(tau).expanded(length);
+    found.stick_force = stick_force.from(tau).expanded(length);
+    found.speed = speed.from(tau).expanded(length);
     return found;
   }
   /// Longest step after τ over which all quantities and both loads are their Taylor polynomials, s.
   Real<T> reach(Real<T> tau) const {
-    Real<T> least = std::min({velocity.reach(tau), skin.reach(tau), plate_force.reach(tau),
-                              stick_force.reach(tau), speed.reach(tau)});
+    Real<T> least = std::numeric_limits<Real<T>>::infinity();
+    for (const TermSum<T>* sum : {&velocity, &skin, &plate_force, &stick_force, &speed})
+      least = std::min(least, sum->from(tau).reach());
     for (const Curve<T>& load : loads_)
       if (!load.straight())
         least = std::min(least, load.piece->reach(load.since + tau, series_order, longest_input));

@@ -29,7 +29,7 @@ class SeriesFlow : public SeriesStep<T> {
   using SeriesStep<T>::speed_bound, SeriesStep<T>::falling_plate, SeriesStep<T>::falling_finger;
 
   /// Expands the mode at a state, up to a limit (s; may be infinite); `within_step`: the limit is
-  /// known to lie within one step.
+  /// known to lie within one step, whose error has been bounded.
   SeriesFlow(const SeriesEquation<T>& equation, const SeriesState<T>& start, T limit,
              bool within_step = false) {
     const Real farthest = plain(limit);
@@ -42,7 +42,6 @@ class SeriesFlow : public SeriesStep<T> {
     expand(equation, start, step);
     if (within_step) {
       this->rescale(farthest / step);
-      bound(equation);
       this->trim();
       return;
     }
@@ -194,7 +193,8 @@ class SeriesFlow : public SeriesStep<T> {
     v[0] = e.held ? e.surface.value : start.v;
     y[0] = start.skin;
     const bool falls = e.plate_falling.present();
-    const T side = T(sense_of_path());
+    const T side = T(sense_of_path()), per_mass = 1 / e.mass;
+    T per_speed{0};                 // 1/r
     std::array<T, N + 1> friction;  // F d + S u
     for (int n = 0;; ++n) {
       e.follow(y, v, n, T(step));
@@ -207,8 +207,9 @@ class SeriesFlow : public SeriesStep<T> {
         d[n] = n == 0 ? -side * path_.along : T(0);
       } else {
         const T squares = across_.square(n) + inner_square(u_, n) - inner_square(r, n);
-        r[n] = n == 0 ? sqrt(squares + u * u) : (squares / 2 + u_[0] * u) / r[0];
-        d[n] = (u - sum_of_products(r, d, n, 1, n)) / r[0];
+        r[n] = n == 0 ? sqrt(squares + u * u) : (squares / 2 + u_[0] * u) * per_speed;
+        if (n == 0) per_speed = 1 / r[0];
+        d[n] = (u - sum_of_products(r, d, n, 1, n)) * per_speed;
       }
       friction[n] = e.plate_force * d[n] + e.plate_slope * u;
       if (falls) friction[n] += directed_falling(e, n, n);
@@ -221,7 +222,7 @@ class SeriesFlow : public SeriesStep<T> {
       if (e.finger_falling.present()) forces -= this->falling_at_finger(e, n);
       if (e.held) stick_force.c[n] = e.mass * surface_.rate(n) - forces;
       if (n == N) return;
-      v[n + 1] = e.held ? surface_[n + 1] : part * forces / e.mass;
+      v[n + 1] = e.held ? surface_[n + 1] : part * forces * per_mass;
       if (n == 0 && !e.held && !isnan(start.acceleration)) v[1] = start.acceleration * step;
     }
   }

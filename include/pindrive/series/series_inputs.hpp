@@ -10,7 +10,7 @@
 
 namespace pindrive::detail {
 
-/// Coefficients of an input in the time σ = τ/step: two for a line, else all up to the order of a
+/// Coefficients of an input in the time σ = τ/step: up to the degree of a polynomial or, with terms, the order of a
 /// series.
 template <class T>
 class InputSeries {
@@ -21,8 +21,8 @@ class InputSeries {
   InputSeries() = default;
   InputSeries(const Curve<T>& curve, Real step) : curve_(curve), step_(step) {
     if (!curve.straight()) {
-      degree_ = N + 1;
-      curve.piece->expand(curve.since, T(step), c_, N + 1);
+      degree_ = curve.piece->count == 0 ? InputPiece<T>::degree : N + 1;
+      curve.piece->expand(curve.since, T(step), c_, degree_);
     }
     c_[0] = curve.value;
     c_[1] = curve.rate * step;

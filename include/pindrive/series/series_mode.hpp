@@ -165,6 +165,13 @@ class SeriesMode {
         if (guard.zero < (first == nullptr ? never : first->zero)) first = &guard;
       return first;
     }
+    /// Takes the guards of another list without their paths; a given guard is zero at 0.
+    template <class Other>
+    void assign(const Guards<Other>& others, const Guard<Other>* zero) {
+      count_ = 0;
+      for (const Guard<Other>& guard : others)
+        list_[count_++] = {{}, guard.bound, guard.plate, guard.side, &guard == zero ? T(0) : never};
+    }
 
    private:
     friend class SeriesMode;
@@ -190,7 +197,7 @@ class SeriesMode {
     std::array<Guard<Path>, 8> list_;
     int count_{0};
   };
-  /// Guards of the mode along a series step, with their zeros, or a motion in closed form; those of a stick force
+  /// Guards of the mode along a series step, with their zeros, or a motion in closed form; guards of a stick force
   /// come first.
   template <class Along>
   Guards<typename Along::Path> guards(const Along& along, const Reached& at = {}) const {

@@ -95,33 +95,38 @@ class TermSum {
     return most;
   }
 
-  /// Lower bound of the sum, or of its negative with a side of −1, over a length of time after τ, s: by Taylor terms of
-  /// low order, or by the amplitude of a term that turns far in that time.
-  Real least(Real tau, Real length, int side = 1) const {
+  /// The sum with its time counted from τ on.
+  TermSum from(const T& tau) const {
+    TermSum later;
+    later.polynomial = moved_polynomial(tau);
+    for (const InputTerm<T>& term : *this) later.terms_[later.count_++] = moved(term, tau);
+    return later;
+  }
+
+  /// Lower bound of the sum, or of its negative with a side of −1, over a length of time, s: by Taylor terms of low order,
+  /// or by the amplitude of a term that turns far in that time.
+  Real least(Real length, int side = 1) const {
     std::array<Real, degree + 1> p{};
-    const std::array<T, degree + 1> later = moved_polynomial(tau);
     Real power(side), missed{0}, size{0};
     for (int n = 0; n <= degree; ++n, power *= length) {
-      p[n] = plain(later[n]) * power;
+      p[n] = plain(polynomial[n]) * power;
       size += std::abs(p[n]);
     }
     for (const InputTerm<T>& term : *this) {
+      const Real decay = plain(term.decay), part = rate_of(term) * length;
       // A term that grows, as under friction that falls with the speed, is largest at the end.
-      const Real amplitude = amplitude_after(term, term.decay < 0 ? tau + length : tau);
-      const Real part = rate_of(term) * length;
+      const Real amplitude = amplitude_of(term) * (decay < 0 ? exp(-decay * length) : Real(1));
       size += amplitude;
       Real beyond = amplitude;
       for (int n = 0; n <= degree && beyond > 0; ++n) beyond *= part / Real(n + 1);
       if (beyond < amplitude) {
         missed += beyond;
-        const InputTerm<T> now = moved(term, tau);
-        add_taylor(InputTerm<Real>{side * plain(now.cosine), side * plain(now.sine),
-                                   plain(now.decay), plain(now.frequency)},
+        add_taylor(InputTerm<Real>{side * plain(term.cosine), side * plain(term.sine), decay,
+                                   plain(term.frequency)},
                    length, degree, p);
       } else if (term.frequency == 0) {  // from one value to another
         const Real start = side * plain(term.cosine);
-        p[0] += std::min(start * exp(-plain(term.decay) * tau),
-                         start * exp(-plain(term.decay) * (tau + length)));
+        p[0] += std::min(start, start * exp(-decay * length));
       } else {
         missed += amplitude;
       }
@@ -129,33 +134,31 @@ class TermSum {
     const auto b = bernstein(p, degree);
     return *std::min_element(b.begin(), b.end()) - missed - rounding<Real> * size;
   }
-  /// Time after τ over which its Taylor terms beyond the order of a series are within rounding, s.
-  Real reach(Real tau) const {
-    const Real whole = largest_after(tau);
+  /// Time over which its Taylor terms beyond the order of a series are within rounding, s.
+  Real reach() const {
+    const Real whole = largest();
     Real least = std::numeric_limits<Real>::infinity();
     for (const InputTerm<T>& term : *this) {
-      const Real amplitude = amplitude_after(term, tau);
-      const Real rate = rate_of(term);
+      const Real amplitude = amplitude_of(term), rate = rate_of(term);
       if (amplitude > negligible * whole && rate > 0)
         least = std::min(
             least, Real(longest_input) / rate * exp(log(whole / amplitude) / (series_order + 1)));
     }
     return least;
   }
-  /// Its Taylor polynomial from τ on, over a step within its reach.
-  Polynomial<T> expanded(T tau, Real step) const {
+  /// Its Taylor polynomial over a step within its reach.
+  Polynomial<T> expanded(Real step) const {
     Polynomial<T> p;
     p.span = step;
-    const std::array<T, degree + 1> later = moved_polynomial(tau);
     T power{1};
-    for (int n = 0; n <= degree; ++n, power *= step) p.c[n] = later[n] * power;
+    for (int n = 0; n <= degree; ++n, power *= step) p.c[n] = polynomial[n] * power;
     p.degree = degree;
-    const Real whole = largest_after(plain(tau));
+    const Real whole = largest();
     for (const InputTerm<T>& term : *this) {
-      if (!(amplitude_after(term, plain(tau)) > negligible * whole)) continue;
-      // Negligible in the sums by whose reach the step was chosen.
-      if (rate_of(term) * step > farthest_reach) continue;
-      add_taylor(moved(term, tau), step, series_order, p.c);
+      // Not a term that is negligible in the sums by whose reach the step was chosen.
+      if (!(amplitude_of(term) > negligible * whole) || rate_of(term) * step > farthest_reach)
+        continue;
+      add_taylor(term, step, series_order, p.c);
       p.degree = series_order;
     }
     Real tail{0};
@@ -183,19 +186,17 @@ class TermSum {
   static constexpr Real farthest_reach = 5.1 * longest_input;
 
   static Real rate_of(const InputTerm<T>& term) {
-    return std::hypot(plain(term.decay), plain(term.frequency));
+    return sqrt(plain(term.decay) * plain(term.decay) +
+                plain(term.frequency) * plain(term.frequency));
   }
-  /// Bound of a term from τ on.
-  static Real amplitude_after(const InputTerm<T>& term, Real tau) {
-    return (std::abs(plain(term.cosine)) + std::abs(plain(term.sine))) *
-           exp(-plain(term.decay) * tau);
+  /// Bound of a term.
+  static Real amplitude_of(const InputTerm<T>& term) {
+    return std::abs(plain(term.cosine)) + std::abs(plain(term.sine));
   }
-  /// Size of the polynomial at τ and of the terms from there on.
-  Real largest_after(Real tau) const {
-    Real sum{0};
-    for (int n = degree; n >= 0; --n) sum = sum * tau + plain(polynomial[n]);
-    sum = std::abs(sum);
-    for (const InputTerm<T>& term : *this) sum += amplitude_after(term, tau);
+  /// Size of the constant and of the terms.
+  Real largest() const {
+    Real sum = std::abs(plain(polynomial[0]));
+    for (const InputTerm<T>& term : *this) sum += amplitude_of(term);
     return sum;
   }
 
@@ -204,14 +205,24 @@ class TermSum {
   static void add_taylor(const InputTerm<Number>& term, Real step, int order, Coefficients& c) {
     // Real part of (cosine − i·sine) e^((iΩ − δ)τ), whose n-th coefficient follows from the last.
     Number real = term.cosine, imaginary = -term.sine;
+    const Number decay = term.decay * step, turn = term.frequency * step;
+    const Real known = negligible * (std::abs(plain(real)) + std::abs(plain(imaginary)));
     for (int n = 0; n <= order; ++n) {
       c[n] += real;
-      const Number next = step / Number(n + 1);
-      const Number turned = -(term.decay * real + term.frequency * imaginary) * next;
-      imaginary = (term.frequency * real - term.decay * imaginary) * next;
+      const Real part = inverses[n];
+      const Number turned = -(decay * real + turn * imaginary) * part;
+      imaginary = (turn * real - decay * imaginary) * part;
       real = turned;
+      // Later ones are smaller.
+      if (n >= farthest_reach && std::abs(plain(real)) + std::abs(plain(imaginary)) < known) return;
     }
   }
+  /// 1/(n + 1), for the orders n of a series.
+  static constexpr std::array<Real, series_order + 1> inverses = [] {
+    std::array<Real, series_order + 1> each{};
+    for (int n = 0; n <= series_order; ++n) each[n] = Real(1) / Real(n + 1);
+    return each;
+  }();
 
   /// The term with its time counted from τ on.
   static InputTerm<T> moved(const InputTerm<T>& term, const T& tau) {
@@ -259,15 +270,15 @@ void sign_changes(const TermSum<T>& sum, int side, const T& from, const T& to, c
   };
   T length = to - from;
   for (T low = from; goes_on && low < until;) {
-    const T reach = sum.reach(plain(low));
     length = std::min(length, T(to - low));
-    bool clear = sum.least(plain(low), plain(length), side) > 0;
-    while (!clear && length > reach) {
+    const TermSum<T> rest = sum.from(low);
+    bool clear = rest.least(plain(length), side) > 0;
+    for (const T reach = clear ? length : T(rest.reach()); !clear && length > reach;) {
       length = std::max(T(length / 4), reach);
-      clear = sum.least(plain(low), plain(length), side) > 0;
+      clear = rest.least(plain(length), side) > 0;
     }
     if (!clear) {
-      const Polynomial<T> p = sum.expanded(low, plain(length));
+      const Polynomial<T> p = rest.expanded(plain(length));
       // A change within the rounding of the end of the step before.
       const Real<T> value = side * plain(p.c[0]);
       if (low > from && (value < 0 || (value == 0 && side * plain(p.c[1]) < 0)) && !change(low))
