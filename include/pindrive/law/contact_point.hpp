@@ -50,6 +50,8 @@ struct ContactPoint {
     return range.linear() ? T(0) : range.falling.curvature(sliding_speed(v));
   }
   T stick_limit() const { return contact.static_limit * load.value; }  ///< largest stick force, N
+  /// True if the contact exerts no stick force until the next breakpoint.
+  bool powerless() const { return contact.static_limit == 0 || load.is_zero(); }
 
   /// Takes a candidate as the mode.
   void choose(int index) {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
+#include <utility>
 
 #include "pindrive/law/contact_point.hpp"
 #include "pindrive/law/guards.hpp"
@@ -191,7 +193,7 @@ class Selection {
       return false;
     Path<T> most = limit;
     most.curvature = own_limit * on.load.second() + other_limit * other.load.second();
-    const bool powerless = own_limit == 0 && other_limit == 0;
+    const bool powerless = on.powerless() && (!other.stuck() || other.powerless());
     if (powerless && relative_beginning(on.surface) != 0) return false;
     T scale;
     selected_.stick_force = holding_force_from(force, on, other, scale);
@@ -265,7 +267,8 @@ class Selection {
       const T own = side.force_rate(pin_.state.v, selected_.acceleration).value,
               jerk = own - needed.drift;
       const bool none = abs(jerk) <= rounding<T> * (scale + abs(own));
-      const bool frictionless = side.contact.static_limit == 0 && side.start.friction == 0;
+      const bool frictionless =
+          side.powerless() && (side.start.friction == 0 || side.load.is_zero());
       const T third = needed.curvature == 0 && frictionless ? relative_beginning(side.surface)
                                                             : -needed.curvature;
       return side.is_admissible(pin_.state, T(0), none ? T(0) : jerk, third);
@@ -306,10 +309,14 @@ class Selection {
     const auto plate = pin_.plate.surface.template coefficients<beginning_orders>();
     const auto force = pin_.force.template coefficients<beginning_orders>();
     auto relative = surface.template coefficients<beginning_orders>();
+    const T skin = pin_.finger.elastic() ? pin_.drive.finger.stiffness : T(0);
     T x = pin_.state.x, v = pin_.state.v;
+    T stretching = pin_.finger.elastic() ? pin_.finger.force(pin_.state) : T(0);
     for (std::size_t n = 0; n + 1 < beginning_orders; ++n) {
       const T inertia = pin_.drive.mass * T(n + 1);
-      const T next = plate[n + 1] + (force[n] - damping() * v - stiffness() * x) / inertia;
+      const T pull = force[n] + stretching - damping() * v - stiffness() * x;
+      const T next = plate[n + 1] + pull / inertia;
+      stretching = -skin * v / T(n + 1);
       x = v / T(n + 1);
       v = next;
       relative[n + 1] = v - relative[n + 1];
@@ -342,7 +349,25 @@ class Selection {
     const auto across = pin_.plate.across.template coefficients<beginning_orders>();
     const T d = pin_.plate.direction, ratio = d / sqrt(1 - d * d);
     for (std::size_t n = 0; n < beginning_orders; ++n) velocity[n] += ratio * abs(across[n]);
+    // A pull that begins at zero turns the direction from zero.
+    if (d == 0 && pin_.plate.start.friction > 0) {
+      const auto [turn, order] = beginning_of_pull();
+      for (std::size_t n = 0; n + order < beginning_orders; ++n)
+        velocity[n + order] +=
+            turn / (pin_.plate.load.value * pin_.plate.start.friction) * abs(across[n]);
+    }
     return {2 * velocity[2], third_or_later(velocity)};
+  }
+  /// First coefficient of the force on a pin that moves as the plate, beside friction, after that of order 0; and its
+  /// order. 0 without one.
+  std::pair<T, std::size_t> beginning_of_pull() const {
+    const auto force = pin_.force.template coefficients<beginning_orders>();
+    const auto plate = pin_.plate.surface.template coefficients<beginning_orders>();
+    for (std::size_t n = 1; n + 1 < beginning_orders; ++n)
+      if (const T pull = force[n] - damping() * plate[n] - stiffness() * plate[n - 1] / T(n);
+          pull != 0)
+        return {pull, n};
+    return {T(0), beginning_orders};
   }
   /// Derivatives of the force on a slipping pin.
   ForceRate<T> force_rate() const {

@@ -285,6 +285,18 @@ bool follows_plate(const SeriesEquation<T>& e, const SeriesState<T>& start) {
   if (start.v != e.plate_velocity.value || e.across.value != 0 || e.across.rate != 0) return false;
   return start.acceleration == e.plate_velocity.rate;
 }
+/// Velocity relative to the plate that a pin at its friction limit has a time after the plate began to slide across, m/s.
+/// All friction balances the pull, so that the pin lags: m u' = λF w²/(2u²) as long as w is small beside u.
+template <class T>
+T lag_at_limit(const SeriesEquation<T>& e, T pull, T time) {
+  const T friction = e.load.value * (e.plate_force + e.plate_falling.excess);
+  if (abs(pull) < (1 - difference_error<T>)*friction) return T(0);
+  const auto across = e.across.template coefficients<beginning_orders>();
+  const auto first = std::find_if(across.begin(), across.end(), [](const T& w) { return w != 0; });
+  const T w = e.across.at(time), order = T(first - across.begin());
+  const T cube = T(1.5) * friction / e.mass * w * w * time / (2 * order + 1);
+  return cube > 0 ? (pull < 0 ? -1 : 1) * exp(log(cube) / 3) : T(0);
+}
 /// Step of a pin at its friction limit, which the plate takes along for a short time.
 template <class T>
 SeriesStep<T> carried_by_plate(SeriesEquation<T> e, const SeriesState<T>& start, T limit) {
@@ -293,7 +305,10 @@ SeriesStep<T> carried_by_plate(SeriesEquation<T> e, const SeriesState<T>& start,
   e.held = true;
   e.side = pull < 0 ? -1 : 1;
   e.surface = e.plate_velocity;
-  return SeriesFlow<T>(e, start, limit);
+  SeriesStep<T> step = SeriesFlow<T>(e, start, limit);
+  step.velocity.degree = std::max(step.velocity.degree, 2);
+  step.velocity.c[2] += lag_at_limit(e, pull, T(step.span()));
+  return step;
 }
 /// Step of a pin that follows the plate: its series diverges, and holds to rounding over a short time.
 template <class T>
