@@ -13,6 +13,7 @@ CASES: Final[tuple[Callable[[], Case], ...]] = (
     shaken.aster,
     friction_curve.msl,
     forced.den_hartog,
+    forced.den_hartog_lag,
     belt.stick_slip,
     end_stop.aster,
 )

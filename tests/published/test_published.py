@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import cos, pi, radians
+from math import cos, degrees, pi, radians
 
 import numpy as np
 import pytest
@@ -15,7 +15,9 @@ from .cases import CASES
 from .figure import figure, part
 from .page import BEGIN, END, PAGE, computed, picture, section, with_cases
 
-EACH = pytest.mark.parametrize("compute", CASES, ids=lambda case: case.__module__.split(".")[-1])
+EACH = pytest.mark.parametrize(
+    "compute", CASES, ids=lambda case: f"{case.__module__}.{case.__name__}"
+)
 """A test of each case, which is computed when it is first called, not when tests are collected."""
 
 
@@ -39,10 +41,11 @@ def test_published_numbers_are_met_to_what_their_source_justifies(
 
 
 def test_every_data_file_has_its_case_and_its_source(every: list[Case]) -> None:
-    files = {path.stem for path in DATA.glob("*.json")}
-    assert files == {case.key for case in every}
-    for name in files:
-        assert {"title", "authors", "where", "numbers"} <= load(name)["source"].keys()
+    sources = {path.stem: load(path.stem)["source"] for path in DATA.glob("*.json")}
+    assert sources.keys() <= {case.key for case in every}
+    assert all(case.source in sources.values() for case in every)
+    for source in sources.values():
+        assert {"title", "authors", "where", "numbers"} <= source.keys()
 
 
 def test_published_case_names_what_cannot_be_expressed(every: list[Case]) -> None:
@@ -157,6 +160,10 @@ def published_points() -> dict[str, tuple[str, list[float]]]:
         ),
         "aster-sdnd104": ("published", [float(text) for text in power[:-1]]),
         "den-hartog": ("pindrive", [number.computed for number in forced.den_hartog().numbers]),
+        "den-hartog-lag": (
+            "pindrive",
+            [degrees(number.computed) for number in forced.den_hartog_lag().numbers],
+        ),
         "msl-friction-stop2": ("its turning points", [s for _, s in curve]),
         "stick-slip": ("published amplitude", [1e3 * (middle + amplitude)] * 2),
     }
