@@ -31,7 +31,7 @@ class Random {
 };
 
 /// Family of drives: an aligned or oblique hand, end stops, a compliant finger with a friction curve, inputs that are
-/// functions, or friction that falls by a law; any: one drive in ten has each. Strokes: a hand at an angle.
+/// functions, friction that falls by a law, or strokes of a hand at an angle; any: one drive in ten has each.
 enum class Family { any, aligned, oblique, stops, skin, functions, laws, strokes };
 
 class Draw {
@@ -86,7 +86,7 @@ class Draw {
     if (family_ == Family::functions || (family_ == Family::any && chance(0.1)))
       functions(c, omega, length);
     if (family_ == Family::laws || (family_ == Family::any && chance(0.1))) laws(c);
-    if (family_ == Family::strokes) strokes(c);
+    if (family_ == Family::strokes || (family_ == Family::any && chance(0.1))) strokes(c);
     return c;
   }
 

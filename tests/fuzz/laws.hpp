@@ -59,10 +59,14 @@ inline Place place(const pd::Motion<double>& motion, double t) {
   return place(motion, *at.segment, at.tau);
 }
 /// The largest position and velocity as its segments begin and at times ever closer to that, as what springs back
-/// may be fastest soon.
+/// may be fastest soon. A transverse velocity counts: the sliding direction has its rounding.
 inline Place size(const pd::Motion<double>& motion, double duration) {
   Place most{};
+  const double natural_time = std::sqrt(motion.drive().mass / motion.drive().stiffness);
   for (const auto& segment : motion) {
+    const double across = std::abs(motion.inputs().across_velocity.from(segment.begin).value);
+    most[0] = std::max(most[0], across * natural_time);
+    most[1] = std::max(most[1], across);
     const double span = std::min(segment.end, duration) - segment.begin;
     motion.along(segment, [&](const auto& along) {
       for (const double part : {0.0, 1.0 / 512, 1.0 / 128, 1.0 / 32, 1.0 / 8, 1.0 / 2}) {

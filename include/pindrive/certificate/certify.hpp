@@ -134,6 +134,9 @@ class Certifier {
         scales_.force =
             std::max({scales_.force, abs(drive_.mass * s.a), abs(drive_.damping * s.v),
                       abs(s.plate_force), abs(s.finger_force), abs(evaluated.force.at(tau))});
+        // With its transverse part, of which the axial part has the rounding.
+        if (evaluated.oblique())
+          scales_.force = std::max(scales_.force, evaluated.load.at(tau) * drive_.plate.kinetic);
         if (drive_.stops.present() && !drive_.stops.rigid())
           scales_.stop = std::max(
               {scales_.stop, drive_.stops.stiffness * abs(s.x), drive_.stops.damping * abs(s.v)});

@@ -42,20 +42,21 @@ class SegmentGuards {
   explicit SegmentGuards(const Evaluated& segment) : evaluated_(segment), along_(segment.along) {
     const Drive<T>& drive = segment.drive;
     const Mode& mode = segment.mode();
+    const T of_plate = std::max(segment.scales.v, segment.scales.across);
     if (!segment.oblique())
       slipping(drive.plate, mode.plate, mode.plate_branch,
-               along_.velocity() + T(-1) * along_.input(segment.plate_velocity));
+               along_.velocity() + T(-1) * along_.input(segment.plate_velocity), of_plate);
     else if constexpr (std::is_same_v<Trajectory, BySeries<T>>)
-      within(drive.plate.branch(mode.plate_branch), along_.sliding_speed(), false,
-             std::max(segment.scales.v, segment.scales.across));
+      within(drive.plate.branch(mode.plate_branch), along_.sliding_speed(), false, of_plate);
     // A slider is slower than the pin by what its skin stretches.
     if (drive.finger.compliant()) {
       const int others = count_;
       slipping(drive.finger, mode.finger, mode.finger_branch,
-               along_.velocity() + 1 / drive.finger.stiffness * segment.finger_rate);
+               along_.velocity() + 1 / drive.finger.stiffness * segment.finger_rate,
+               segment.scales.v);
       for (int i = others; i < count_; ++i) watches_[i].known = segment.slider_unsure;
     } else {
-      slipping(drive.finger, mode.finger, mode.finger_branch, along_.velocity());
+      slipping(drive.finger, mode.finger, mode.finger_branch, along_.velocity(), segment.scales.v);
     }
     beyond_stops(drive.stops, mode.stop);
     if (held_by_stop(drive, mode)) return;
@@ -93,11 +94,11 @@ class SegmentGuards {
       watch(along_.above(T(-1) * speed, -branch.to), &Certificate<T>::sliding_sign, scale);
   }
   template <class Path>
-  void slipping(const Contact<T>& contact, ContactState does, int branch, const Path& sliding) {
+  void slipping(const Contact<T>& contact, ContactState does, int branch, const Path& sliding,
+                T scale) {
     if (!is_slip(does)) return;
     const int last = std::max(contact.branches - 1, 0);
-    within(contact.branch(std::clamp(branch, 0, last)), T(sign(does)) * sliding, true,
-           evaluated_.scales.v);
+    within(contact.branch(std::clamp(branch, 0, last)), T(sign(does)) * sliding, true, scale);
   }
   void sticking(const Quantity& force, const Quantity& most) {
     const T scale = evaluated_.scales.force;
