@@ -196,10 +196,10 @@ def test_a_picture_is_refused_before_it_is_read(tmp_path: Path) -> None:
 def test_segments_are_counted_as_the_pins_are_followed(monkeypatch: pytest.MonkeyPatch) -> None:
     """The first pin exceeds the budget: pins that have not begun never begin."""
     followed: list[int] = []
-    monkeypatch.setattr(budgets, "SEGMENTS", replace(budgets.SEGMENTS, most=5))
+    monkeypatch.setattr(budgets, "SEGMENTS", replace(budgets.SEGMENTS, most=4))
     path = strokes([(0.0005, 0.004), (0.0095, 0.004)], 0.1)
     words = (
-        r"the segments of the motions of all pins must be at most 5, got \d+ \(after 1 of 8 pins\)"
+        r"the segments of the motions of all pins must be at most 4, got \d+ \(after 1 of 8 pins\)"
     )
     with pytest.raises(ValueError, match=words):
         scan(device(8), tall(), path, threads=1, progress=lambda done, of: followed.append(done))
