@@ -288,18 +288,16 @@ bool follows_plate(const SeriesEquation<T>& e, const SeriesState<T>& start) {
 /// Velocity relative to the plate that a pin at its friction limit has a time after the plate began to slide across, m/s.
 /// All friction balances the pull, so that the pin lags: m u' = λF w²/(2u²) as long as w is small beside u.
 template <class T>
-T lag_at_limit(const SeriesEquation<T>& e, T pull, T time) {
+[[gnu::noinline]] T lag_at_limit(const SeriesEquation<T>& e, T pull, T time) {
   const T friction = e.load.value * (e.plate_force + e.plate_falling.excess);
   if (abs(pull) < (1 - difference_error<T>)*friction) return T(0);
-  const auto across = e.across.template coefficients<beginning_orders>();
-  const auto first = std::find_if(across.begin(), across.end(), [](const T& w) { return w != 0; });
-  const T w = e.across.at(time), order = T(first - across.begin());
+  const T w = e.across.at(time), order = time * e.across.rate_at(time) / w;
   const T cube = T(1.5) * friction / e.mass * w * w * time / (2 * order + 1);
   return cube > 0 ? (pull < 0 ? -1 : 1) * exp(log(cube) / 3) : T(0);
 }
 /// Step of a pin at its friction limit, which the plate takes along for a short time.
 template <class T>
-SeriesStep<T> carried_by_plate(SeriesEquation<T> e, const SeriesState<T>& start, T limit) {
+[[gnu::noinline]] SeriesStep<T> carried_by_plate(SeriesEquation<T> e, const SeriesState<T>& start, T limit) {
   const T pull = e.force.value - e.mass * e.plate_velocity.rate - e.damping * start.v -
                  e.stiffness * start.x - e.skin_factor.value * start.skin;
   e.held = true;
