@@ -297,7 +297,8 @@ template <class T>
 }
 /// Step of a pin at its friction limit, which the plate takes along for a short time.
 template <class T>
-[[gnu::noinline]] SeriesStep<T> carried_by_plate(SeriesEquation<T> e, const SeriesState<T>& start, T limit) {
+[[gnu::noinline]] SeriesStep<T> carried_by_plate(SeriesEquation<T> e, const SeriesState<T>& start,
+                                                 T limit) {
   const T pull = e.force.value - e.mass * e.plate_velocity.rate - e.damping * start.v -
                  e.stiffness * start.x - e.skin_factor.value * start.skin;
   e.held = true;
