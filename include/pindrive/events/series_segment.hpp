@@ -65,8 +65,9 @@ class SeriesSegment {
       step_.emplace(series_step(equation, start, span));
       paths = mode.guards(*step_, reached);
     }
+    const SeriesStep<T>* const last = step_ ? &*step_ : nullptr;
     segment.driven = driven_.has_value();
-    segment.eliminated = step_ ? step_->eliminated : EliminatedPart::none;
+    segment.eliminated = last ? last->eliminated : EliminatedPart::none;
     const bool held = held_by_stop(drive, segment.mode);
     guards.clear();
     for (const auto& guard : paths)
@@ -76,13 +77,14 @@ class SeriesSegment {
     const T left = abs(equation.across.at(span)) + abs(equation.plate_velocity.at(span));
     stops_ = equation.held && equation.side == 0 &&
              left <= difference_error<T> * (segment.begin + span) * turns;
-    const T end = step_ ? since + step_->span() : since;
+    const T end = last ? since + last->span() : since;
     first_ = guards.earliest_known(end);
     // An immediate end may be deferred to the end of the step, as to a breakpoint.
     const bool ends_early = end < (1 - rounding<T>)*span;
     const T breakpoint = ends_early && first_ > 0 ? never : end;
     const auto speed_of = [&](bool on_plate) {
-      return abs((on_plate ? step_->speed : has_slider_state ? step_->skin : step_->velocity).c[0]);
+      if (!last) return T(0);
+      return abs((on_plate ? last->speed : has_slider_state ? last->skin : last->velocity).c[0]);
     };
     // A function has the rounding of its terms; a pin that creeps has it in its velocity.
     const auto unsure = [&](const Curve<T>& input) {
@@ -102,10 +104,13 @@ class SeriesSegment {
     if (equation.side == 0 && first_ < end && !ends_early &&
         rests(equation.plate_velocity, first_, span) && rests(equation.across, first_, span))
       first_ = end;
-    const T velocity = !driven_        ? step_->velocity.c[0]
-                       : equation.held ? equation.surface.value
-                                       : start.v;
-    const T stick = driven_ ? driven_->stick_force.start() : step_->stick_force.c[0];
+    T velocity = equation.held ? equation.surface.value : start.v, stick{0};
+    if (driven_) {
+      stick = driven_->stick_force.start();
+    } else if (last) {
+      velocity = last->velocity.c[0];
+      stick = last->stick_force.c[0];
+    }
     const T of_plate = plate.stuck() && !held ? stick : plate.force(state);
     const T of_finger = !finger.stuck() || held ? finger.force(state)
                         : plate.stuck()         ? T(0)
@@ -130,8 +135,9 @@ class SeriesSegment {
 
   /// Time at which a moving pin turns; infinite if the pin does not turn within the step.
   T turning_point() const {
-    if (step() == nullptr || step_->velocity.c[0] == 0) return never;
-    const Polynomial<T>& velocity = step_->velocity;
+    const SeriesStep<T>* const now = step();
+    if (now == nullptr || now->velocity.c[0] == 0) return never;
+    const Polynomial<T>& velocity = now->velocity;
     return first_zero(velocity.c[0] > 0 ? velocity : T(-1) * velocity);
   }
 
