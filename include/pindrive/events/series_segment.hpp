@@ -175,9 +175,11 @@ class SeriesSegment {
   using Reached = typename SeriesMode<T>::Reached;
   using Paths = typename SeriesMode<T>::template Guards<Polynomial<T>>;
 
-  /// Begins a motion in closed form, until the first step in which a guard has a zero, with the guards along that
-  /// step; returns its begin. Where a guard is zero at the begin, a series step decides how the motion leaves it; the motion
-  /// is that step if a guard has a zero in it.
+  /// Begins a motion in closed form that lasts until a guard is zero, or for `longest`; nothing where it is not used.
+  ///
+  /// Sets the guards along a last step, with their zeros, and returns the begin of that step: the zero itself where no
+  /// other guard may be zero. Where a guard is zero at the begin, a series step decides how the motion leaves it; the
+  /// step is the segment if a guard has a zero in it.
   T drive_on(const SeriesMode<T>& mode, const SeriesEquation<T>& equation,
              const SeriesState<T>& start, const Reached& reached, T largest, T span, T longest,
              Paths& paths) {
