@@ -73,6 +73,36 @@ void changes(const pd::Branch<double>& of) {
   expect(speeds, "closing() and parting() are the derivatives of ρ²/2");
 }
 
+/// Second derivative of the force where velocities and load have second derivatives of their own.
+void bends_of_functions() {
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<double> draw(-1, 1);
+  bool bends = true;
+  for (int i = 0; i < 500; ++i) {
+    const pd::InputPiece<double> plate{0, {draw(random), draw(random), draw(random)}, nullptr, 0},
+        aside{0, {draw(random), draw(random), draw(random)}, nullptr, 0},
+        pressed{0, {1.5 + draw(random), draw(random), draw(random)}, nullptr, 0};
+    const double v = draw(random), acceleration = draw(random);
+    const auto at = [&](long double t) {
+      const auto of = [&](const pd::InputPiece<double>& piece) {
+        const auto& p = piece.polynomial;
+        return p[0] + (p[1] + p[2] * t) * t;
+      };
+      const long double u = v + acceleration * t - of(plate), w = of(aside);
+      return -of(pressed) * (branch.intercept() / std::sqrt(u * u + w * w) + branch.slope) * u;
+    };
+    const ObliqueSlip<double> slip(v - plate.at(0), acceleration - plate.polynomial[1],
+                                   {plate, 0.0}, {aside, 0.0});
+    const double speed = std::hypot(v - plate.at(0), aside.at(0));
+    const long double h = 1e-4L * speed;
+    const long double bend =
+        (16 * (at(h) + at(-h)) - (at(2 * h) + at(-2 * h)) - 30 * at(0)) / (12 * h * h);
+    const double second = slip.force_second_rate(branch, 0, {pressed, 0.0});
+    bends = bends && std::abs(second - bend) < 1e-6 * (1 + 1 / (speed * speed));
+  }
+  expect(bends, "the second derivative of the force has those of velocities and load");
+}
+
 /// A plate of friction 0.03 N that moves at 0.1 m/s, and across.
 ContactPoint plate(Line across, Line load = {1, 0}) {
   static const pd::Contact<double> contact{0.03, 0.04};
@@ -189,6 +219,7 @@ int main() {
   begins_with_a_later_order();
   changes(branch);
   changes(falling);
+  bends_of_functions();
   asks();
   sets_out_and_lands();
   return check::status();

@@ -152,6 +152,13 @@ void hard_drives() {
                                               s.end > s.begin;
                                      }),
          "what a load that falls to its row would break loose to rounding holds on there");
+  const Segments rest = hard("finger-at-stick-limit-by-rest-criterion");
+  expect(std::any_of(rest.begin(), rest.end(),
+                     [](const auto& s) {
+                       return s.begin == 0.6000000000000001 && s.end > s.begin &&
+                              s.mode.finger == ContactState::stick;
+                     }),
+         "a pin at rest by the rest criterion has its stick force within its limit");
   const Segments instant = hard("finger-breakaway-at-curve-point-under-rising-load");
   expect(std::any_of(instant.begin(), instant.end(),
                      [](const auto& s) {

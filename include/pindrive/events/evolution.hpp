@@ -153,6 +153,7 @@ class Evolution {
             stationary = pin.finger.sliding() ? pin.finger.stationary_velocity() : T(0);
     const T loaded = load_before(pin.finger.load.at(lasts), pin.finger.load.rate);
     pin.stick_limit_side = 0;
+    pin.neglected_force = T(0);
     struck = false;
     if (breakpoint) come_to_rest();
     bool on_plate = pin.plate.stuck(), on_finger = pin.finger.stuck() || pin.stop.is_holding(),
@@ -255,6 +256,7 @@ class Evolution {
       if (!side->sliding() || side->oblique() || !side->contact.rigid()) continue;
       if (!side->surface.is_zero()) continue;
       pin.state.v = T(0);
+      pin.neglected_force = T(rest_tolerance) * pin.drive.stiffness * pin.state.position_scale;
       side->reached_guard = ActiveGuard::lower;
     }
   }

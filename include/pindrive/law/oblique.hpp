@@ -98,8 +98,9 @@ class ObliqueSlip {
   T force_second_rate(const Branch<T>& branch, T curvature, const Curve<T>& load) const {
     const T strength = branch.intercept();
     const T bend = curvature == 0 ? T(0) : curvature * faster() * faster() * along() * load.value;
-    return -2 * load.rate * (strength * turning() + branch.slope * u_[1]) -
-           load.value * strength * turning_rate() - bend;
+    return -load.second() * (strength * along() + branch.slope * u_[0]) -
+           2 * load.rate * (strength * turning() + branch.slope * u_[1]) -
+           load.value * (strength * turning_rate() + 2 * branch.slope * u_[2]) - bend;
   }
 
  private:

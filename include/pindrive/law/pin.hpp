@@ -30,6 +30,7 @@ struct Pin {
   EndStops<T> stop;
   Curve<T> force{};         ///< external force, N
   int stick_limit_side{0};  ///< side of a stick force that has just reached its limit, else 0
+  T neglected_force{0};     ///< force that the rest criterion has just neglected, N
 
   /// Selected mode.
   Mode mode() const {
@@ -37,6 +38,8 @@ struct Pin {
   }
 
   bool held() const { return pindrive::held(drive, mode()); }
+  /// Error of the sum of all forces, N.
+  T force_error() const { return state.force_error + neglected_force; }
 
   /// True if a stick force at its limit stays there exactly, because no force jumps.
   bool stays_at_limit() const {

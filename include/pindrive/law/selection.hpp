@@ -189,7 +189,7 @@ class Selection {
                         own_limit * on.load.rate + other_limit * other.load.rate};
     const T force = holding_force(on, other.force(pin_.state));
     const int at_limit = pin_.stays_at_limit() ? pin_.stick_limit_side : 0;
-    if (limit.value - abs(force) < -pin_.state.force_error && (force < 0 ? -1 : 1) != at_limit)
+    if (limit.value - abs(force) < -pin_.force_error() && (force < 0 ? -1 : 1) != at_limit)
       return false;
     Path<T> most = limit;
     most.curvature = own_limit * on.load.second() + other_limit * other.load.second();
@@ -200,7 +200,7 @@ class Selection {
     selected_.guards.clear();
     for (const int side : {1, -1}) {
       Path<T> margin = most + T(-side) * selected_.stick_force;
-      if (!(margin.start > pin_.state.force_error) || side == at_limit) {
+      if (!(margin.start > pin_.force_error()) || side == at_limit) {
         margin.start = T(0);
         if (abs(margin.drift) <= rounding<T> * (scale + abs(limit.rate)) ||
             grazes(margin.drift, margin.curvature, pin_.state.force_error))
@@ -236,7 +236,7 @@ class Selection {
       const T force = starts ? pin_.drive.mass * (selected_.acceleration - side.surface.rate)
                              : own - holding_force(side, of_other);
       const bool releases = side.before == ContactState::stick && pin_.stays_at_limit();
-      const T error = starts ? T(0) : pin_.state.force_error + pin_.plate.force_error(pin_.state.v);
+      const T error = starts ? T(0) : pin_.force_error() + pin_.plate.force_error(pin_.state.v);
       const bool none = abs(force) <= error;
       if (!selected_.tangential && (none || releases || turns_at_once(side, force))) {
         selected_.tangential = true;
@@ -259,7 +259,7 @@ class Selection {
         return side.is_admissible(pin_.state, T(0), jerk.value, jerk.rate);
       }
       const T relative = selected_.acceleration - side.surface.rate;
-      if (pin_.drive.mass * abs(relative) > pin_.state.force_error ||
+      if (pin_.drive.mass * abs(relative) > pin_.force_error() ||
           !side.is_decided_by_acceleration(pin_.state.v))
         return side.is_admissible(pin_.state, relative);
       T scale;
