@@ -101,7 +101,7 @@ class SeriesSegment {
       const T fall = path.derivative().at(guard.zero - since) * (tau - guard.zero);
       return stays_at_bound(fall, path.at(tau - since), force_error);
     });
-    if (equation.side == 0 && first_ < end && !ends_early &&
+    if (equation.held && equation.side == 0 && first_ < end && !ends_early &&
         rests(equation.plate_velocity, first_, span) && rests(equation.across, first_, span))
       first_ = end;
     T velocity = equation.held ? equation.surface.value : start.v, stick{0};

@@ -47,6 +47,7 @@ class CreepFlow : public IteratedStep<T> {
     this->begin(e, step);
     if (balance_.side() < 0) across_.negate();
     Real before{0}, last{0};  // preceding iteration: initial creep velocity, change
+    Real left = farthest / step;
     // Best iterate, for a known step whose iterations do not converge within rounding.
     SeriesStep<T> nearest;
     Real least = std::numeric_limits<Real>::infinity();
@@ -63,19 +64,21 @@ class CreepFlow : public IteratedStep<T> {
       // The first iteration computes a and its rate, enough to decide about convergence.
       expand(e, start, step, round == 0 ? 2 : N);
       if (round == 0) continue;
-      const Real left = farthest / step;
       Real part = within_step ? left : until_zero(e, std::min(this->suggested_part(), left), step);
       if (part * step < shortest) return;
       const bool converged = converged_;
       const Real changed = last_change(part);
       const Real known = last_digit<Real> * this->size_of(plate_force, part) / plain(e.mass);
       converged_ = changed <= known;
-      // Changes decrease ever slower: at the present rate they would not be small in time.
-      if (!within_step && round > 2 && !converged_ &&
+      // Changes decrease ever slower: at the present rate they would not be small in time. They decrease faster over
+      // a shorter part of the step.
+      const bool slow =
+          !within_step && round > 2 && !converged_ &&
           (changed > last / 2 ||
-           changed * exp(log(changed / last) * (slow_iterations - 2 - round)) > known))
-        return;
-      last = changed;
+           changed * exp(log(changed / last) * (slow_iterations - 2 - round)) > known);
+      if (slow && shortest == 0) return;
+      if (slow) left = part / 4;
+      last = slow ? last_change(left) : changed;
       if (within_step && changed < least) {
         least = changed;
         nearest = *this;
@@ -285,6 +288,12 @@ bool follows_plate(const SeriesEquation<T>& e, const SeriesState<T>& start) {
   if (start.v != e.plate_velocity.value || e.across.value != 0 || e.across.rate != 0) return false;
   return start.acceleration == e.plate_velocity.rate;
 }
+/// Force on a pin that moves as the plate, beside friction, N.
+template <class T>
+T pull_on(const SeriesEquation<T>& e, const SeriesState<T>& start) {
+  return e.force.value - e.mass * e.plate_velocity.rate - e.damping * start.v -
+         e.stiffness * start.x - e.skin_factor.value * start.skin;
+}
 /// Velocity relative to the plate that a pin at its friction limit has a time after the plate began to slide across, m/s.
 /// All friction balances the pull, so that the pin lags: m u' = λF w²/(2u²) as long as w is small beside u.
 template <class T>
@@ -299,15 +308,27 @@ template <class T>
 template <class T>
 [[gnu::noinline]] SeriesStep<T> carried_by_plate(SeriesEquation<T> e, const SeriesState<T>& start,
                                                  T limit) {
-  const T pull = e.force.value - e.mass * e.plate_velocity.rate - e.damping * start.v -
-                 e.stiffness * start.x - e.skin_factor.value * start.skin;
-  e.held = true;
+  const T pull = pull_on(e, start);
   e.side = pull < 0 ? -1 : 1;
+  // Friction that begins at zero with the speed does not depend on its direction.
+  if (e.plate_force + e.plate_falling.excess == 0) return SeriesFlow<T>(e, start, limit);
+  e.held = true;
   e.surface = e.plate_velocity;
   SeriesStep<T> step = SeriesFlow<T>(e, start, limit);
   step.velocity.degree = std::max(step.velocity.degree, 2);
   step.velocity.c[2] += lag_at_limit(e, pull, T(step.span()));
   return step;
+}
+/// Time for which the plate takes such a pin along, s, at most `longest`: until then its friction hardly turns.
+template <class T>
+T time_carried(const SeriesEquation<T>& e, const SeriesState<T>& start, T longest) {
+  const T lag = abs(lag_at_limit(e, pull_on(e, start), longest)), w = abs(e.across.at(longest));
+  if (!(w > T(turned_by_carrying) * lag) || lag == 0) return longest;
+  // (w/lag)³ grows as w/τ.
+  const T over = T(turned_by_carrying) * lag / w;
+  const T order = longest * e.across.rate_at(longest) / e.across.at(longest);
+  const T shorter = longest * exp(3 * log(over) / (order - 1));
+  return std::max(shorter, difference_error<T> * start.time);
 }
 /// Step of a pin that follows the plate: its series diverges, and holds to rounding over a short time.
 template <class T>
@@ -315,7 +336,8 @@ SeriesStep<T> creep_from_rest(const SeriesEquation<T>& e, const SeriesState<T>& 
   const Real<T> natural_time = sqrt(plain(e.mass / e.stiffness));
   for (T span = creep_span(e, start, limit); span > rounding<T> * natural_time; span *= T(0.125))
     if (const auto flow = creep(e, start, span)) return *flow;
-  return carried_by_plate(e, start, std::min(limit, T(carried_time) * natural_time));
+  return carried_by_plate(e, start,
+                          std::min(limit, time_carried(e, start, T(carried_time) * natural_time)));
 }
 
 /// Step from a state: the Taylor series, or the slow motion where the fast transient is over: in
