@@ -20,7 +20,8 @@ struct Verdict {
   pd::Status status{};
   std::size_t segments{};
   std::size_t instants{};  ///< segments of zero length
-  std::size_t changes{};   ///< events at which a contact does something else
+  std::size_t
+      changes{};  ///< events at which a contact does something else or passes a point of its curve
 
   /// True if the motion itself has more events than the limit, and not its computation: it is judged until
   /// there.
@@ -40,7 +41,10 @@ inline Verdict seen(const pd::Outcome<double>& outcome,
     return static_cast<std::size_t>(std::count_if(segments.begin(), segments.end(), is));
   };
   const auto instants = count([](const auto& s) { return !(s.end > s.begin); });
-  const auto changes = count([](const auto& s) { return s.event.any(); });
+  const auto* const last = segments.data() + segments.size() - 1;
+  const auto changes = count([&](const auto& s) {
+    return s.event.any() || (&s != last && !pd::same_mode(s.mode, (&s)[1].mode));
+  });
   return {{}, 0, 0, outcome.status, segments.size(), instants, changes};
 }
 

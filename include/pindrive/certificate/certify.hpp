@@ -397,13 +397,13 @@ class Certifier {
       worst(result_.continuity, abs(left.x) - drive_.stops.travel, scales_.x);
     } else {
       // The time at which it is, and so how long the pin is accelerated, is known to its rounding.
-      // A pin that creeps follows the transverse velocity.
+      // A pin that creeps follows the transverse velocity, until that is as good as zero.
       const T drifts =
           before.mode.plate == ContactState::slip_oblique
               ? abs(motion_.inputs().across_velocity.from(before.begin).rate_at(left.tau))
               : T(0);
       const T known = before.end * (detail::rounding<T> * std::max(abs(left.a), abs(right.a)) +
-                                    detail::difference_error<T> * drifts);
+                                    detail::least_across<T> * drifts);
       worst(result_.continuity, std::max(abs(left.v - right.v) - known, T(0)), scales_.v);
     }
     if (!drive_.finger.compliant()) return;

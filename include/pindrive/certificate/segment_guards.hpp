@@ -49,14 +49,15 @@ class SegmentGuards {
     else if constexpr (std::is_same_v<Trajectory, BySeries<T>>)
       within(drive.plate.branch(mode.plate_branch), along_.sliding_speed(), false, of_plate);
     // A slider is slower than the pin by what its skin stretches.
+    const int others = count_;
     if (drive.finger.compliant()) {
-      const int others = count_;
       slipping(drive.finger, mode.finger, mode.finger_branch,
                along_.velocity() + 1 / drive.finger.stiffness * segment.finger_rate,
                segment.scales.v);
-      for (int i = others; i < count_; ++i) watches_[i].known = segment.slider_unsure;
+      known_from(others, segment.slider_unsure);
     } else {
       slipping(drive.finger, mode.finger, mode.finger_branch, along_.velocity(), segment.scales.v);
+      if (count_ > others) known_from(others, segment.velocity_unsure());
     }
     beyond_stops(drive.stops, mode.stop);
     if (held_by_stop(drive, mode)) return;
@@ -79,6 +80,10 @@ class SegmentGuards {
  private:
   static constexpr T never = std::numeric_limits<T>::infinity();
 
+  /// Sets the error of the last guards.
+  void known_from(int first, T error) {
+    for (int i = first; i < count_; ++i) watches_[i].known = error;
+  }
   template <class Path>
   void watch(const Path& path, T Certificate<T>::* law, T scale) {
     watches_[count_++] = {positive(along_, path), law, scale, T(0)};

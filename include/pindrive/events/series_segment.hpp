@@ -69,15 +69,18 @@ class SeriesSegment {
     segment.driven = driven_.has_value();
     segment.eliminated = last ? last->eliminated : EliminatedPart::none;
     const bool held = held_by_stop(drive, segment.mode);
+    const T end = last ? since + last->span() : since;
+    const T late = rounding<T> * (segment.begin + end);
     guards.clear();
-    for (const auto& guard : paths)
-      guards.add_known(since + guard.zero, guard.bound, guard.plate, guard.side,
+    for (const auto& guard : paths) {
+      const bool ends = guard.zero == never && last && falls_to_zero(guard.path, late);
+      guards.add_known(ends ? end : since + guard.zero, guard.bound, guard.plate, guard.side,
                        segment.mode.stuck() && !held && &guard - paths.begin() < 2);
+    }
     const T turns = abs(equation.across.rate) + abs(equation.plate_velocity.rate);
     const T left = abs(equation.across.at(span)) + abs(equation.plate_velocity.at(span));
     stops_ = equation.held && equation.side == 0 &&
              left <= difference_error<T> * (segment.begin + span) * turns;
-    const T end = last ? since + last->span() : since;
     first_ = guards.earliest_known(end);
     // An immediate end may be deferred to the end of the step, as to a breakpoint.
     const bool ends_early = end < (1 - rounding<T>)*span;
@@ -232,6 +235,12 @@ class SeriesSegment {
     return since;
   }
 
+  /// True if a polynomial that is positive reaches zero within a time after its end.
+  static bool falls_to_zero(const Polynomial<T>& path, T late) {
+    const T end(path.span), value = path.at(end);
+    if (value * end > late * T(series_order) * path.size()) return false;
+    return value + late * path.derivative().at(end) <= 0;
+  }
   /// True if an input is zero within rounding from a time to another: at its ends and at a time between them that is
   /// no period.
   static bool rests(const Curve<T>& input, T from, T to) {

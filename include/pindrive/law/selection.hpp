@@ -223,7 +223,8 @@ class Selection {
                         pin_.state.v == pin_.plate.surface.value;
     const T departure = starts
                             ? oblique_departure(pin_.drive.mass, pin_.plate,
-                                                selected_.applied_force - restoring_force_ + finger)
+                                                selected_.applied_force - restoring_force_ + finger,
+                                                pin_.force_error())
                             : T(0);
     follows_ = starts && departure == 0 && pin_.plate.across.rate == 0;
     const T plate = pin_.plate.force(pin_.state);

@@ -131,9 +131,15 @@ class EvaluatedSegment {
     if (!drive.finger.compliant() || finger_load.rate == 0 || !(span > 0)) return T(0);
     return unloaded_stretch<T> * scales.force * (segment.begin + span) / span;
   }
-  /// Error of the slider speed under a changing load, m/s: from the time resolution and from the
-  /// error of the force.
+  /// Error of the slider speed, m/s: from the time resolution and from the error of the force.
   const T slider_unsure = unsure_slider();
+  /// Error of the velocity of the pin from the time resolution, m/s.
+  T velocity_unsure() const {
+    if (!(span < std::numeric_limits<T>::infinity())) return T(0);
+    const T begins = abs(along.at(acceleration, along.moment(T(0)))),
+            ends = abs(along.at(acceleration, along.moment(span)));
+    return rounding<T> * (segment.begin + span) * std::max(begins, ends);
+  }
 
  private:
   /// Part of the error from oblique slip: the force turns with the velocity, which has the error of
@@ -152,7 +158,7 @@ class EvaluatedSegment {
   }
 
   T unsure_slider() const {
-    if (!drive.finger.compliant() || finger_load.rate == 0) return T(0);
+    if (!drive.finger.compliant() || !is_slip(mode().finger)) return T(0);
     const auto bend = along.derivative(finger_rate);
     T most{0}, terms{0};  // rounding of the rate, and of the force, whose parts may cancel
     for (const T tau : {T(0), span}) {

@@ -118,8 +118,9 @@ class SeriesFlow : public SeriesStep<T> {
   /// Rate at which the sliding direction turns, 1/s.
   static Real turning_rate(const SeriesEquation<T>& e, const SeriesState<T>& s) {
     if (e.side != 0) return Real(0);
-    const Real m = plain(e.mass), friction = abs(plain(e.load.value) * plain(e.plate_force));
-    const Real w = plain(e.across.value), u = plain(s.v) - plain(e.plate_velocity.value);
+    const Real m = plain(e.mass), w = plain(e.across.value);
+    const Real u = plain(s.v) - plain(e.plate_velocity.value), speed = hypot(u, w);
+    const Real friction = abs(plain(e.load.value * (e.plate_force + e.plate_falling.at(T(speed)))));
     const Real pull = plain(e.force.value) - plain(e.stiffness) * plain(s.x) -
                       plain(e.damping) * plain(s.v) - plain(e.skin_factor.value) * plain(s.skin) -
                       plain(e.load.value) * plain(e.plate_slope) * u;
@@ -129,7 +130,7 @@ class SeriesFlow : public SeriesStep<T> {
       if (turns == 0) return abs(plain(e.across.second())) * m / abs(abs(pull) - friction);
       return ((abs(pull) + friction) / m + turns) / turns * linear_rate(e);
     }
-    const Real speed = hypot(u, w), along = u / speed, across = w / speed;
+    const Real along = u / speed, across = w / speed;
     // Friction in the balance of forces, and its turning rate with the velocity.
     // The plate may accelerate.
     const Real apart = pull - m * plain(e.plate_velocity.rate);
