@@ -374,7 +374,8 @@ class EvaluatedPin:
         since = self.trajectory.last_beyond(x, end, band, release, limit)
         settles = limit - since >= self._patience or self.trajectory.rests(limit)
         place = end if settles else self._drag(limit)
-        over = max(0.0, (place - low) / (peak - place)) if peak > place else nan
+        returned = peak - place > 1e-15 * abs(peak)
+        over = max(0.0, (place - low) / (peak - place)) if returned else nan
         return since if settles else nan, over
 
     def _drag(self, t: float) -> float:

@@ -9,6 +9,7 @@
 
 #include "pindrive/device/evaluation.hpp"
 #include "pindrive/device/monotone_pieces.hpp"
+#include "pindrive/numbers/limits.hpp"
 
 namespace pindrive::device {
 
@@ -172,7 +173,9 @@ class PinEvaluation {
     const double since = pieces_.last_beyond(x, last, band, release, limit);
     const bool settles = limit - since >= settling_patience(drive_) || pieces_.rests(limit);
     const double rest = settles ? last : drag(limit);
-    if (peak.value > rest) found.overshoot = std::max(0.0, (rest - low) / (peak.value - rest));
+    // A pin that did not return has no overshoot.
+    if (peak.value - rest > detail::rounding<double> * std::abs(peak.value))
+      found.overshoot = std::max(0.0, (rest - low) / (peak.value - rest));
     if (!settles) return;
     found.settled = origin_ + since;
     found.smear = setting_.way->between(found.release, found.settled);
