@@ -328,7 +328,7 @@ T time_carried(const SeriesEquation<T>& e, const SeriesState<T>& start, T longes
   const T over = T(turned_by_carrying) * lag / w;
   const T order = longest * e.across.rate_at(longest) / e.across.at(longest);
   const T shorter = longest * exp(3 * log(over) / (order - 1));
-  return std::max(shorter, difference_error<T> * start.time);
+  return std::min(longest, std::max(shorter, T(difference_error<T> * start.time)));
 }
 /// Step of a pin that follows the plate: its series diverges, and holds to rounding over a short time.
 template <class T>
