@@ -397,7 +397,7 @@ class Certifier {
       worst(result_.continuity, abs(left.x) - drive_.stops.travel, scales_.x);
     } else {
       // The time at which it is, and so how long the pin is accelerated, is known to its rounding.
-      // A pin that creeps follows the transverse velocity, until that is as good as zero.
+      // A pin that creeps follows the transverse velocity, until that is within `least_across` of zero.
       const T drifts =
           before.mode.plate == ContactState::slip_oblique
               ? abs(motion_.inputs().across_velocity.from(before.begin).rate_at(left.tau))

@@ -146,7 +146,7 @@ inline constexpr T creep_error = 1024 * rounding<T>;
 /// Time, in units of √(m/k), for which the plate takes along a pin at its friction limit where a stroke begins: the
 /// motion has no power series there. Without it: fuzz --family strokes fails.
 inline constexpr double carried_time = 1e-10;
-/// Largest angle by which friction turns meanwhile, rad. Without it: fuzz --replay fails.
+/// Largest angle by which friction turns while the plate takes a pin along, rad. Without it: fuzz --replay fails.
 inline constexpr double turned_by_carrying = 0.01;
 /// Longest step of a series in units of its fastest time constant, even at rest: rounding of the
 /// start then remains rounding. Without it: series_test fails.

@@ -310,7 +310,7 @@ template <class T>
                                                  T limit) {
   const T pull = pull_on(e, start);
   e.side = pull < 0 ? -1 : 1;
-  // Friction that begins at zero with the speed does not depend on its direction.
+  // Friction that is zero at rest is proportional to u: the sliding direction does not matter.
   if (e.plate_force + e.plate_falling.excess == 0) return SeriesFlow<T>(e, start, limit);
   e.held = true;
   e.surface = e.plate_velocity;
@@ -319,7 +319,8 @@ template <class T>
   step.velocity.c[2] += lag_at_limit(e, pull, T(step.span()));
   return step;
 }
-/// Time for which the plate takes such a pin along, s, at most `longest`: until then its friction hardly turns.
+/// Time for which the plate takes along a pin at its friction limit, s, at most `longest`: its friction turns by
+/// `turned_by_carrying` in it.
 template <class T>
 T time_carried(const SeriesEquation<T>& e, const SeriesState<T>& start, T longest) {
   const T lag = abs(lag_at_limit(e, pull_on(e, start), longest)), w = abs(e.across.at(longest));
