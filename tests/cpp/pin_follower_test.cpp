@@ -9,6 +9,7 @@
 #include <random>
 #include <vector>
 
+#include "cases.hpp"
 #include "check.hpp"
 #include "pindrive/device/coil_course.hpp"
 #include "pindrive/device/scan.hpp"
@@ -98,7 +99,7 @@ Segments follow(const Setting& s, Random* pauses, bool kept) {
 void pauses_change_nothing() {
   Random random(45);
   int differing = 0, restored = 0, of_scan = 0, count = 0;
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < cases(300); ++i) {
     const Setting s(random);
     const Segments whole = follow(s, nullptr, false);
     device::PinRun run;
@@ -120,7 +121,7 @@ void pauses_change_nothing() {
 void the_motion_under_the_rows() {
   Random random(46);
   double worst = 0;
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < cases(300); ++i) {
     const Setting s(random);
     const Segments found = follow(s, nullptr, false);
     device::PinRun run;
@@ -150,7 +151,7 @@ void a_scan_in_two_parts() {
   Random random(48);
   double worst = 0;
   int moved = 0, differing = 0;
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < cases(300); ++i) {
     const Setting s(random);
     device::PinRun whole;
     whole.energise(s.inputs, 0, {}, 1U << 20);
