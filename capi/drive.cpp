@@ -416,10 +416,10 @@ pd::Numbers pindrive_c::numbers_of(const pindrive_drive& drive, const pindrive_r
           release.finger_load,  drive.stops,          release.duration};
 }
 
-void pindrive_c::start(pd::Numbers& at, pd::Numbers& along) {
+void pindrive_c::start(pd::Numbers& at, pd::Numbers& along, double begin) {
   if (!std::isnan(at.velocity)) return;
   const pd::OwnedInput<Dual> input(at.mouse_velocity, along.mouse_velocity);
-  const Dual plate = input.profile().from(Dual(0)).value;
+  const Dual plate = input.profile().from(Dual(begin)).value;
   at.velocity = plate.value;
   along.velocity = plate.slope;
 }
@@ -520,15 +520,14 @@ pindrive_error pindrive_release_set_function(pindrive_release* release, const ch
 }
 
 pindrive_drive* pindrive_drive_rate_new(const pindrive_drive* drive) {
-  constexpr pd::LawNumbers no_rates{0, 0, 0, 0, 0};
   pindrive_drive* rate = nullptr;
   if (drive)
     guarded([&]() -> pindrive_error {
       rate = new pindrive_drive{0,
                                 0,
                                 0,
-                                pd::ContactNumbers{0, 0, 0, {}, no_rates},
-                                pd::ContactNumbers{0, 0, 0, {}, no_rates},
+                                pd::ContactNumbers{0, 0, 0, {}, pd::LawNumbers::no_change()},
+                                pd::ContactNumbers{0, 0, 0, {}, pd::LawNumbers::no_change()},
                                 pd::StopNumbers{0, 0, 0}};
       rate->plate.curve.resize(drive->plate.curve.size());
       rate->finger.curve.resize(drive->finger.curve.size());

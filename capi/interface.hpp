@@ -113,8 +113,8 @@ pindrive_error check(const char* name, double value, bool good, const char* rang
 pindrive_error check_rates(const pindrive_drive& drive, const pindrive_release& release,
                            const pindrive_drive& drive_rate, const pindrive_release& release_rate);
 pd::Numbers numbers_of(const pindrive_drive& drive, const pindrive_release& release);
-/// Velocity of the plate at the release, with its derivative.
-void start(pd::Numbers& at, pd::Numbers& along);
+/// Velocity of the plate at the release at a time, s, with its derivative.
+void start(pd::Numbers& at, pd::Numbers& along, double begin = 0);
 
 /// A quantity at an instant of a trajectory; friction() tells the friction there.
 template <class T, class Trajectory, class Share>

@@ -45,6 +45,8 @@ enum class Law : signed char { coulomb, stribeck, hess_soom, table };
 struct LawNumbers {
   double law{0}, breakaway{0}, velocity{1}, exponent{1}, viscous{0};
 
+  /// A direction in which the law does not change.
+  static LawNumbers no_change() { return {0, 0, 0, 0, 0}; }
   /// Shape of the part that falls.
   FallingShape shape() const {
     if (law == static_cast<double>(Law::hess_soom)) return FallingShape::rational;
@@ -90,6 +92,10 @@ inline Numbers without_change(const Numbers& at) {
   Numbers along{};
   along.plate.curve.resize(at.plate.curve.size());
   along.finger.curve.resize(at.finger.curve.size());
+  along.plate.law = along.finger.law = LawNumbers::no_change();
+  for (const auto input : {&Numbers::mouse_velocity, &Numbers::plate_load, &Numbers::force,
+                           &Numbers::across_velocity, &Numbers::finger_load})
+    along.*input = without_change(at.*input);
   return along;
 }
 

@@ -356,12 +356,13 @@ PINDRIVE_API pindrive_error pindrive_certificate(const pindrive_motion *motion, 
 
 /* ---- step by step ---------------------------------------------------------------------------- */
 
-/* A release that is followed from one time to the next, under inputs that are set on the way. Its
+/* A release that is followed from one time to the next, under inputs set on the way or given over time. Its
  * answers are those of one simulation, whatever the steps: nothing is integrated again at a step. */
 typedef struct pindrive_stepper pindrive_stepper;
 
-/* A release at the time `begin`, s; to be freed. Its mouse_velocity, plate_load, across_velocity, force
- * and finger_load have one value, as its inputs are set on the way; its duration does not matter. */
+/* A release at the time `begin`, s; to be freed. Of its mouse_velocity, plate_load, across_velocity, force
+ * and finger_load, those that have one value are set on the way; those given by rows or pieces are followed,
+ * and cannot be set. Its duration does not matter. */
 PINDRIVE_API pindrive_error pindrive_stepper_new(const pindrive_drive *drive,
                                                  const pindrive_release *release, double begin,
                                                  pindrive_stepper **stepper);

@@ -14,34 +14,33 @@
 
 using namespace pindrive_c;  // NOLINT(google-build-using-namespace): its own
 
-pindrive_error pindrive_c::check_start(const pindrive_release& release, double begin) {
-  using Named = std::pair<const char*, const pd::InputNumbers*>;
-  for (const auto& [name, input] :
-       {Named{"mouse_velocity", &release.mouse_velocity}, Named{"plate_load", &release.plate_load},
-        Named{"force", &release.force}, Named{"across_velocity", &release.across_velocity},
-        Named{"finger_load", &release.finger_load}})
-    if (!input->constant())
-      return fail(PINDRIVE_UNSUPPORTED,
-                  "%s of a stepper must have one value, not %zu rows or pieces; set it on the way",
-                  name, input->rows.size() + input->pieces.size());
-  return check("begin", begin, std::isfinite(begin), "finite");
-}
-
 namespace {
 
 using State = pd::StepperState<double>;
 
-constexpr std::uint32_t magic = 0x70647333;  // "pds3"
+constexpr std::uint32_t magic = 0x70647334;  // "pds4"
 
-/// Goes over the numbers of a drive.
+/// Goes over the numbers of a drive and the inputs over time.
 template <class Bytes>
-void exchange_drive(Bytes& bytes, pd::Numbers& at) {
+void exchange_numbers(Bytes& bytes, pd::Numbers& at) {
   const auto number = [&](auto&... each) { (bytes.item(each), ...); };
+  const auto row = [&](auto& each) { number(each.first, each.second); };
   number(at.mass, at.stiffness, at.damping, at.stops.travel, at.stops.stiffness, at.stops.damping);
   for (auto* contact : {&at.plate, &at.finger}) {
+    auto& law = contact->law;
     number(contact->kinetic, contact->static_limit, contact->stiffness);
-    exchange_list(bytes, contact->curve, 2 * sizeof(double),
-                  [&](auto& row) { number(row.first, row.second); });
+    number(law.law, law.breakaway, law.velocity, law.exponent, law.viscous);
+    exchange_list(bytes, contact->curve, 2 * sizeof(double), row);
+  }
+  for (auto* input :
+       {&at.mouse_velocity, &at.plate_load, &at.force, &at.across_velocity, &at.finger_load}) {
+    exchange_list(bytes, input->rows, 2 * sizeof(double), row);
+    exchange_list(bytes, input->pieces, sizeof(double), [&](auto& piece) {
+      number(piece.begin);
+      for (double& coefficient : piece.polynomial) number(coefficient);
+      exchange_list(bytes, piece.terms, 4 * sizeof(double),
+                    [&](auto& term) { number(term[0], term[1], term[2], term[3]); });
+    });
   }
 }
 
@@ -52,7 +51,7 @@ struct Kept {
 
   template <class Bytes>
   void operator()(Bytes& bytes) {
-    exchange_drive(bytes, at);
+    exchange_numbers(bytes, at);
     exchange(bytes, state);
   }
 };
@@ -67,12 +66,12 @@ pindrive_error pindrive_stepper_new(const pindrive_drive* drive, const pindrive_
   if (!drive || !release) return null_pointer("drive and release");
   if (!stepper) return null_pointer("stepper");
   pindrive_error error = check(*drive, *release);
-  if (!error) error = check_start(*release, begin);
+  if (!error) error = check("begin", begin, std::isfinite(begin), "finite");
   if (error) return error;
   return made(stepper, [&](pindrive_stepper& s) {
     s.at = s.along = numbers_of(*drive, *release);
-    start(s.at, s.along);
-    s.pin = followed<double>(s.at, s.along, begin);
+    start(s.at, s.along, begin);
+    s.pin = std::make_unique<Followed<double>>(s.at, s.along, begin);
   });
 }
 

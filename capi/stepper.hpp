@@ -77,10 +77,11 @@ class Following {
   virtual pindrive_error set_load(const pd::InputPiece<double>& load) = 0;
 };
 
-/// A stepper with the friction curves that it refers to.
+/// A stepper with the friction curves and the inputs over time to which it refers.
 template <class T>
 class Followed final : public Following {
   pd::OwnedContact<T> plate_, finger_;
+  pd::OwnedInput<T> mouse_velocity_, plate_load_, force_, across_velocity_, finger_load_;
 
   static pd::Drive<T> drive(const pd::Numbers& at, const pd::Numbers& along,
                             const Followed& owner) {
@@ -92,17 +93,46 @@ class Followed final : public Following {
             pd::stops<T>(at.stops, along.stops)};
   }
 
+  /// The release; an input that is one number is held from the begin on, and may be set.
+  static pd::Inputs<T> release(const pd::Numbers& at, const pd::Numbers& along, double begin,
+                               const Followed& owner) {
+    const auto input = [begin](const pd::OwnedInput<T>& owned) {
+      const pd::Profile<T> profile = owned.profile();
+      return profile.has_breakpoints() ? profile
+                                       : pd::Profile<T>(T(begin), {profile.first(), T(0)});
+    };
+    return {input(owner.mouse_velocity_),
+            pd::number<T>(at.displacement, along.displacement),
+            pd::number<T>(at.velocity, along.velocity),
+            T(infinity),
+            input(owner.plate_load_),
+            pd::number<T>(at.skin_stretch, along.skin_stretch),
+            input(owner.force_),
+            input(owner.across_velocity_),
+            input(owner.finger_load_)};
+  }
+
+  static pd::Stepper<T> begun(const pd::Numbers& at, const pd::Numbers& along,
+                              const Followed& owner, double begin) {
+    return {drive(at, along, owner), release(at, along, begin, owner), T(begin)};
+  }
+  static pd::Stepper<T> begun(const pd::Numbers& at, const pd::Numbers& along,
+                              const Followed& owner, const pd::StepperState<T>& state) {
+    return {drive(at, along, owner), state, release(at, along, 0, owner)};
+  }
+
  public:
+  /// Released at a time, s, or from a state.
   template <class Start>
   Followed(const pd::Numbers& at, const pd::Numbers& along, const Start& start)
       : plate_(at.plate, along.plate),
         finger_(at.finger, along.finger),
-        stepper_(drive(at, along, *this), start) {}
-  Followed(const pd::Numbers& at, const pd::Numbers& along, const pd::Inputs<T>& inputs,
-           double begin)
-      : plate_(at.plate, along.plate),
-        finger_(at.finger, along.finger),
-        stepper_(drive(at, along, *this), inputs, T(begin)) {}
+        mouse_velocity_(at.mouse_velocity, along.mouse_velocity),
+        plate_load_(at.plate_load, along.plate_load),
+        force_(at.force, along.force),
+        across_velocity_(at.across_velocity, along.across_velocity),
+        finger_load_(at.finger_load, along.finger_load),
+        stepper_(begun(at, along, *this, start)) {}
 
   std::unique_ptr<Following> copy(const pd::Numbers& at, const pd::Numbers& along) const override {
     return std::make_unique<Followed>(at, along, stepper_.state());
@@ -150,58 +180,34 @@ class Followed final : public Following {
   pd::Stepper<T> stepper_;
 };
 
-/// The input of that name, or null.
-template <class T>
-pd::Curve<T>* find(pd::InputCurves<T>& inputs, const char* name) {
-  const std::pair<const char*, pd::Curve<T>*> lines[] = {
-      {"mouse_velocity", &inputs.plate_velocity},
-      {"plate_load", &inputs.plate_load},
-      {"across_velocity", &inputs.across_velocity},
-      {"force", &inputs.force},
-      {"finger_load", &inputs.finger_load}};
-  for (const auto& [known, line] : lines)
-    if (std::strcmp(known, name) == 0) return line;
-  return nullptr;
-}
-
 template <class T>
 template <class Change>
 pindrive_error Followed<T>::set_input(const char* name, Change&& change) {
-  pd::InputCurves<T> inputs = stepper_.inputs();
-  pd::Curve<T>* const line = find(inputs, name);
-  if (!line)
-    return fail(
-        PINDRIVE_BAD_NAME,
-        "a stepper has no input %.40s, but mouse_velocity, plate_load, across_velocity, force, "
-        "finger_load",
-        name);
-  change(*line);
-  stepper_.set(inputs);
-  return stepper_.status() == pd::Status::ok ? PINDRIVE_OK : given_up(stepper_.status());
+  const struct {
+    const char* name;
+    pd::Curve<T> pd::InputCurves<T>::* line;
+    const pd::OwnedInput<T>& given;
+  } known[] = {{"mouse_velocity", &pd::InputCurves<T>::plate_velocity, mouse_velocity_},
+               {"plate_load", &pd::InputCurves<T>::plate_load, plate_load_},
+               {"across_velocity", &pd::InputCurves<T>::across_velocity, across_velocity_},
+               {"force", &pd::InputCurves<T>::force, force_},
+               {"finger_load", &pd::InputCurves<T>::finger_load, finger_load_}};
+  for (const auto& input : known) {
+    if (std::strcmp(input.name, name) != 0) continue;
+    if (input.given.profile().has_breakpoints())
+      return fail(PINDRIVE_UNSUPPORTED,
+                  "%s cannot be set: the release gives it over time, by rows or pieces", name);
+    pd::InputCurves<T> inputs = stepper_.inputs();
+    change(inputs.*input.line);
+    stepper_.set(inputs);
+    return stepper_.status() == pd::Status::ok ? PINDRIVE_OK : given_up(stepper_.status());
+  }
+  return fail(
+      PINDRIVE_BAD_NAME,
+      "a stepper has no input %.40s, but mouse_velocity, plate_load, across_velocity, force, "
+      "finger_load",
+      name);
 }
-
-// ---- how one is made ---------------------------------------------------------------------------
-
-template <class T>
-std::unique_ptr<Followed<T>> followed(const pd::Numbers& at, const pd::Numbers& along,
-                                      double begin) {
-  const auto held = [&](const pd::InputNumbers& input, const pd::InputNumbers& rate) {
-    return pd::Held<T>{T(begin), {pd::number<T>(input.value(), rate.value()), T(0)}};
-  };
-  const pd::Inputs<T> inputs{held(at.mouse_velocity, along.mouse_velocity),
-                             pd::number<T>(at.displacement, along.displacement),
-                             pd::number<T>(at.velocity, along.velocity),
-                             T(infinity),
-                             held(at.plate_load, along.plate_load),
-                             pd::number<T>(at.skin_stretch, along.skin_stretch),
-                             held(at.force, along.force),
-                             held(at.across_velocity, along.across_velocity),
-                             held(at.finger_load, along.finger_load)};
-  return std::make_unique<Followed<T>>(at, along, inputs, begin);
-}
-
-/// Handle of a stepper, which begins at a time.
-pindrive_error check_start(const pindrive_release& release, double begin);
 
 }  // namespace pindrive_c
 

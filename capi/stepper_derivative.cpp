@@ -63,14 +63,14 @@ pindrive_error pindrive_stepper_differentiate(const pindrive_drive* drive,
   if (!release || !release_rate) return null_pointer("release and release_rate");
   if (!derivative) return null_pointer("derivative");
   pindrive_error error = check(*drive, *release);
-  if (!error) error = check_start(*release, begin);
+  if (!error) error = check("begin", begin, std::isfinite(begin), "finite");
   if (!error) error = check_rates(*drive, *release, *drive_rate, *release_rate);
   if (error) return error;
   return made(derivative, [&](pindrive_stepper& s) {
     s.at = numbers_of(*drive, *release);
     s.along = numbers_of(*drive_rate, *release_rate);
-    start(s.at, s.along);
-    s.pin = followed<Dual>(s.at, s.along, begin);
+    start(s.at, s.along, begin);
+    s.pin = std::make_unique<Followed<Dual>>(s.at, s.along, begin);
   });
 }
 

@@ -120,7 +120,7 @@ pindrive_error Instance::derivative(std::size_t unknown, const unsigned* knowns,
   if (magnet_.present()) now.plate_load.value.slope = given.parameters().residual_load().slope;
   pd::Numbers at = pindrive_c::numbers_of(*drive, *release);
   pd::Numbers changes = pindrive_c::numbers_of(*of_drive, *of_release);
-  pindrive_c::start(at, changes);
+  pindrive_c::start(at, changes, values_.begin);
   const auto number = [](double at, double slope) { return pd::number<Number>(at, slope); };
   const Changing moving(at, changes);
   const pd::detail::State<Number> state = pd::released(

@@ -351,7 +351,6 @@ static void stepping(void) {
   expect(pindrive_stepper_evaluate(other, PINDRIVE_ACCELERATION, &y) == PINDRIVE_OK && y == 1,
          "the housing's acceleration is the pin's");
   pindrive_stepper_free(copy);
-  expect(pindrive_stepper_new(drive, release, 0, &copy) == PINDRIVE_UNSUPPORTED, "no profiles");
   pindrive_release_set(release, "mouse_velocity", 0.10);
   pindrive_release_set(release, "across_velocity", 0.02);
   pindrive_release_set(release, "force", 0.01);
@@ -637,6 +636,71 @@ static void a_device(void) {
   pindrive_device_free(device);
 }
 
+/* A stepper follows inputs given over time, and a friction law, also from its bytes. */
+static void stepped_functions(void) {
+  const pindrive_term wave = {0, 0.1, 0, 75}, along = {0, 1, 0, 0};
+  const pindrive_piece hand[] = {{0, {0.02}, &wave, 1}, {0.04, {0.02 + 0.1 * sin(3.0), 1}, NULL, 0}};
+  const pindrive_piece rate[] = {{0, {0}, &along, 1}, {0, {sin(3.0)}, NULL, 0}};
+  const double times[] = {0, 0.02, 0.05}, forces[] = {0, 0.05, -0.05}, t = 0.06;
+  pindrive_drive *drive = the_drive(), *still;
+  pindrive_release *release = the_release(), *direction;
+  pindrive_stepper *stepper = NULL, *again = NULL, *derivative = NULL, *along_force = NULL;
+  pindrive_motion *motion, *differentiated = NULL;
+  pindrive_instant now;
+  double expected, slope, x;
+  size_t size;
+  void *bytes;
+  pindrive_drive_set(drive, "plate.law", PINDRIVE_LAW_STRIBECK);
+  pindrive_drive_set(drive, "plate.breakaway", 0.03);
+  pindrive_drive_set(drive, "plate.static", 0.03);
+  pindrive_drive_set(drive, "plate.velocity", 0.05);
+  pindrive_release_set(release, "velocity", NAN);
+  pindrive_release_set(release, "duration", 0.1);
+  expect(pindrive_release_set_function(release, "mouse_velocity", hand, 2) == PINDRIVE_OK &&
+             pindrive_release_set_profile(release, "force", times, forces, 3) == PINDRIVE_OK,
+         "a hand in two pieces and a force in rows");
+  still = pindrive_drive_rate_new(drive);
+  direction = pindrive_release_rate_new(release);
+  pindrive_release_set_function(direction, "mouse_velocity", rate, 2);
+  motion = run(drive, release);
+  pindrive_evaluate(motion, PINDRIVE_POSITION, &t, 1, PINDRIVE_RIGHT, &expected);
+  expect(pindrive_stepper_new(drive, release, 0, &stepper) == PINDRIVE_OK, "their stepper");
+  position_after(stepper, 0.03, 0.004);
+  size = pindrive_stepper_size(stepper);
+  bytes = malloc(size);
+  expect(pindrive_stepper_write(stepper, bytes, size) == PINDRIVE_OK &&
+             pindrive_stepper_read(bytes, size, &again) == PINDRIVE_OK,
+         "written and read");
+  x = position_after(stepper, t, 0.007);
+  expect(fabs(x - expected) < 1e-15, "it is where the motion is");
+  expect(position_after(again, t, 0.011) == x, "so it is from its bytes");
+  expect(pindrive_stepper_now(stepper, &now) == PINDRIVE_OK && fabs(now.mouse_velocity_rate - 1) < 1e-12,
+         "the hand is in its second piece");
+  refuses(pindrive_stepper_set(stepper, "force", 0, 0), PINDRIVE_UNSUPPORTED, "force cannot be set");
+  expect(pindrive_stepper_set(stepper, "plate_load", 1.5, 0) == PINDRIVE_OK, "another input can");
+  expect(pindrive_differentiate(drive, release, still, direction, NULL, NULL, &differentiated) ==
+                 PINDRIVE_OK &&
+             pindrive_stepper_differentiate(drive, release, still, direction, 0, &derivative) ==
+                 PINDRIVE_OK,
+         "derivatives by the amplitude of the hand");
+  pindrive_evaluate(differentiated, PINDRIVE_POSITION, &t, 1, PINDRIVE_RIGHT, &slope);
+  expect(fabs(position_after(derivative, t, 0.007) - slope) < 1e-12 * fabs(slope), "are those of the motion");
+  expect(pindrive_stepper_derivative(again, &along_force) == PINDRIVE_OK &&
+             pindrive_stepper_evaluate(along_force, PINDRIVE_ACCELERATION, &x) == PINDRIVE_OK && x == 0,
+         "nothing changes along no direction, under a law too");
+  free(bytes);
+  pindrive_motion_free(motion);
+  pindrive_motion_free(differentiated);
+  pindrive_stepper_free(stepper);
+  pindrive_stepper_free(again);
+  pindrive_stepper_free(derivative);
+  pindrive_stepper_free(along_force);
+  pindrive_drive_free(drive);
+  pindrive_drive_free(still);
+  pindrive_release_free(release);
+  pindrive_release_free(direction);
+}
+
 /* Inputs as functions of time: a sinusoid has a periodic response. */
 static void functions(void) {
   const pindrive_term wave = {0, 0.1, 0, 75}, along = {0, 1, 0, 0}, fast = {0, 1, 0, 1e8};
@@ -706,6 +770,7 @@ int main(void) {
   derivatives();
   mistakes();
   functions();
+  stepped_functions();
   stopping();
   a_batch();
   stepping();

@@ -400,6 +400,97 @@ void derivatives() {
   }
 }
 
+/// Random functions of time for all inputs, some in two pieces; the rest continues as the first row.
+struct Functions {
+  std::vector<pd::InputTerm<double>> terms;
+  std::vector<pd::InputPiece<double>> velocity, load, force, across, touch;
+
+  explicit Functions(const Case& c, Random& random) {
+    terms.reserve(8);
+    const double rate = std::sqrt(c.drive.stiffness / c.drive.mass);
+    const auto term = [&](double cosine, double sine, double decay, double frequency) {
+      terms.push_back({cosine, sine, decay * rate, frequency * rate});
+      return &terms.back();
+    };
+    const double end = c.times.back(), v = c.velocities[0], speed = 30 * (c.velocities[1] - v) / 16;
+    const double fast = between(random, 0.3, 3);
+    if (one_of(random, 2))
+      velocity = {{0, {v}, term(0, c.velocities[1], 0, fast), 1}};
+    else
+      velocity = {{0, {v, 0, speed / pow(end, 2), -2 * speed / pow(end, 3), speed / pow(end, 4)}},
+                  {end, {v}}};
+    if (one_of(random, 2)) load = {{0.01, {1}, term(1.5, 0, between(random, 0.5, 5), 0), 1}};
+    if (one_of(random, 2)) force = {{0, {0.02, 0.1}, term(0.05, 0.02, 0.3, fast / 2), 1}};
+    if (one_of(random, 4)) across = {{0, {0.1}, term(0, 0.05, 0, 0.7), 1}};
+    if (one_of(random, 2) && c.drive.finger.rigid())
+      touch = {{0, {1}, term(0.4, 0.4, 0, 2 * fast), 1}};
+  }
+  static double pow(double x, int n) { return std::pow(x, n); }
+  pd::Inputs<double> release(const Case& c) const {
+    const auto input = [](const std::vector<pd::InputPiece<double>>& pieces, double constant) {
+      return pieces.empty() ? pd::Profile<double>(pd::Held<double>(constant))
+                            : pd::Profile<double>(pieces.data(), pieces.size());
+    };
+    return {input(velocity, c.velocities[0]),
+            c.displacement,
+            c.velocities[0],
+            c.duration,
+            input(load, c.loads[0]),
+            std::numeric_limits<double>::quiet_NaN(),
+            input(force, c.forces[0]),
+            input(across, c.across[0]),
+            input(touch, c.touches[0])};
+  }
+};
+
+/// Inputs that are functions, followed in random steps, beside one run; also from states that are kept.
+void functions_of_time() {
+  Random random(18);
+  double position = 0, velocity = 0;
+  int differing = 0, modes = 0, count = 0, given_up = 0;
+  for (int i = 0; i < cases(1000); ++i) {
+    const Case c(random);
+    const Functions functions(c, random);
+    const pd::Inputs<double> release = functions.release(c);
+    std::vector<pd::Segment<double>> segments;
+    const auto outcome =
+        pd::simulate(c.drive, release, [&](const auto& s) { segments.push_back(s); });
+    given_up += outcome.status != pd::Status::ok;
+    if (outcome.status != pd::Status::ok) continue;
+    const pd::Motion<double> motion(c.drive, release, segments.data(), segments.size(), outcome);
+    const double size =
+        std::abs(c.displacement) + 0.3 * std::sqrt(c.drive.mass / c.drive.stiffness);
+    const double speed = size * std::sqrt(c.drive.stiffness / c.drive.mass);
+    auto stepper = std::make_unique<pd::Stepper<double>>(c.drive, release);
+    while (stepper->now() < c.duration) {
+      stepper->step(std::min(c.duration, stepper->now() + between(random, 0, 0.02)),
+                    one_of(random, 2));
+      if (one_of(random, 5)) {
+        const Values at = values_of(*stepper);
+        stepper = std::make_unique<pd::Stepper<double>>(c.drive, stepper->state(), release);
+        const Values back = values_of(*stepper);
+        differing += back.x != at.x || back.v != at.v || back.plate != at.plate;
+      }
+      const auto [segment, tau] = motion.locate(stepper->now(), pd::Side::left);
+      const Values found = values_of(*stepper);
+      const Values expected = values_in(
+          c.drive, *segment, pd::InputCurves<double>::of(c.drive, release, *segment), tau);
+      position = std::max(position, std::abs(found.x - expected.x) / size);
+      const bool inside = tau > 1e-9 && segment->end - segment->begin - tau > 1e-9;
+      if (inside) {
+        velocity = std::max(velocity, std::abs(found.v - expected.v) / speed);
+        modes += !pd::same_mode(stepper->mode(), segment->mode);
+      }
+      ++count;
+    }
+  }
+  std::printf("functions: %d times, %d given up, position %.1e, velocity %.1e, %d modes\n", count,
+              given_up, position, velocity, modes);
+  expect(position < 1e-11 && velocity < 1e-10 && modes == 0 && given_up == 0,
+         "under functions of time, steps leave no trace");
+  expect(differing == 0, "a kept state goes on under functions with the same bits");
+}
+
 /// As event_times_do_not_drift in simulation_test.cpp, by steps, from states that are kept on the way.
 void event_times_do_not_drift() {
   const pd::Drive<double> undamped{0.01, 100, 0, {}, {1e-9, 1e-9}};
@@ -436,5 +527,6 @@ int main() {
   a_jump();
   across_and_back();
   derivatives();
+  functions_of_time();
   return check::status();
 }

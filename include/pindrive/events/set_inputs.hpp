@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "pindrive/events/evolution.hpp"
+#include "pindrive/events/stepper_state.hpp"
 #include "pindrive/law/contact_point.hpp"
 #include "pindrive/model/model.hpp"
 #include "pindrive/numbers/functions.hpp"
@@ -50,6 +51,20 @@ Inputs<T> without_end(Inputs<T> inputs) {
   return inputs;
 }
 
+/// Inputs as a state has them set and, where they change by themselves, as they `begun`.
+template <class T>
+Inputs<T> continued(const StepperState<T>& state, const Inputs<T>& begun) {
+  const auto input = [](const Profile<T>& of_release, const Held<T>& set) {
+    return of_release.has_breakpoints() ? of_release : Profile<T>(set);
+  };
+  constexpr T never = std::numeric_limits<T>::infinity();
+  return without_end<T>({input(begun.mouse_velocity, state.mouse_velocity), state.pin.x,
+                         state.pin.v, never, input(begun.plate_load, state.plate_load),
+                         std::numeric_limits<T>::quiet_NaN(), input(begun.force, state.force),
+                         input(begun.across_velocity, state.across_velocity),
+                         input(begun.finger_load, state.finger_load)});
+}
+
 /// True if a number and its derivative are zero.
 template <class T>
 bool is_zero(const T& x) {
@@ -69,12 +84,14 @@ T change_to(const T& given, const Held<T>& held, T now) {
   return abs(change) <= known ? change - plain(change) : change;
 }
 
-/// True if an input differs from its continuation in value or rate.
+/// True if an input differs from its continuation in value or rate; what changes by itself is not set.
 template <class T>
-bool differs(const Curve<T>& given, const Held<T>& held, T now) {
-  const Curve<T> continued = held.from(now);
+bool differs(const Curve<T>& given, const Profile<T>& input, T now) {
+  if (input.has_breakpoints()) return false;
+  const Curve<T> continued = input.from(now);
   if (!given.straight() || !continued.straight()) return given.piece != continued.piece;
-  return !is_zero(change_to(given.value, held, now)) || !is_zero(given.rate - continued.rate);
+  return !is_zero(change_to(given.value, input.held(), now)) ||
+         !is_zero(given.rate - continued.rate);
 }
 
 /// Value after a change: the given value, or the value before where only the derivative changes.

@@ -3,7 +3,8 @@
 ///
 /// Nothing is integrated again at a step: a segment continues from its event until the next event,
 /// or until an input changes, and any time in the segment is evaluated from its begin. The division
-/// into steps does not change the results.
+/// into steps does not change the results. An input that changes by itself (rows, or a function of time) is
+/// followed over its breakpoints, and cannot be set.
 #pragma once
 
 #include <algorithm>
@@ -29,7 +30,7 @@ class Stepper {
   using State = StepperState<T>;
 
   /// Release at the time `begin`, s. The duration of the inputs is ignored. The friction curves of
-  /// the drive are referenced, not copied.
+  /// the drive, and the rows and pieces of inputs, are referenced, not copied.
   Stepper(const Drive<T>& drive, const Inputs<T>& inputs, T begin = T(0))
       : drive_(drive),
         inputs_(detail::without_end(inputs)),
@@ -42,11 +43,11 @@ class Stepper {
     }
     select(false, Unattended{});
   }
-  Stepper(const Drive<T>& drive, const State& state)
+  /// From a state of a stepper. Of `begun`, the inputs of that stepper's release, those that change by
+  /// themselves are read.
+  Stepper(const Drive<T>& drive, const State& state, const Inputs<T>& begun = {T(0), T(0), T(0)})
       : drive_(drive),
-        inputs_(detail::without_end<T>({state.mouse_velocity, state.pin.x, state.pin.v, never,
-                                        state.plate_load, std::numeric_limits<T>::quiet_NaN(),
-                                        state.force, state.across_velocity, state.finger_load})),
+        inputs_(detail::continued(state, begun)),
         evolution_(drive_, inputs_, state.since),
         now_(state.now),
         horizon_(state.horizon) {
@@ -117,16 +118,16 @@ class Stepper {
     Held<T>&velocity = inputs_.mouse_velocity.held(), &load = inputs_.plate_load.held();
     Held<T>&across = inputs_.across_velocity.held(), &force = inputs_.force.held();
     Held<T>& touch = inputs_.finger_load.held();
-    const bool turns = detail::differs(given.plate_velocity, velocity, now_),
-               loads = detail::differs(given.plate_load, load, now_);
-    const bool drifts = detail::differs(given.across_velocity, across, now_),
-               pushes = detail::differs(given.force, force, now_);
-    const bool touches = detail::differs(given.finger_load, touch, now_);
+    const bool turns = detail::differs(given.plate_velocity, inputs_.mouse_velocity, now_),
+               loads = detail::differs(given.plate_load, inputs_.plate_load, now_);
+    const bool drifts = detail::differs(given.across_velocity, inputs_.across_velocity, now_),
+               pushes = detail::differs(given.force, inputs_.force, now_);
+    const bool touches = detail::differs(given.finger_load, inputs_.finger_load, now_);
     if (!turns && !loads && !drifts && !pushes && !touches && horizon == horizon_) return;
     horizon_ = horizon;
-    const T jump = detail::change_to(given.plate_velocity.value, velocity, now_);
+    const T jump = turns ? detail::change_to(given.plate_velocity.value, velocity, now_) : T(0);
     const bool across_jumps =
-        plain(detail::change_to(given.across_velocity.value, across, now_)) != 0;
+        drifts && plain(detail::change_to(given.across_velocity.value, across, now_)) != 0;
     const T from = detail::is_zero(jump) ? given.plate_velocity.value : velocity.from(now_).value;
     const bool jumps = !detail::is_zero(jump);
     if (turns)
@@ -215,7 +216,9 @@ class Stepper {
     evolution_.pin.finger.mode = state.finger;
     evolution_.pin.plate.reached_guard = state.at_plate;
     evolution_.pin.finger.reached_guard = state.at_finger;
-    evolution_.pin.plate.surface = state.plate_velocity;
+    evolution_.pin.plate.surface = inputs_.mouse_velocity.from(state.since);
+    evolution_.pin.plate.surface.value = state.plate_velocity.value;
+    evolution_.pin.plate.surface.rate = state.plate_velocity.rate;
     evolution_.pin.stick_limit_side = state.limit;
     evolution_.pin.stop.state = state.stop;
     evolution_.pin.stop.released = state.stop_released;
@@ -298,8 +301,7 @@ class Stepper {
     // Linear quantities are evaluated over a finite time.
     const bool steady = plate.surface.rate == 0 && plate.load.rate == 0 && finger.load.rate == 0 &&
                         evolution_.pin.force.rate == 0;
-    evolution_.next_breakpoint = std::min({inputs_.plate_load.next_breakpoint(evolution_.pin.time),
-                                           inputs_.finger_load.next_breakpoint(evolution_.pin.time),
+    evolution_.next_breakpoint = std::min({inputs_.next_breakpoint(evolution_.pin.time),
                                            steady ? never : evolution_.pin.time + far_, horizon_});
     if (!evolution_.select()) status_ = Status::inconsistent;
     const Event event = evolution_.transitions(before_);

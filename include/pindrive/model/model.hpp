@@ -248,7 +248,9 @@ class Profile {
   }
   bool constant() const { return constant_; }           ///< the input is one number and remains so
   bool straight() const { return pieces_ == nullptr; }  ///< linear between breakpoints
-  T first() const { return held_.line.value; }          ///< value before the first breakpoint
+  /// True if the input is made of rows or pieces, and so changes by itself.
+  bool has_breakpoints() const { return count_ > 0; }
+  T first() const { return held_.line.value; }  ///< value before the first breakpoint
 
   /// Line of an input without breakpoints, to be set during the simulation; the input is not
   /// constant any more.
