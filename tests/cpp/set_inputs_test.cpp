@@ -28,10 +28,14 @@ int main() {
   expect(slows.ends == 1.15, "an end that is reached remains");
 
   const Held held(1, Line{0.3, 2});
-  expect(!pd::detail::differs(pd::Curve<double>{0.5, 2}, held, 1.1),
+  const pd::Profile<double> input(held);
+  expect(!pd::detail::differs(pd::Curve<double>{0.5, 2}, input, 1.1),
          "an input within rounding is continued");
-  expect(pd::detail::differs(pd::Curve<double>{0.5, 1}, held, 1.1),
+  expect(pd::detail::differs(pd::Curve<double>{0.5, 1}, input, 1.1),
          "an input with another rate differs");
+  const double times[]{0, 2}, values[]{0.3, 4.3};
+  expect(!pd::detail::differs(pd::Curve<double>{9, 9}, pd::Profile<double>(times, values, 2), 1.1),
+         "an input in rows is not set");
   expect(near(pd::detail::change_to(0.6, held, 1.1), 0.1, 1e-15), "a jump is a difference");
   using Dual = pd::Dual<double>;
   expect(!pd::detail::is_zero(Dual{0, 1}) && pd::detail::is_zero(Dual{0, 0}),
