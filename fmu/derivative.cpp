@@ -121,6 +121,17 @@ pindrive_error Instance::derivative(std::size_t unknown, const unsigned* knowns,
   pd::Numbers at = pindrive_c::numbers_of(*drive, *release);
   pd::Numbers changes = pindrive_c::numbers_of(*of_drive, *of_release);
   pindrive_c::start(at, changes, values_.begin);
+  const auto over_time = [&](pd::Curve<Number>& curve, const pd::InputNumbers& input,
+                             const pd::InputNumbers& change) {
+    const pd::OwnedInput<Number> owned(input, change);
+    if (owned.profile().has_breakpoints())
+      curve = owned.profile().from(Number(values_.begin)).line();
+  };
+  over_time(now.plate_velocity, at.mouse_velocity, changes.mouse_velocity);
+  over_time(now.plate_load, at.plate_load, changes.plate_load);
+  over_time(now.force, at.force, changes.force);
+  over_time(now.across_velocity, at.across_velocity, changes.across_velocity);
+  over_time(now.finger_load, at.finger_load, changes.finger_load);
   const auto number = [](double at, double slope) { return pd::number<Number>(at, slope); };
   const Changing moving(at, changes);
   const pd::detail::State<Number> state = pd::released(

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "device_parameters.hpp"
 #include "pindrive.h"
+#include "pindrive/model/named_function.hpp"
 #include "variables.hpp"
 
 namespace pindrive_fmu {
@@ -34,12 +36,19 @@ class Given {
                       double Number::* part) const;
 
  private:
+  using Function = pindrive::NamedFunction<Number>;
+
+  /// Makes the function of an input from its parameters; false if the unit has none.
+  bool make_function(const char* input, Function& function) const;
+  /// Parameter of the function of an input; null without.
+  const Number* find(const char* input, const char* parameter) const;
   Number at(std::size_t i) const { return {values_[i], seeds_ ? seeds_[i] : 0}; }
 
   const std::vector<Variable>& variables_;
   const double* values_;
   const double* seeds_;
   pindrive_c::DeviceParameters parameters_;
+  std::vector<std::pair<const char*, Number>> of_functions_;  ///< by name, without the table
 };
 
 }  // namespace pindrive_fmu

@@ -2,18 +2,23 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/complex.h>
 #include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/variant.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
 #include <array>
+#include <complex>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <limits>
 #include <memory>
+#include <string>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -26,6 +31,7 @@
 #include "owned_motion.hpp"
 #include "pindrive/certificate/certify.hpp"
 #include "pindrive/model/input_period.hpp"
+#include "pindrive/model/named_function.hpp"
 #include "pindrive/motion/crossings.hpp"
 #include "pindrive/motion/duration.hpp"
 #include "pindrive/motion/energy.hpp"
@@ -70,6 +76,41 @@ pd::InputNumbers input_of(Input&& input) {
   for (Piece& piece : std::get<std::vector<Piece>>(input))
     found.pieces.push_back(as<pd::PieceNumbers>(std::move(piece)));
   return found;
+}
+
+/// Pieces of a named function, whose numbers and coefficients are double, or complex with a derivative as
+/// imaginary part.
+template <class Number, class T>
+auto pieces_of(const std::string& kind, const std::array<Number, 4>& numbers) {
+  using Terms = std::vector<std::array<Number, 4>>;
+  const auto given = [](const T& x) -> Number {
+    if constexpr (std::is_same_v<T, double>)
+      return x;
+    else
+      return {x.value, x.slope};
+  };
+  std::array<T, 4> made;
+  for (std::size_t i = 0; i < 4; ++i) {
+    if constexpr (std::is_same_v<T, double>)
+      made[i] = numbers[i];
+    else
+      made[i] = {numbers[i].real(), numbers[i].imag()};
+  }
+  const pd::NamedFunction<T> function = pd::named_function(*pd::function_kind(kind.c_str()), made);
+  std::vector<std::tuple<Number, std::array<Number, 6>, Terms>> pieces;
+  for (std::size_t i = 0; i < function.count; ++i) {
+    const pd::InputPiece<T>& piece = function.pieces[i].piece;
+    std::array<Number, 6> polynomial;
+    std::transform(piece.polynomial.begin(), piece.polynomial.end(), polynomial.begin(), given);
+    Terms terms;
+    for (std::size_t j = 0; j < piece.count; ++j) {
+      const pd::InputTerm<T>& term = piece.terms[j];
+      terms.push_back(
+          {given(term.cosine), given(term.sine), given(term.decay), given(term.frequency)});
+    }
+    pieces.emplace_back(given(piece.begin), polynomial, std::move(terms));
+  }
+  return pieces;
 }
 
 /// Moves an array without other owners into the core.
@@ -457,6 +498,17 @@ NB_MODULE(_core, m) {
                               [&](std::size_t i) { return profile.from(times.data()[i]).value; });
       },
       "pieces"_a, "times"_a, "The values of a function at times (s).");
+  m.def("function_pieces", &pieces_of<double, double>, "kind"_a, "numbers"_a,
+        "The pieces of a named function; four numbers, of which the last may have no effect.");
+  m.def("function_pieces_along", &pieces_of<std::complex<double>, Dual>, "kind"_a, "numbers"_a,
+        "As function_pieces; imaginary parts are derivatives along a direction.");
+  nb::dict kinds;
+  for (const pd::FunctionKind& kind : pd::function_kinds) {
+    nb::list names;
+    for (std::size_t i = 0; i < kind.count(); ++i) names.append(nb::str(kind.parameters[i]));
+    kinds[kind.name] = nb::tuple(names);
+  }
+  m.attr("function_kinds") = kinds;
   m.def("differentiate", &differentiate, "numbers"_a, "along"_a,
         "The derivatives of a motion along a direction; both as the arguments of simulate.");
   bind_batch(m);

@@ -116,6 +116,16 @@ def input_period(inputs: Sequence[Sequence[tuple[float, float]] | Sequence[tuple
 def function_at(pieces: Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], times: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]:
     """The values of a function at times (s)."""
 
+def function_pieces(kind: str, numbers: Sequence[float]) -> list[tuple[float, list[float], list[list[float]]]]:
+    """
+    The pieces of a named function; four numbers, of which the last may have no effect.
+    """
+
+def function_pieces_along(kind: str, numbers: Sequence[complex]) -> list[tuple[complex, list[complex], list[list[complex]]]]:
+    """As function_pieces; imaginary parts are derivatives along a direction."""
+
+function_kinds: dict = ...
+
 def differentiate(numbers: tuple[float, float, float, tuple[float, float, float, Sequence[tuple[float, float]], tuple[float, float, float, float, float]], tuple[float, float, float, Sequence[tuple[float, float]], tuple[float, float, float, float, float]], Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], float, float, float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], tuple[float, float, float], float], along: tuple[float, float, float, tuple[float, float, float, Sequence[tuple[float, float]], tuple[float, float, float, float, float]], tuple[float, float, float, Sequence[tuple[float, float]], tuple[float, float, float, float, float]], Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], float, float, float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], tuple[float, float, float], float]) -> Derivative:
     """
     The derivatives of a motion along a direction; both as the arguments of simulate.

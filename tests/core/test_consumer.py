@@ -61,7 +61,7 @@ PUBLIC = {
     },
     "events": {"simulate", "stepper", "stepper_state"},
     "flow": {"flow", "oscillator"},
-    "model": {"input_curves", "input_function", "input_period", "model"},
+    "model": {"input_curves", "input_function", "input_period", "model", "named_function"},
     "motion": {
         "batch",
         "contact_use",

@@ -196,10 +196,19 @@ def test_check_lists_the_parameters(tmp_path: Path, capsys: pytest.CaptureFixtur
     assert "motion.mouse_velocity.frequency" in printed
 
 
-def test_a_unit_begins_with_the_value_of_the_function(tmp_path: Path) -> None:
+def test_a_unit_has_the_parameters_of_a_function(tmp_path: Path) -> None:
     value = SHAKEN.replace("}", ', phase = "90 deg" }')
     variables = {v.name: v for v in variables_of(pd.load_device(device(tmp_path, value)))}
-    assert variables["mouse_velocity"].start == pytest.approx(0.07)
+    assert "mouse_velocity" not in variables
+    assert variables["motion.mouse_velocity.phase"].start == pytest.approx(np.pi / 2)
+    assert variables["motion.mouse_velocity.amplitude"].unit == "m/s"
+
+
+def test_a_unit_begins_with_the_value_of_a_sum_of_functions(tmp_path: Path) -> None:
+    turned = SHAKEN.replace("}", ', phase = "90 deg" }')
+    value = f"[{SHAKEN}, {turned}]"
+    variables = {v.name: v for v in variables_of(pd.load_device(device(tmp_path, value)))}
+    assert variables["mouse_velocity"].start == pytest.approx(0.13)
     assert not any("amplitude" in name for name in variables)
 
 

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 import pindrive as pd
-from pindrive import InputPiece, InputTerm
+from pindrive import InputPiece, InputTerm, _core
+from pindrive.quantities.functions import FUNCTIONS
 
 DRIVE = pd.Drive(
     mass="10 g",
@@ -19,6 +20,11 @@ DRIVE = pd.Drive(
     plate=pd.Contact(0.020, 0.026),
     finger=pd.Contact(0.005),
 )
+
+
+def test_parameters_are_those_of_the_core() -> None:
+    named = {kind: tuple(q.name for q in of_kind) for kind, of_kind in FUNCTIONS.items()}
+    assert named == _core.function_kinds
 
 
 def test_harmonic_has_the_values_of_its_formula() -> None:

@@ -62,6 +62,7 @@ _BASE: Final = {
     "N/m": {"kg": 1, "s": -2},
     "N*s/m": {"kg": 1, "s": -1},
     "Hz": {"s": -1},
+    "rad": {"rad": 1},
     "m^2": {"m": 2},
     "K": {"K": 1},
     "V": {"kg": 1, "m": 2, "s": -3, "A": -1},
@@ -144,7 +145,8 @@ def variables_of(device: DeviceFile, control: bool = False) -> list[FmuVariable]
 def _parameters(device: DeviceFile, control: bool) -> Iterator[FmuVariable]:
     values = device.values()
     elsewhere = {*ELSEWHERE} - ({"control"} if control else set())
-    left_out = {*device.derived, *elsewhere, *(f"motion.{name}" for name in inputs_of(device))}
+    functions = {f"motion.{name}" for name in _functions_of(device)}
+    left_out = {*device.derived, *elsewhere, *(f"motion.{name}" for name in INPUTS)}
     for contact in ("plate", "finger"):
         for kinetic, static, rows, breakaway, _ in (
             tuple(COEFFICIENTS),
@@ -163,9 +165,11 @@ def _parameters(device: DeviceFile, control: bool) -> Iterator[FmuVariable]:
     for key, value in values.items():
         if value is None or key in left_out or key.partition(".")[0] in elsewhere:
             continue
-        if key in PARAMETERS or isinstance(value, Function):  # in favour of the input
+        if isinstance(value, Function):  # its parameters have keys of their own
             continue
-        row = NUMERIC_KEYS[key]
+        if key in PARAMETERS and key.rpartition(".")[0] not in functions:
+            continue
+        row = PARAMETERS.get(key) or NUMERIC_KEYS[key]
         if not isinstance(value, tuple):
             yield _given(key, row, value)
             continue
@@ -181,11 +185,22 @@ def _given(name: str, row: Quantity, value: float) -> FmuVariable:
 
 
 def inputs_of(device: DeviceFile) -> tuple[str, ...]:
-    """Return the inputs of the unit, without their rates: the inputs of a release.
+    """Return the inputs of the unit, without their rates: those of a release that are no functions.
 
     The plate load is what the magnet makes of its command, where the file describes the magnet.
     """
-    return tuple(name for name in INPUTS if not (device.whole and name == "plate_load"))
+    functions = _functions_of(device)
+    return tuple(
+        name
+        for name in INPUTS
+        if name not in functions and not (device.whole and name == "plate_load")
+    )
+
+
+def _functions_of(device: DeviceFile) -> tuple[str, ...]:
+    """Return the inputs that the file gives as functions of a few numbers."""
+    given = ((name, getattr(device.release, name)) for name in INPUTS)
+    return tuple(n for n, value in given if isinstance(value, Function) and value.parameters)
 
 
 def _inputs(device: DeviceFile, control: bool) -> Iterator[FmuVariable]:

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from math import cos, exp, inf, isfinite, sin, tau
+from math import cos, exp, inf, isfinite, sin
 from typing import TYPE_CHECKING, Any, Final, NamedTuple, overload
 
 from pindrive import _core
@@ -277,7 +277,7 @@ def of_parameters(kind: str, given: Mapping[str, float | str]) -> Function:
     unit, values = in_si([*own.values()], " and ".join(own)) if own else ("m/s", [])
     si = {**given, **dict(zip(own, values, strict=True))}
     numbers = {name: part.check(name, value) for name, value in si.items()}
-    function = Function(_MAKERS[kind](**numbers), unit)
+    function = function_of(_pieces(kind, numbers), unit)
     object.__setattr__(function, "kind", kind)
     object.__setattr__(function, "numbers", tuple(numbers.items()))
     return function
@@ -286,10 +286,16 @@ def of_parameters(kind: str, given: Mapping[str, float | str]) -> Function:
 def function_of(pieces: Iterable[Any], unit: str) -> Function:
     """Return the function of pieces as the core has them: begin, polynomial, terms."""
     made = (
-        InputPiece(begin, tuple(polynomial), tuple(InputTerm(*term) for term in terms))
+        InputPiece(begin, _trimmed(polynomial), tuple(InputTerm(*term) for term in terms))
         for begin, polynomial, terms in pieces
     )
     return Function(tuple(made), unit)
+
+
+def _trimmed(polynomial: Sequence[float]) -> tuple[float, ...]:
+    """Return coefficients without zeros at the end."""
+    count = max((n for n, p in enumerate(polynomial, 1) if p), default=1)
+    return tuple(polynomial[:count])
 
 
 def as_function(given: float | str | Profile | Function, unit: str) -> Function:
@@ -318,8 +324,15 @@ def core_of(function: Function, parameters: Mapping[str, Any]) -> list[Any]:
 
     A parameter may be complex, with an imaginary part of `STEP`.
     """
-    made = _MAKERS[function.kind](**{**function.parameters, **parameters})
-    return [piece.core for piece in made]
+    return _pieces(function.kind, {**function.parameters, **parameters})
+
+
+def _pieces(kind: str, numbers: Mapping[str, Any]) -> list[Any]:
+    """Return the pieces of a function of a kind, as the core makes them."""
+    given = [numbers[name] for name in _PARTS[kind].rows]
+    along = any(isinstance(number, complex) for number in given)
+    made = _core.function_pieces_along if along else _core.function_pieces
+    return made(kind, [*given, 0.0][:4])
 
 
 def at_begin(pieces: Sequence[Any]) -> Any:
@@ -352,35 +365,6 @@ def rates_of(function: Function, parameter: str) -> tuple[list[Any], float]:
         for begin, polynomial, terms in parts
     ]
     return pieces, rate(at_begin(parts))
-
-
-def _harmonic(mean: Any, amplitude: Any, frequency: Any, phase: Any) -> list[InputPiece]:
-    by = cmath if isinstance(phase, complex) else math
-    sine, cosine = by.sin(phase), by.cos(phase)
-    return [
-        InputPiece(
-            0.0, (mean,), (InputTerm(amplitude * sine, amplitude * cosine, 0.0, tau * frequency),)
-        )
-    ]
-
-
-def _minimum_jerk(distance: Any, duration: Any, begin: Any) -> list[InputPiece]:
-    speed = 30 * distance / duration
-    stroke = (0.0, 0.0, *(part * speed / duration**n for n, part in ((2, 1), (3, -2), (4, 1))))
-    rest = [] if begin.real == 0 else [InputPiece(0.0, (0.0,))]
-    return [*rest, InputPiece(begin, stroke), InputPiece(begin + duration, (0.0,))]
-
-
-def _exponential(start: Any, end: Any, time_constant: Any, begin: Any) -> list[InputPiece]:
-    rest = [] if begin.real == 0 else [InputPiece(0.0, (start,))]
-    return [*rest, InputPiece(begin, (end,), (InputTerm(start - end, 0.0, 1 / time_constant),))]
-
-
-_MAKERS: Final[Mapping[str, Callable[..., list[InputPiece]]]] = {
-    "harmonic": _harmonic,
-    "minimum_jerk": _minimum_jerk,
-    "exponential": _exponential,
-}
 
 
 _PARTS: Final = {kind: Part(parameters) for kind, parameters in FUNCTIONS.items()}
