@@ -165,7 +165,7 @@ def _parameters(device: DeviceFile, control: bool) -> Iterator[FmuVariable]:
     for key, value in values.items():
         if value is None or key in left_out or key.partition(".")[0] in elsewhere:
             continue
-        if isinstance(value, Function):  # its parameters have keys of their own
+        if isinstance(value, Function):  # the parameters have keys
             continue
         if key in PARAMETERS and key.rpartition(".")[0] not in functions:
             continue
