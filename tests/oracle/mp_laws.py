@@ -17,10 +17,12 @@ from mpmath import cos, exp, mp, mpf, sin, sqrt
 
 DIGITS = 30
 ROWS = 14  # of the extrapolation: order 28
-PARTS = 40  # steps in a natural period, and in one of the fastest input
+PARTS = 80  # steps in a natural period and in one of the fastest input; 40 missed a stick
 KNOWN = mpf("1e-22")  # relative change at which a zero is known
 
 State = tuple[mpf, mpf]
+Change = tuple[mpf, str, int, int]
+"""Time, contact, and its mode before and after."""
 
 
 @dataclass(frozen=True)
@@ -247,8 +249,8 @@ def solve(case: dict[str, Any], stop: Callable[[int], bool] = lambda _: False) -
     still = {name for name, at in (("plate", u), ("finger", v)) if at == 0}
     x, v = pin.select(mpf(0), (x, v), still)
     t = mpf(0)
-    events: list[tuple[mpf, str, str]] = []
-    while t < end and not stop(len(events)):
+    changes: list[Change] = []
+    while t < end and not stop(len(changes)):
         bounds = [*(b for b in breaks if b > t), *(s for s in times if s > t)]
         h = min(longest, min(bounds) - t)
         after = pin.step(t, (x, v), h)
@@ -259,33 +261,35 @@ def solve(case: dict[str, Any], stop: Callable[[int], bool] = lambda _: False) -
         t += h
         x, v = after
         before = {"plate": pin.plate, "finger": pin.finger}
-        if not broken and t in breaks:
-            pin.begin(t)
-            resting = {contact for contact, mode in before.items() if mode == 0}
-            x, v = pin.select(t, (x, v), resting)
-        elif broken:
-            held = {contact for contact, mode in before.items() if mode == 0}
+        held = {contact for contact, mode in before.items() if mode == 0}
+        if broken:
             x, v = pin.select(t, (x, v), {name} if name in before else held)
-            for contact, mode in before.items():
-                now = getattr(pin, contact)
-                if mode != now and None not in (mode, now):
-                    kind = "stick" if now == 0 else "slip" if mode == 0 else "reverse"
-                    events.append((t, contact, kind))
+        elif t in breaks:
+            pin.begin(t)
+            x, v = pin.select(t, (x, v), held)
+        for contact, mode in before.items():
+            now = getattr(pin, contact)
+            if mode != now and mode is not None and now is not None:
+                changes.append((t, contact, mode, now))
         if t in times:
             asked.append((x, v))
-    return {"events": lasting(events), "states": asked}
+    return {"events": events_of(changes), "states": asked}
 
 
-def lasting(events: list[tuple[mpf, str, str]]) -> list[tuple[mpf, str, str]]:
-    """Events without a slip that ends at its begin, as a force beside it jumps."""
-    kept: list[tuple[mpf, str, str]] = []
-    for t, contact, kind in events:
-        ends = kind == "stick" and kept and kept[-1][1:] == (contact, "slip")
-        if ends and t - kept[-1][0] <= KNOWN * t:
-            kept.pop()
-        else:
-            kept.append((t, contact, kind))
-    return kept
+def events_of(changes: list[Change]) -> list[tuple[mpf, str, str]]:
+    """Events of each instant, the plate first; two changes of a contact at an instant are one."""
+    instants: list[tuple[mpf, dict[str, tuple[int, int]]]] = []
+    for t, contact, mode, now in changes:
+        if not instants or t - instants[-1][0] > KNOWN * t:
+            instants.append((t, {}))
+        of_instant = instants[-1][1]
+        of_instant[contact] = (of_instant.get(contact, (mode, now))[0], now)
+    return [
+        (t, contact, "stick" if now == 0 else "slip" if mode == 0 else "reverse")
+        for t, of_instant in instants
+        for contact, (mode, now) in sorted(of_instant.items(), reverse=True)
+        if mode != now
+    ]
 
 
 def _zero(pin: Pin, t: mpf, state: State, h: mpf, name: str) -> tuple[mpf, str]:
