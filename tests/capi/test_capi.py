@@ -203,6 +203,9 @@ OF_THE_EXTENSION = {
     "event_limit",
     "function_range",
     "function_at",
+    "function_kinds",
+    "function_pieces",
+    "function_pieces_along",
     "input_period",
 } | OF_THE_DEVICE
 """Names of the extension without a function in C."""

@@ -451,30 +451,30 @@ void functions_of_time() {
   for (int i = 0; i < cases(1000); ++i) {
     const Case c(random);
     const Functions functions(c, random);
-    const pd::Inputs<double> release = functions.release(c);
+    const pd::Inputs<double> inputs = functions.release(c);
     std::vector<pd::Segment<double>> segments;
     const auto outcome =
-        pd::simulate(c.drive, release, [&](const auto& s) { segments.push_back(s); });
+        pd::simulate(c.drive, inputs, [&](const auto& s) { segments.push_back(s); });
     given_up += outcome.status != pd::Status::ok;
     if (outcome.status != pd::Status::ok) continue;
-    const pd::Motion<double> motion(c.drive, release, segments.data(), segments.size(), outcome);
+    const pd::Motion<double> motion(c.drive, inputs, segments.data(), segments.size(), outcome);
     const double size =
         std::abs(c.displacement) + 0.3 * std::sqrt(c.drive.mass / c.drive.stiffness);
     const double speed = size * std::sqrt(c.drive.stiffness / c.drive.mass);
-    auto stepper = std::make_unique<pd::Stepper<double>>(c.drive, release);
+    auto stepper = std::make_unique<pd::Stepper<double>>(c.drive, inputs);
     while (stepper->now() < c.duration) {
       stepper->step(std::min(c.duration, stepper->now() + between(random, 0, 0.02)),
                     one_of(random, 2));
       if (one_of(random, 5)) {
         const Values at = values_of(*stepper);
-        stepper = std::make_unique<pd::Stepper<double>>(c.drive, stepper->state(), release);
+        stepper = std::make_unique<pd::Stepper<double>>(c.drive, stepper->state(), inputs);
         const Values back = values_of(*stepper);
         differing += back.x != at.x || back.v != at.v || back.plate != at.plate;
       }
       const auto [segment, tau] = motion.locate(stepper->now(), pd::Side::left);
       const Values found = values_of(*stepper);
       const Values expected = values_in(
-          c.drive, *segment, pd::InputCurves<double>::of(c.drive, release, *segment), tau);
+          c.drive, *segment, pd::InputCurves<double>::of(c.drive, inputs, *segment), tau);
       position = std::max(position, std::abs(found.x - expected.x) / size);
       const bool inside = tau > 1e-9 && segment->end - segment->begin - tau > 1e-9;
       if (inside) {
