@@ -473,8 +473,8 @@ void functions_of_time() {
       }
       const auto [segment, tau] = motion.locate(stepper->now(), pd::Side::left);
       const Values found = values_of(*stepper);
-      const Values expected = values_in(
-          c.drive, *segment, pd::InputCurves<double>::of(c.drive, inputs, *segment), tau);
+      const Values expected =
+          values_in(c.drive, *segment, pd::InputCurves<double>::of(c.drive, inputs, *segment), tau);
       position = std::max(position, std::abs(found.x - expected.x) / size);
       const bool inside = tau > 1e-9 && segment->end - segment->begin - tau > 1e-9;
       if (inside) {
