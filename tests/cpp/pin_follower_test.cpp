@@ -183,7 +183,8 @@ void a_scan_in_two_parts() {
     differing += !pd::same_mode(run.segments.back().mode, whole.segments.back().mode);
   }
   std::printf("# in two parts: positions within %.1e m\n", worst);
-  expect(worst < 1e-13 && 2 * moved > cases(300), "a scan in two parts ends where that in one run does");
+  expect(worst < 1e-13 && 2 * moved > cases(300),
+         "a scan in two parts ends where that in one run does");
   expect(differing == 0, "with the same contacts");
 }
 
