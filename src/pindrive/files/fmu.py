@@ -158,8 +158,6 @@ def _parameters(device: DeviceFile, control: bool) -> Iterator[FmuVariable]:
                 at_rest = values[f"{contact}.{breakaway}"]
                 kinetic_value = values[f"{contact}.{kinetic}"]
                 values[f"{contact}.{static}"] = kinetic_value if at_rest is None else at_rest
-    if device.whole:
-        left_out.add("motion.plate_load")
     if device.whole and device.whole.magnet().coil:
         left_out.update(f"magnet.{name}" for name in DIRECT)
     for key, value in values.items():
@@ -190,16 +188,17 @@ def inputs_of(device: DeviceFile) -> tuple[str, ...]:
     The plate load is what the magnet makes of its command, where the file describes the magnet.
     """
     functions = _functions_of(device)
-    return tuple(
-        name
-        for name in INPUTS
-        if name not in functions and not (device.whole and name == "plate_load")
-    )
+    return tuple(name for name in _free_inputs(device) if name not in functions)
+
+
+def _free_inputs(device: DeviceFile) -> tuple[str, ...]:
+    """Return the inputs of a release that the magnet of the unit does not make."""
+    return tuple(name for name in INPUTS if not (device.whole and name == "plate_load"))
 
 
 def _functions_of(device: DeviceFile) -> tuple[str, ...]:
     """Return the inputs that the file gives as functions of a few numbers."""
-    given = ((name, getattr(device.release, name)) for name in INPUTS)
+    given = ((name, getattr(device.release, name)) for name in _free_inputs(device))
     return tuple(n for n, value in given if isinstance(value, Function) and value.parameters)
 
 
