@@ -33,12 +33,14 @@ template <class P, class Q>
 auto sum_of_products(const P& p, const Q& q, int n, int first, int last) {
   using T = std::decay_t<decltype(p[0] * q[0])>;
   T even{0}, odd{0};
-  int i = first;
-  for (; i < last; i += 2) {
-    even += p[i] * q[n - i];
-    odd += p[i + 1] * q[n - i - 1];
+  if (last < first) return even;
+  const auto *one = &p[first], *other = &q[n - first];
+  const auto* const end = &p[last];
+  for (; one < end; one += 2, other -= 2) {
+    even += one[0] * other[0];
+    odd += one[1] * other[-1];
   }
-  if (i == last) even += p[i] * q[n - i];
+  if (one == end) even += *one * *other;
   return even + odd;
 }
 /// Order n of the square of a series without the terms of order 0.

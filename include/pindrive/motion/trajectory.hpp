@@ -199,7 +199,7 @@ class BySeries {
     const Polynomial<T> load = input(given);
     Polynomial<T> at_load_1 = branch.slope * (has_slider_state ? step_.skin : step_.velocity);
     at_load_1.c[0] += along(mode.finger, branch.intercept());
-    if (!branch.linear()) at_load_1 += along(mode.finger, T(1)) * step_.falling_finger.friction();
+    if (!branch.linear()) at_load_1 += along(mode.finger, T(1)) * step_.falling_at_finger;
     return T(-1) * load * at_load_1;
   }
 

@@ -28,11 +28,12 @@ namespace pindrive::detail {
 template <class T>
 class CreepFlow : public IteratedStep<T> {
  public:
-  using typename SeriesStep<T>::Real;
-  using SeriesStep<T>::position, SeriesStep<T>::velocity, SeriesStep<T>::skin, SeriesStep<T>::speed;
-  using SeriesStep<T>::plate_force, SeriesStep<T>::span;
-  using SeriesStep<T>::x_bound, SeriesStep<T>::v_bound, SeriesStep<T>::skin_bound;
-  using SeriesStep<T>::speed_bound;
+  using typename SeriesExpansion<T>::Real;
+  using SeriesExpansion<T>::position, SeriesExpansion<T>::velocity, SeriesExpansion<T>::skin,
+      SeriesExpansion<T>::speed;
+  using SeriesExpansion<T>::plate_force, SeriesExpansion<T>::span;
+  using SeriesExpansion<T>::x_bound, SeriesExpansion<T>::v_bound, SeriesExpansion<T>::skin_bound;
+  using SeriesExpansion<T>::speed_bound;
 
   /// Expands the series at a state, up to a limit (s; may be infinite) and to the zero of w;
   /// `within_step`: the limit is known to lie within one step. A step is not valid if it would be below `shortest`, s.
@@ -105,9 +106,10 @@ class CreepFlow : public IteratedStep<T> {
 
  private:
   using IteratedStep<T>::acceleration_, IteratedStep<T>::last_change;
-  using SeriesStep<T>::across_;
-  using SeriesStep<T>::N, SeriesStep<T>::falling_plate, SeriesStep<T>::falling_finger;
-  using typename SeriesStep<T>::Sums;
+  using SeriesExpansion<T>::across_;
+  using SeriesExpansion<T>::N, SeriesExpansion<T>::falling_plate_,
+      SeriesExpansion<T>::falling_finger_;
+  using typename SeriesExpansion<T>::Sums;
 
   Polynomial<T>& inner(int i) { return this->inner_[i]; }  // t, √(1 + t²), t/√(1 + t²)
 
@@ -128,8 +130,8 @@ class CreepFlow : public IteratedStep<T> {
     // Falling friction at the plate, along the axis, and at the finger, whose speed is given.
     const auto at_plate = [&](int n) {
       speed.c[n] = across_.times(s, n);
-      falling_plate.extend(e.plate_falling, speed.c, T(1), n);
-      return sum_of_products(falling_plate.friction().c, d, n, 0, n);
+      falling_plate_.extend(e.plate_falling, speed.c, T(1), n);
+      return sum_of_products(falling_plate_.friction().c, d, n, 0, n);
     };
     x[0] = start.x;
     y[0] = start.skin;
@@ -158,7 +160,7 @@ class CreepFlow : public IteratedStep<T> {
         }
         if (finger_falls) {
           v[n] = v_p + u;
-          others += this->falling_at_finger(e, n);
+          others += this->falling_finger_force(e, n);
           damping += e.finger_load.value * e.finger_falling.slope(T(e.finger_side) * v[0]);
         }
         const T missing =
@@ -171,7 +173,7 @@ class CreepFlow : public IteratedStep<T> {
       }
       if (falls) friction[n] += at_plate(n);
       v[n] = v_p + u;
-      if (finger_falls) this->falling_at_finger(e, n);
+      if (finger_falls) this->falling_finger_force(e, n);
       speed.c[n] = across_.times(s, n);
       plate_force.c[n] = -this->load_.times(friction, n);
       x[n + 1] = T(step) / T(n + 1) * v[n];
@@ -207,21 +209,21 @@ class CreepFlow : public IteratedStep<T> {
     Real falls{0};           // slopes of falling friction, N s/m
     Real least_friction{F};  // at a load factor of 1, N
     if (e.plate_falling.present()) {
-      const auto& phi = falling_plate.friction().c;
+      const auto& phi = falling_plate_.friction().c;
       std::array<T, N + 2> directed{};
       for (int n = 0; n <= N; ++n) directed[n] = sum_of_products(phi, inner(2).c, n, 0, n);
       const Sums r = sums_of(speed.c), parts = sums_of(phi);
-      const Real error = falling_plate.error(e.plate_falling, r, most_w * root);
+      const Real error = falling_plate_.error(e.plate_falling, r, most_w * root);
       missed += load.beyond(sums_of(directed)) +
                 most_load * (beyond(parts, d) + d[0] * error + parts[0] * direction);
-      falls += most_load * falling_plate.steepest(e.plate_falling, r);
+      falls += most_load * falling_plate_.steepest(e.plate_falling, r);
       least_friction += max(Real(0), 2 * abs(plain(phi[0])) - parts[0] - error);
     }
     if (e.finger_falling.present()) {
       const auto& pressed = this->finger_load_;
-      const Real error = falling_finger.error(e.finger_falling, v, Real(0));
-      missed += pressed.beyond(sums_of(falling_finger.friction().c)) + pressed.most() * error;
-      falls += pressed.most() * falling_finger.steepest(e.finger_falling, v);
+      const Real error = falling_finger_.error(e.finger_falling, v, Real(0));
+      missed += pressed.beyond(sums_of(falling_finger_.friction().c)) + pressed.most() * error;
+      falls += pressed.most() * falling_finger_.steepest(e.finger_falling, v);
     }
     const Real missed_skin =
         K * last(velocity, N) + (abs(decay) + (N + 1) * abs(f_change) / h) * last(skin, N);

@@ -15,18 +15,18 @@
 #include <optional>
 
 #include "pindrive/numbers/limits.hpp"
-#include "pindrive/series/series_step.hpp"
+#include "pindrive/series/series_expansion.hpp"
 
 namespace pindrive::detail {
 
 /// Step whose acceleration a comes from the series of the preceding iteration.
 template <class T>
-class IteratedStep : public SeriesStep<T> {
+class IteratedStep : public SeriesExpansion<T> {
  public:
-  using typename SeriesStep<T>::Real;
+  using typename SeriesExpansion<T>::Real;
 
  protected:
-  using SeriesStep<T>::N;
+  using SeriesExpansion<T>::N;
 
   /// Takes a from the velocity below an order, in the time σ = τ/step.
   void take_acceleration(Real step, int order) {
@@ -54,11 +54,12 @@ class IteratedStep : public SeriesStep<T> {
 template <class T>
 class OverdampedFlow : public IteratedStep<T> {
  public:
-  using typename SeriesStep<T>::Real;
-  using SeriesStep<T>::position, SeriesStep<T>::velocity, SeriesStep<T>::skin, SeriesStep<T>::speed;
-  using SeriesStep<T>::plate_force, SeriesStep<T>::span;
-  using SeriesStep<T>::x_bound, SeriesStep<T>::v_bound, SeriesStep<T>::skin_bound;
-  using SeriesStep<T>::speed_bound;
+  using typename SeriesExpansion<T>::Real;
+  using SeriesExpansion<T>::position, SeriesExpansion<T>::velocity, SeriesExpansion<T>::skin,
+      SeriesExpansion<T>::speed;
+  using SeriesExpansion<T>::plate_force, SeriesExpansion<T>::span;
+  using SeriesExpansion<T>::x_bound, SeriesExpansion<T>::v_bound, SeriesExpansion<T>::skin_bound;
+  using SeriesExpansion<T>::speed_bound;
 
   /// True if the fast transient is so much faster than the remaining motion that the iteration converges quickly.
   static bool stiff(const SeriesEquation<T>& e) {
@@ -109,8 +110,8 @@ class OverdampedFlow : public IteratedStep<T> {
 
  private:
   using IteratedStep<T>::acceleration_, IteratedStep<T>::last_change;
-  using SeriesStep<T>::N, SeriesStep<T>::load_, SeriesStep<T>::plate_velocity_;
-  using typename SeriesStep<T>::Sums;
+  using SeriesExpansion<T>::N, SeriesExpansion<T>::load_, SeriesExpansion<T>::plate_velocity_;
+  using typename SeriesExpansion<T>::Sums;
 
   static T damping(const SeriesEquation<T>& e) { return e.damping + e.load.value * e.plate_slope; }
   /// Estimate of the fastest rate of the slow motion, 1/s.

@@ -13,20 +13,22 @@
 #include "pindrive/law/oblique.hpp"
 #include "pindrive/numbers/limits.hpp"
 #include "pindrive/series/series_equation.hpp"
-#include "pindrive/series/series_step.hpp"
+#include "pindrive/series/series_expansion.hpp"
 #include "pindrive/series/straight_path.hpp"
 
 namespace pindrive::detail {
 
 /// Taylor series of a mode at a state.
 template <class T>
-class SeriesFlow : public SeriesStep<T> {
+class SeriesFlow : public SeriesExpansion<T> {
  public:
-  using typename SeriesStep<T>::Real;
-  using SeriesStep<T>::position, SeriesStep<T>::velocity, SeriesStep<T>::skin, SeriesStep<T>::speed;
-  using SeriesStep<T>::plate_force, SeriesStep<T>::stick_force, SeriesStep<T>::span;
-  using SeriesStep<T>::x_bound, SeriesStep<T>::v_bound, SeriesStep<T>::skin_bound;
-  using SeriesStep<T>::speed_bound, SeriesStep<T>::falling_plate, SeriesStep<T>::falling_finger;
+  using typename SeriesExpansion<T>::Real;
+  using SeriesExpansion<T>::position, SeriesExpansion<T>::velocity, SeriesExpansion<T>::skin,
+      SeriesExpansion<T>::speed;
+  using SeriesExpansion<T>::plate_force, SeriesExpansion<T>::stick_force, SeriesExpansion<T>::span;
+  using SeriesExpansion<T>::x_bound, SeriesExpansion<T>::v_bound, SeriesExpansion<T>::skin_bound;
+  using SeriesExpansion<T>::speed_bound, SeriesExpansion<T>::falling_plate_,
+      SeriesExpansion<T>::falling_finger_;
 
   /// Expands the mode at a state, up to a limit (s; may be infinite); `within_step`: the limit is
   /// known to lie within one step, whose error has been bounded.
@@ -60,10 +62,10 @@ class SeriesFlow : public SeriesStep<T> {
   }
 
  protected:
-  using SeriesStep<T>::N;
-  using SeriesStep<T>::plate_velocity_, SeriesStep<T>::load_, SeriesStep<T>::across_;
-  using SeriesStep<T>::finger_load_, SeriesStep<T>::surface_;
-  using typename SeriesStep<T>::Sums;
+  using SeriesExpansion<T>::N;
+  using SeriesExpansion<T>::plate_velocity_, SeriesExpansion<T>::load_, SeriesExpansion<T>::across_;
+  using SeriesExpansion<T>::finger_load_, SeriesExpansion<T>::surface_;
+  using typename SeriesExpansion<T>::Sums;
 
  private:
   Slant<T> path_{T(0), T(0)};  // direction of a plate that moves along a straight path
@@ -168,16 +170,16 @@ class SeriesFlow : public SeriesStep<T> {
     if (e.side != 0) found.root = plate_velocity_.missed();
     found.missed = F * (load_.beyond(d) + load_.most() * found.direction);
     if (e.plate_falling.present()) {
-      const Sums r = sums_of(speed.c), phi = sums_of(falling_plate.friction().c);
+      const Sums r = sums_of(speed.c), phi = sums_of(falling_plate_.friction().c);
       const Sums directed = sums_of(inner(2).c);
-      found.falling = falling_plate.error(e.plate_falling, r, found.root);
+      found.falling = falling_plate_.error(e.plate_falling, r, found.root);
       const Real cut = e.side == 0 ? beyond(phi, d) : Real(0);
       found.missed += load_.beyond(directed) +
                       load_.most() * (cut + d[0] * found.falling + phi[0] * found.direction);
     }
     if (e.finger_falling.present()) {
-      const Sums phi = sums_of(falling_finger.friction().c);
-      const Real error = falling_finger.error(e.finger_falling, sums_of(velocity.c), Real(0));
+      const Sums phi = sums_of(falling_finger_.friction().c);
+      const Real error = falling_finger_.error(e.finger_falling, sums_of(velocity.c), Real(0));
       found.missed += finger_load_.beyond(phi) + finger_load_.most() * error;
       found.falling_at_finger = error;
     }
@@ -194,7 +196,7 @@ class SeriesFlow : public SeriesStep<T> {
     v[0] = e.held ? e.surface.value : start.v;
     y[0] = start.skin;
     const bool falls = e.plate_falling.present();
-    const T side = T(sense_of_path()), per_mass = 1 / e.mass;
+    const T side = along_path() ? T(sense_of_path()) : T(1), per_mass = 1 / e.mass;
     T per_speed{0};                 // 1/r
     std::array<T, N + 1> friction;  // F d + S u
     for (int n = 0;; ++n) {
@@ -220,7 +222,7 @@ class SeriesFlow : public SeriesStep<T> {
       T forces = plate_force.c[n] - this->damper_force(e, n, step) - e.stiffness * x[n] -
                  e.skin_factor.value * y[n] + this->given_force(e, n, step);
       if (n > 0) forces -= step * e.skin_factor.rate * y[n - 1];
-      if (e.finger_falling.present()) forces -= this->falling_at_finger(e, n);
+      if (e.finger_falling.present()) forces -= this->falling_finger_force(e, n);
       if (e.held) stick_force.c[n] = e.mass * surface_.rate(n) - forces;
       if (n == N) return;
       v[n + 1] = e.held ? surface_[n + 1] : part * forces * per_mass;
@@ -247,17 +249,17 @@ class SeriesFlow : public SeriesStep<T> {
   /// 1, and of a rigid finger.
   Real steepest_fall(const SeriesEquation<T>& e) const {
     if (!e.plate_falling.present()) return Real(0);
-    return falling_plate.steepest(e.plate_falling, sums_of(speed.c));
+    return falling_plate_.steepest(e.plate_falling, sums_of(speed.c));
   }
   Real steepest_fall_at_finger(const SeriesEquation<T>& e) const {
     if (!e.finger_falling.present()) return Real(0);
-    return finger_load_.most() * falling_finger.steepest(e.finger_falling, sums_of(velocity.c));
+    return finger_load_.most() * falling_finger_.steepest(e.finger_falling, sums_of(velocity.c));
   }
 
   /// Computes order n of φ and returns that of φ d, from the orders of d up to `known`.
   T directed_falling(const SeriesEquation<T>& e, int n, int known) {
-    const auto &d = inner(0).c, &phi = falling_plate.friction().c;
-    falling_plate.extend(e.plate_falling, speed.c, T(1), n);
+    const auto &d = inner(0).c, &phi = falling_plate_.friction().c;
+    falling_plate_.extend(e.plate_falling, speed.c, T(1), n);
     if (e.side != 0) return inner(2).c[n] = T(e.side) * phi[n];
     return inner(2).c[n] = sum_of_products(phi, d, n, n - known, n);
   }
@@ -294,7 +296,7 @@ class SeriesFlow : public SeriesStep<T> {
       T others = this->given_force(e, n, step) - this->damper_force(e, n, step) -
                  e.stiffness * x[n] - e.skin_factor.value * y[n];
       if (n > 0) others -= step * e.skin_factor.rate * y[n - 1];
-      if (e.finger_falling.present()) others -= this->falling_at_finger(e, n);
+      if (e.finger_falling.present()) others -= this->falling_finger_force(e, n);
       // d and ρ/σᵏ of this order without u/σᵏ
       const int last = std::min(n + k - 1, N + 1), first = n + 2 * k - last;
       const T product = -sum_of_products(r, d, n + k, k + 1, last);

@@ -40,10 +40,10 @@ class InputSeries {
     if (n == 0) return curve_.rate;
     return n + 1 <= degree_ ? T(n + 1) * c_[n + 1] / step_ : T(0);
   }
-  /// Order n of the product with a series.
+  /// Order n of the product with a series, without the orders of the input below the first.
   template <class Coefficients>
-  T times(const Coefficients& c, int n) const {
-    return sum_of_products(c_, c, n, 0, std::min(n, degree_));
+  T times(const Coefficients& c, int n, int first = 0) const {
+    return sum_of_products(c_, c, n, first, std::min(n, degree_));
   }
   /// Order n of the square.
   T square(int n) const {

@@ -26,10 +26,11 @@ namespace pindrive::detail {
 template <class T>
 class SlowSliderFlow : public SeriesFlow<T> {
  public:
-  using typename SeriesStep<T>::Real;
-  using SeriesStep<T>::position, SeriesStep<T>::velocity, SeriesStep<T>::skin, SeriesStep<T>::speed;
-  using SeriesStep<T>::x_bound, SeriesStep<T>::v_bound, SeriesStep<T>::skin_bound;
-  using SeriesStep<T>::speed_bound, SeriesStep<T>::span;
+  using typename SeriesExpansion<T>::Real;
+  using SeriesExpansion<T>::position, SeriesExpansion<T>::velocity, SeriesExpansion<T>::skin,
+      SeriesExpansion<T>::speed;
+  using SeriesExpansion<T>::x_bound, SeriesExpansion<T>::v_bound, SeriesExpansion<T>::skin_bound;
+  using SeriesExpansion<T>::speed_bound, SeriesExpansion<T>::span;
 
   /// True if the fast transient is so much faster than the remaining motion that the iteration
   /// converges quickly.
@@ -77,8 +78,8 @@ class SlowSliderFlow : public SeriesFlow<T> {
   bool is_valid() const { return holds_; }
 
  private:
-  using SeriesStep<T>::N, SeriesStep<T>::load_;
-  using typename SeriesStep<T>::Sums;
+  using SeriesExpansion<T>::N, SeriesExpansion<T>::load_;
+  using typename SeriesExpansion<T>::Sums;
 
   /// Estimate of the fastest rate of the slow motion, 1/s; the skin acts as a damper φ.
   static Real slow_rate(const SeriesEquation<T>& e, const SeriesState<T>& start) {
