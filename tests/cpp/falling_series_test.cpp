@@ -49,10 +49,11 @@ void within_bounds() {
       const double change = 0.02 * part(random) * part(random);
       const auto speed = speed_of(random, 0.05 * part(random), change, 0.2 * part(random));
       pd::detail::FallingSeries<double> series;
-      series.begin(1, pd::detail::series_order);
+      series.begin(law, 1);
       for (int n = 0; n <= pd::detail::series_order; ++n) series.extend(law, speed.c, 1.0, n);
       const auto sums = pd::detail::sums_of(speed.c);
-      const double bound = series.error(law, sums, 0), steep = series.steepest(law, sums);
+      const auto [parts, steep, bound] = series.bounds(law, sums, 0);
+      expect(parts[0] >= std::abs(series.friction().at(0.5)), "friction beyond its sum", parts[0]);
       double most = 0;
       for (int k = 0; k <= 16; ++k) {
         const double r = speed.at(k / 16.0);
@@ -97,9 +98,9 @@ void underflows() {
     for (const double slows_by : {0.03, 0.02, 1e-3}) {
       speed.c[1] = -slows_by;
       pd::detail::FallingSeries<double> series;
-      series.begin(1, pd::detail::series_order);
+      series.begin(law, 1);
       for (int n = 0; n <= pd::detail::series_order; ++n) series.extend(law, speed.c, 1.0, n);
-      const double bound = series.error(law, pd::detail::sums_of(speed.c), 0);
+      const double bound = series.bounds(law, pd::detail::sums_of(speed.c), 0).error;
       const auto missed = static_cast<double>(exact(law, 0.03L - slows_by));
       expect(series.friction().size() == 0 && bound >= 0.999 * missed, "an underflow is no error",
              bound);

@@ -212,18 +212,18 @@ class CreepFlow : public IteratedStep<T> {
       const auto& phi = falling_plate_.friction().c;
       std::array<T, N + 2> directed{};
       for (int n = 0; n <= N; ++n) directed[n] = sum_of_products(phi, inner(2).c, n, 0, n);
-      const Sums r = sums_of(speed.c), parts = sums_of(phi);
-      const Real error = falling_plate_.error(e.plate_falling, r, most_w * root);
+      const auto [parts, slope, error] =
+          falling_plate_.bounds(e.plate_falling, sums_of(speed.c), most_w * root);
       missed += load.beyond(sums_of(directed)) +
                 most_load * (beyond(parts, d) + d[0] * error + parts[0] * direction);
-      falls += most_load * falling_plate_.steepest(e.plate_falling, r);
+      falls += most_load * slope;
       least_friction += max(Real(0), 2 * abs(plain(phi[0])) - parts[0] - error);
     }
     if (e.finger_falling.present()) {
       const auto& pressed = this->finger_load_;
-      const Real error = falling_finger_.error(e.finger_falling, v, Real(0));
-      missed += pressed.beyond(sums_of(falling_finger_.friction().c)) + pressed.most() * error;
-      falls += pressed.most() * falling_finger_.steepest(e.finger_falling, v);
+      const auto [parts, slope, error] = falling_finger_.bounds(e.finger_falling, v, Real(0));
+      missed += pressed.beyond(parts) + pressed.most() * error;
+      falls += pressed.most() * slope;
     }
     const Real missed_skin =
         K * last(velocity, N) + (abs(decay) + (N + 1) * abs(f_change) / h) * last(skin, N);

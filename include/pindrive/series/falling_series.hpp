@@ -23,11 +23,10 @@ class FallingSeries {
 
   const Polynomial<T>& friction() const { return friction_; }  ///< φ, N
 
-  void begin(Real step, int order) {
-    for (Polynomial<T>* p : {&friction_, &square_}) {
-      p->span = step;
-      p->degree = order;
-    }
+  void begin(const FallingFriction<T>& law, Real step) {
+    friction_.span = square_.span = step;
+    friction_.degree = law.present() ? series_order : 0;
+    square_.degree = law.shape == FallingShape::exponential ? 0 : friction_.degree;
   }
   void rescale(const Powers<Real>& part) {
     friction_.rescale(part);
@@ -50,31 +49,42 @@ class FallingSeries {
     return phi[n] = -sum_of_products(exponent_rate_, phi, n, 1, n) / T(n);
   }
 
-  /// Bound of the error of φ over the step, N: from the terms of its equation beyond the last order,
-  /// and from the error of the speed (m/s).
-  Real error(const FallingFriction<T>& law, const Sums<Real>& speed, Real of_speed) const {
+  /// Bounds over a step.
+  struct Bounds {
+    Sums<Real> friction{};  ///< tail sums of φ, N
+    Real slope{0};          ///< of |dφ/dr|, N s/m
+    Real error{0};          ///< of φ, N
+  };
+  /// Bounds over the step for the tail sums of the speed. The error is from the terms of the equation of φ beyond the
+  /// last order, and from the error of the speed (m/s).
+  Bounds bounds(const FallingFriction<T>& law, const Sums<Real>& speed, Real of_speed) const {
     const Sums<Real> phi = sums_of(friction_.c);
-    const Real by_speed = steepest(law, speed) * of_speed, v = plain(law.velocity);
-    if (law.shape == FallingShape::exponential)
-      return grown(beyond(speed, phi) / v, speed[1] / v) + by_speed +
-             underflow(law, plain(speed[0] - 2 * speed[1]) / v);
-    const Sums<Real> q = sums_of(square_.c);
-    const Real cut = beyond(speed, speed) / (v * v), residual = beyond(q, phi) + phi[0] * cut;
-    if (law.shape == FallingShape::rational) return residual + by_speed;
-    return grown(residual, q[1] + cut) + by_speed + underflow(law, q[0] - 2 * q[1] - cut);
+    const Real slope = steepest(law, speed[0], phi[0]);
+    return {phi, slope, unknown(law, speed, phi) + slope * of_speed};
   }
 
-  /// Bound of |dφ/dr| over the step, N s/m.
-  Real steepest(const FallingFriction<T>& law, const Sums<Real>& speed) const {
-    const Real v = plain(law.velocity), excess = plain(law.excess), s = speed[0] / v;
+ private:
+  /// Bound of |dφ/dr| for the largest speed and the largest φ, N s/m.
+  static Real steepest(const FallingFriction<T>& law, Real speed, Real largest) {
+    const Real v = plain(law.velocity), excess = plain(law.excess), s = speed / v;
     if (!(excess > 0)) return Real(0);
-    const Real phi = std::min(sums_of(friction_.c)[0], excess);
+    const Real phi = std::min(largest, excess);
     if (law.shape == FallingShape::exponential) return phi / v;
     const Real flat = law.shape == FallingShape::gaussian ? Real(1) : phi / excess;
     return std::min(2 * s * phi * flat, excess) / v;  // |g'| < 1
   }
-
- private:
+  /// Bound of the error of φ for an exact speed, N.
+  Real unknown(const FallingFriction<T>& law, const Sums<Real>& speed,
+               const Sums<Real>& phi) const {
+    const Real v = plain(law.velocity);
+    if (law.shape == FallingShape::exponential)
+      return grown(beyond(speed, phi) / v, speed[1] / v) +
+             underflow(law, plain(speed[0] - 2 * speed[1]) / v);
+    const Sums<Real> q = sums_of(square_.c);
+    const Real cut = beyond(speed, speed) / (v * v), residual = beyond(q, phi) + phi[0] * cut;
+    if (law.shape == FallingShape::rational) return residual;
+    return grown(residual, q[1] + cut) + underflow(law, q[0] - 2 * q[1] - cut);
+  }
   static Real grown(Real residual, Real exponent) {
     return residual > 0 ? residual * exp(exponent) : Real(0);
   }

@@ -72,7 +72,7 @@ class SeriesFlow : public SeriesExpansion<T> {
   bool along_path() const { return path_.along != 0 || path_.across != 0; }
   int begins_{0};  // order k at which the first of u and w begins
 
-  Polynomial<T>& inner(int i) { return this->inner_[i]; }  // d, u, φ d
+  Polynomial<T>& inner(int i) { return this->inner_[i]; }  // of oblique slip: d, u, φ d
 
   /// Coefficient sums of p/σᵏ.
   Sums from_rest(std::array<T, N + 2> c) const {
@@ -144,13 +144,13 @@ class SeriesFlow : public SeriesExpansion<T> {
   struct Turning {
     bool known{true};
     Real root{0}, direction{0}, missed{0};
-    Real falling{0};  ///< error of the falling part of friction, N
-    Real falling_at_finger{0};
+    /// Of the falling parts of friction at a load factor of 1.
+    typename FallingSeries<T>::Bounds falling{}, falling_at_finger{};
   };
   Turning bound_turning(const SeriesEquation<T>& e) {
     using std::max;
     const Real F = abs(plain(e.plate_force));
-    const Sums d = sums_of(this->inner_[0].c);
+    const Sums d = sums_of(inner(0).c);
     Turning found;
     if (along_path()) {
       found.root = plate_velocity_.missed() + across_.missed();
@@ -169,19 +169,20 @@ class SeriesFlow : public SeriesExpansion<T> {
     }
     if (e.side != 0) found.root = plate_velocity_.missed();
     found.missed = F * (load_.beyond(d) + load_.most() * found.direction);
+    auto& falling = found.falling;
     if (e.plate_falling.present()) {
-      const Sums r = sums_of(speed.c), phi = sums_of(falling_plate_.friction().c);
-      const Sums directed = sums_of(inner(2).c);
-      found.falling = falling_plate_.error(e.plate_falling, r, found.root);
-      const Real cut = e.side == 0 ? beyond(phi, d) : Real(0);
-      found.missed += load_.beyond(directed) +
-                      load_.most() * (cut + d[0] * found.falling + phi[0] * found.direction);
+      falling = falling_plate_.bounds(e.plate_falling, sums_of(speed.c), found.root);
+      const Sums directed = e.side != 0 ? falling.friction : sums_of(inner(2).c);
+      const Real cut = e.side != 0 ? Real(0) : beyond(falling.friction, d);
+      found.missed +=
+          load_.beyond(directed) +
+          load_.most() * (cut + d[0] * falling.error + falling.friction[0] * found.direction);
     }
+    auto& at_finger = found.falling_at_finger;
     if (e.finger_falling.present()) {
-      const Sums phi = sums_of(falling_finger_.friction().c);
-      const Real error = falling_finger_.error(e.finger_falling, sums_of(velocity.c), Real(0));
-      found.missed += finger_load_.beyond(phi) + finger_load_.most() * error;
-      found.falling_at_finger = error;
+      at_finger = falling_finger_.bounds(e.finger_falling, sums_of(velocity.c), Real(0));
+      found.missed +=
+          finger_load_.beyond(at_finger.friction) + finger_load_.most() * at_finger.error;
     }
     return found;
   }
@@ -204,7 +205,7 @@ class SeriesFlow : public SeriesExpansion<T> {
       const T u = u_[n] = v[n] - plate_velocity_[n];
       if (e.side != 0) {
         r[n] = T(e.side) * u;
-        d[n] = n == 0 ? T(e.side) : T(0);
+        if (n == 0) d[0] = T(e.side);
       } else if (along_path()) {
         r[n] = side * (path_.along * plate_velocity_[n] + path_.across * across_[n]);
         d[n] = n == 0 ? -side * path_.along : T(0);
@@ -245,22 +246,11 @@ class SeriesFlow : public SeriesExpansion<T> {
     return 1;
   }
 
-  /// Bounds of the slopes of the falling parts of friction over the step, N s/m: at a load factor of
-  /// 1, and of a rigid finger.
-  Real steepest_fall(const SeriesEquation<T>& e) const {
-    if (!e.plate_falling.present()) return Real(0);
-    return falling_plate_.steepest(e.plate_falling, sums_of(speed.c));
-  }
-  Real steepest_fall_at_finger(const SeriesEquation<T>& e) const {
-    if (!e.finger_falling.present()) return Real(0);
-    return finger_load_.most() * falling_finger_.steepest(e.finger_falling, sums_of(velocity.c));
-  }
-
   /// Computes order n of φ and returns that of φ d, from the orders of d up to `known`.
   T directed_falling(const SeriesEquation<T>& e, int n, int known) {
     const auto &d = inner(0).c, &phi = falling_plate_.friction().c;
     falling_plate_.extend(e.plate_falling, speed.c, T(1), n);
-    if (e.side != 0) return inner(2).c[n] = T(e.side) * phi[n];
+    if (e.side != 0) return T(e.side) * phi[n];
     return inner(2).c[n] = sum_of_products(phi, d, n, n - known, n);
   }
 
@@ -355,7 +345,7 @@ class SeriesFlow : public SeriesExpansion<T> {
     const Real K = plain(e.skin_stiffness), most_f = max(abs(f), abs(f + f_change));
     const Real S = plain(e.plate_slope), most_load = load_.most();
     const auto last = [](const Polynomial<T>& p, int n) { return abs(plain(p.c[n])); };
-    const Sums u = sums_of(inner(1).c);
+    const Sums u = sums_of(e.side != 0 ? speed.c : inner(1).c);
     const Turning turning = bound_turning(e);
     if (!turning.known) return never;
     // Residual of the equation: terms from order N on.
@@ -370,8 +360,8 @@ class SeriesFlow : public SeriesExpansion<T> {
     const Real missed_skin =
         K * last(velocity, N) + (abs(decay) + (N + 1) * abs(f_change) / h) * last(skin, N);
     const Real falls = std::min(b, b + b_change) - this->bent_damping(e) +
-                       std::min(Real(0), S * most_load) - most_load * steepest_fall(e) -
-                       steepest_fall_at_finger(e);
+                       std::min(Real(0), S * most_load) - most_load * turning.falling.slope -
+                       finger_load_.most() * turning.falling_at_finger.slope;
     const Real growth = exp(max({Real(0), -falls / m, f < 0 ? -decay / f : Real(0)}) * h);
     const Real error =
         h * growth * (missed / sqrt(m) + (K > 0 ? missed_skin / sqrt(K) : Real(0)));  // sqrt(2 E²)
@@ -396,8 +386,8 @@ class SeriesFlow : public SeriesExpansion<T> {
       return direction_error<Real> * plain(law.excess);
     };
     return max({excess, over(turning.direction, direction_error<Real>),
-                over(turning.falling, known(e.plate_falling)),
-                over(turning.falling_at_finger, known(e.finger_falling))});
+                over(turning.falling.error, known(e.plate_falling)),
+                over(turning.falling_at_finger.error, known(e.finger_falling))});
   }
 };
 

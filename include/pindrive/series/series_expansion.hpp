@@ -41,10 +41,11 @@ class SeriesExpansion : public SeriesStep<T> {
       p.degree = N;
     });
     position.degree = N + 1;
+    for (Polynomial<T>& p : inner_) p.degree = e.side == 0 ? N : 0;
     if (!e.held) stick_force.degree = 0;
     if (e.skin_stiffness == 0) skin.degree = 0;
-    falling_plate_.begin(step, e.plate_falling.present() ? N : 0);
-    falling_finger_.begin(step, e.finger_falling.present() ? N : 0);
+    falling_plate_.begin(e.plate_falling, step);
+    falling_finger_.begin(e.finger_falling, step);
   }
 
   /// Part of the step at which the last terms are within the rounding of the first terms.

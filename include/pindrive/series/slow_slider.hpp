@@ -129,7 +129,7 @@ class SlowSliderFlow : public SeriesFlow<T> {
                      abs(f_change) * last(skin, N - 1) + turning.missed + this->missed_inputs(e);
     const Real stays = plain(e.skin_decay) + plain(e.skin_factor.rate);
     const Real falls =
-        min(b, b + b_change) + min(Real(0), S * most_load) - most_load * this->steepest_fall(e);
+        min(b, b + b_change) + min(Real(0), S * most_load) - most_load * turning.falling.slope;
     const Real grown = h / m * (k * h + most_f * K / stays + max(Real(0), -falls));
     // May end with its load, within the time resolution.
     const Real ends =
