@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import pindrive as pd
-from oracle import law_motion, make_laws
+from oracle import law_motion, make_laws, sundials_laws
 
 CASES = make_laws.load(Path(__file__).parents[1] / "oracle" / "law_cases.json.gz")
 
@@ -15,6 +16,12 @@ CASES = make_laws.load(Path(__file__).parents[1] / "oracle" / "law_cases.json.gz
 @pytest.mark.parametrize("number", range(len(CASES)))
 def test_thirty_digits(number: int) -> None:
     law_motion.compare(CASES[number])
+
+
+@pytest.mark.parametrize("case", CASES[:50], ids=range(50))
+def test_sundials(case: dict[str, Any]) -> None:
+    """An integrator with steps, which knows neither series nor closed forms."""
+    law_motion.compare(case | sundials_laws.solve(case), sundials_laws.TOLERANCE)
 
 
 BELT = {"kinetic": 1.0, "breakaway": 2.0, "stribeck_velocity": 0.05}

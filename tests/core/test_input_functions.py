@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from oracle import law_motion, make_laws
+from oracle import law_motion, make_laws, sundials_laws
 
 CASES = make_laws.load(Path(__file__).parents[1] / "oracle" / "function_cases.json.gz")
 
@@ -14,3 +15,9 @@ CASES = make_laws.load(Path(__file__).parents[1] / "oracle" / "function_cases.js
 @pytest.mark.parametrize("number", range(len(CASES)))
 def test_thirty_digits(number: int) -> None:
     law_motion.compare(CASES[number])
+
+
+@pytest.mark.parametrize("case", CASES[:50], ids=range(50))
+def test_sundials(case: dict[str, Any]) -> None:
+    """An integrator with steps, which knows neither series nor closed forms."""
+    law_motion.compare(case | sundials_laws.solve(case), sundials_laws.TOLERANCE)

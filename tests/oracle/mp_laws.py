@@ -5,6 +5,8 @@ Between events the equation of motion is integrated by extrapolation of the expl
 rows, linear between them, or pieces of polynomials, exponentials and sinusoids. A guard is tested
 at the ends of each step, a part of the natural period, and its zero is found by bisection and
 secants of steps from the same start.
+
+The same modes are followed by another integrator, in floating point, where `solve` is given one.
 """
 
 from __future__ import annotations
@@ -13,7 +15,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from mpmath import cos, exp, mp, mpf, sin, sqrt
+from mpmath import mp, mpf
 
 DIGITS = 30
 ROWS = 14  # of the extrapolation: order 28
@@ -36,13 +38,15 @@ class Law:
     exponent: int
     viscous: mpf
     static: mpf
+    context: Any  # of mpmath: functions of its numbers
 
     def at(self, speed: mpf) -> mpf:
         """The friction at a sliding speed."""
         if self.name == "coulomb":
             return self.kinetic + self.viscous * speed
-        s = max(speed / self.velocity, mpf(-1))  # beyond its guard a step may try any
-        part = exp(-(s**self.exponent)) if self.name == "stribeck" else 1 / (1 + s * s)
+        s = max(speed / self.velocity, -1)  # beyond its guard a step may try any
+        gaussian = self.name == "stribeck"
+        part = self.context.exp(-(s**self.exponent)) if gaussian else 1 / (1 + s * s)
         return self.kinetic + (self.breakaway - self.kinetic) * part + self.viscous * speed
 
 
@@ -50,24 +54,25 @@ def line(rows: list[list[float]], t: mpf) -> tuple[mpf, mpf]:
     """Value and rate of an input just after a time."""
     later = [i for i, (at, _) in enumerate(rows) if at > t]
     if not later or later[0] == 0:
-        return mpf(rows[0 if later else -1][1]), mpf(0)
-    (t0, y0), (t1, y1) = (tuple(map(mpf, row)) for row in rows[later[0] - 1 : later[0] + 1])
+        return type(t)(rows[0 if later else -1][1]), type(t)(0)
+    (t0, y0), (t1, y1) = (tuple(map(type(t), row)) for row in rows[later[0] - 1 : later[0] + 1])
     rate = (y1 - y0) / (t1 - t0)
     return y0 + rate * (t - t0), rate
 
 
-def piece(pieces: list[Any], t: mpf) -> Callable[[mpf], tuple[mpf, mpf]]:
+def piece(context: Any, pieces: list[Any], t: mpf) -> Callable[[mpf], tuple[mpf, mpf]]:
     """Value and rate of a function of pieces from a time on, as a function of time."""
     begin, polynomial, terms = [each for each in pieces if each[0] <= t][-1]
-    powers = [(n, mpf(p)) for n, p in enumerate(polynomial)]
-    waves = [tuple(map(mpf, term)) for term in terms]
+    powers = [(n, context.mpf(p)) for n, p in enumerate(polynomial)]
+    waves = [tuple(map(context.mpf, term)) for term in terms]
 
     def at(time: mpf) -> tuple[mpf, mpf]:
-        tau = time - mpf(begin)
-        value = sum((p * tau**n for n, p in powers), mpf(0))
-        rate = sum((n * p * tau ** (n - 1) for n, p in powers if n), mpf(0))
+        tau = time - context.mpf(begin)
+        value = sum((p * tau**n for n, p in powers), 0 * tau)
+        rate = sum((n * p * tau ** (n - 1) for n, p in powers if n), 0 * tau)
         for a, b, decay, frequency in waves:
-            part, c, s = exp(-decay * tau), cos(frequency * tau), sin(frequency * tau)
+            part = context.exp(-decay * tau)
+            c, s = context.cos(frequency * tau), context.sin(frequency * tau)
             wave, turned = part * (a * c + b * s), part * frequency * (b * c - a * s)
             value += wave
             rate += turned - decay * wave
@@ -96,23 +101,31 @@ def begins(given: Any) -> list[float]:
 class Pin:
     """A pin between two breakpoints, in one mode: -1 or 1 slips, 0 sticks, None slips obliquely."""
 
-    def __init__(self, case: dict[str, Any]) -> None:
-        self.case = case
+    def __init__(self, case: dict[str, Any], context: Any = mp) -> None:
+        self.case, self.context = case, context
+        number = context.mpf
         self.mass, self.stiffness, self.damping = (
-            mpf(case[name]) for name in ("mass", "stiffness", "damping")
+            number(case[name]) for name in ("mass", "stiffness", "damping")
         )
         self.laws = {
-            contact: Law(**{k: v if k in ("name", "exponent") else mpf(v) for k, v in law.items()})
+            contact: Law(
+                **{k: v if k in ("name", "exponent") else number(v) for k, v in law.items()},
+                context=context,
+            )
             for contact, law in case["laws"].items()
         }
+        frequency = context.sqrt(self.stiffness / self.mass)
+        self.fastest = max(frequency, *map(number, frequencies(case)))
         self.plate: int | None = 0
         self.finger = 0
-        self.begin(mpf(0))
+        self.begin(number(0))
 
     def begin(self, t: mpf) -> None:
         """Read the inputs from a time on."""
         self.given = {
-            name: piece(given["pieces"], t) if isinstance(given, dict) else straight(given, t)
+            name: piece(self.context, given["pieces"], t)
+            if isinstance(given, dict)
+            else straight(given, t)
             for name, given in self.case["inputs"].items()
         }
 
@@ -127,7 +140,7 @@ class Pin:
         u, w = v - self.at("mouse_velocity", t), self.at("across_velocity", t)
         law, load = self.laws["plate"], self.at("plate_load", t)
         if self.plate is None:
-            speed = sqrt(u * u + w * w)
+            speed = self.context.sqrt(u * u + w * w)
             return -load * law.at(speed) * u / speed
         return -load * self.plate * law.at(self.plate * u)
 
@@ -142,14 +155,14 @@ class Pin:
         if self.plate == 0:
             return self.drags(t)
         if self.finger == 0:
-            return mpf(0)
+            return self.context.mpf(0)
         forces = self.plate_force(t, v) + self.finger_force(t, v) + self.other_forces(t, x, v)
         return forces / self.mass
 
     def needed(self, t: mpf, x: mpf, v: mpf) -> mpf:
         """Force of the contact that holds the pin."""
         at_plate = self.plate == 0
-        moves = self.mass * self.drags(t) if at_plate else mpf(0)
+        moves = self.mass * self.drags(t) if at_plate else 0
         other = self.finger_force(t, v) if at_plate else self.plate_force(t, v)
         return moves - other - self.other_forces(t, x, v)
 
@@ -204,16 +217,16 @@ class Pin:
         half = self.step(t, state, h / 2, halvings - 1)
         return self.step(t + h / 2, half, h / 2, halvings - 1)
 
-    def select(self, t: mpf, state: State, still: set[str]) -> State:
-        """The mode at an instant; `still`: contacts with no sliding velocity."""
+    def select(self, t: mpf, state: State, still: set[str], spent: bool = False) -> State:
+        """The mode at an instant, from the contacts that do not slide; `spent`: they slip now."""
         x, v = state
         if self.given["across_velocity"](t) != (0, 0):
             self.plate = None
             still = still - {"plate"}
         if "plate" in still:
-            v = self.at("mouse_velocity", t)
+            v = self.context.mpf(0) if self.finger == 0 else self.at("mouse_velocity", t)
         if "finger" in still:
-            v = mpf(0)
+            v = self.context.mpf(0)
         for contact in sorted(still, reverse=True):
             if contact == "plate":
                 self.plate = 0
@@ -224,7 +237,7 @@ class Pin:
                 if self.plate is not None:
                     self.plate = (u > 0) - (u < 0)
             force = self.needed(t, x, v)
-            if abs(force) <= self.limit(t):
+            if not spent and abs(force) <= self.limit(t):
                 return x, v
             # It slips against the force that would hold it.
             side = -1 if force > 0 else 1
@@ -235,35 +248,44 @@ class Pin:
         return x, v
 
 
-def solve(case: dict[str, Any], stop: Callable[[int], bool] = lambda _: False) -> dict[str, Any]:
+def extrapolated(pin: Pin, t: mpf, state: State, end: mpf) -> tuple[mpf, State, str | None]:
+    """One step towards a time, up to the zero of a guard: the time, the state and the guard."""
+    h = min(2 * mp.pi / pin.fastest / PARTS, end - t)
+    after = pin.step(t, state, h)
+    broken = [name for name, value in pin.guards(t + h, after).items() if value < 0]
+    if not broken:
+        return t + h, after, None
+    h, name = min(_zero(pin, t, state, h, name) for name in broken)
+    return t + h, pin.step(t, state, h), name
+
+
+def solve(
+    case: dict[str, Any],
+    stop: Callable[[int], bool] = lambda _: False,
+    context: Any = mp,
+    follow: Callable[[Pin, mpf, State, mpf], tuple[mpf, State, str | None]] = extrapolated,
+) -> dict[str, Any]:
     """Follow a case; return its events (time, contact, kind) and the states at its times."""
     mp.dps = DIGITS
-    pin = Pin(case)
-    x, v = mpf(case["displacement"]), mpf(case["velocity"])
-    breaks = sorted({mpf(t) for given in case["inputs"].values() for t in begins(given) if t > 0})
-    times, asked = [mpf(t) for t in case["times"]], []
-    fastest = max(sqrt(pin.stiffness / pin.mass), *map(mpf, frequencies(case)))
-    end, longest = times[-1], 2 * mp.pi / fastest / PARTS
-    u = v - pin.at("mouse_velocity", mpf(0))
+    number = context.mpf
+    pin = Pin(case, context)
+    x, v = number(case["displacement"]), number(case["velocity"])
+    breaks = {number(t) for given in case["inputs"].values() for t in begins(given) if t > 0}
+    times, asked = [number(t) for t in case["times"]], []
+    t, end = number(0), times[-1]
+    u = v - pin.at("mouse_velocity", t)
     pin.plate, pin.finger = (u > 0) - (u < 0), (v > 0) - (v < 0)
     still = {name for name, at in (("plate", u), ("finger", v)) if at == 0}
-    x, v = pin.select(mpf(0), (x, v), still)
-    t = mpf(0)
+    x, v = pin.select(t, (x, v), still)
     changes: list[Change] = []
     while t < end and not stop(len(changes)):
-        bounds = [*(b for b in breaks if b > t), *(s for s in times if s > t)]
-        h = min(longest, min(bounds) - t)
-        after = pin.step(t, (x, v), h)
-        broken = [name for name, value in pin.guards(t + h, after).items() if value < 0]
-        if broken:
-            h, name = min(_zero(pin, t, (x, v), h, name) for name in broken)
-            after = pin.step(t, (x, v), h)
-        t += h
-        x, v = after
+        bound = min(each for each in (*breaks, *times) if each > t)
+        t, (x, v), broken = follow(pin, t, (x, v), bound)
         before = {"plate": pin.plate, "finger": pin.finger}
         held = {contact for contact, mode in before.items() if mode == 0}
         if broken:
-            x, v = pin.select(t, (x, v), {name} if name in before else held)
+            slides = broken in before
+            x, v = pin.select(t, (x, v), {broken} if slides else held, spent=not slides)
         elif t in breaks:
             pin.begin(t)
             x, v = pin.select(t, (x, v), held)
