@@ -52,8 +52,8 @@ class FallingSeries {
   /// Bounds over a step.
   struct Bounds {
     Sums<Real> friction{};  ///< tail sums of φ, N
-    Real slope{0};          ///< of |dφ/dr|, N s/m
-    Real error{0};          ///< of φ, N
+    Real slope{0};          ///< largest |dφ/dr|, N s/m
+    Real error{0};          ///< largest error of φ, N
   };
   /// Bounds over the step for the tail sums of the speed. The error is from the terms of the equation of φ beyond the
   /// last order, and from the error of the speed (m/s).

@@ -72,7 +72,7 @@ class SeriesFlow : public SeriesExpansion<T> {
   bool along_path() const { return path_.along != 0 || path_.across != 0; }
   int begins_{0};  // order k at which the first of u and w begins
 
-  Polynomial<T>& inner(int i) { return this->inner_[i]; }  // of oblique slip: d, u, φ d
+  Polynomial<T>& inner(int i) { return this->inner_[i]; }  // d, u, φ d of oblique slip
 
   /// Coefficient sums of p/σᵏ.
   Sums from_rest(std::array<T, N + 2> c) const {
@@ -144,7 +144,7 @@ class SeriesFlow : public SeriesExpansion<T> {
   struct Turning {
     bool known{true};
     Real root{0}, direction{0}, missed{0};
-    /// Of the falling parts of friction at a load factor of 1.
+    /// Bounds of the falling parts of friction at a load factor of 1.
     typename FallingSeries<T>::Bounds falling{}, falling_at_finger{};
   };
   Turning bound_turning(const SeriesEquation<T>& e) {
