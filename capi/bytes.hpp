@@ -147,7 +147,7 @@ void exchange(Bytes& bytes, pindrive::StepperState<double>& s) {
 }
 
 template <class Bytes>
-void exchange(Bytes& bytes, pindrive::device::CoilState& s) {
+void exchange(Bytes& bytes, pindrive::device::CoilState<double>& s) {
   const auto number = [&](auto&... each) { (bytes.item(each), ...); };
   number(s.since, s.flux, s.warming, s.level, s.commanded, s.on, s.command);
 }

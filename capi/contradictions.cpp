@@ -445,7 +445,8 @@ class Search {
       add(voltage, {}, "given with a coil, by turns, gap, wire_diameter and the like|it alone");
     const auto coil = device::CoilConstruction::of([&](const char* key) { return number(key); });
     if (made && !check_coil(coil, made)) return;
-    device::MagnetParameters magnet = made ? coil.magnet() : device::MagnetParameters{};
+    device::MagnetParameters<double> magnet =
+        made ? coil.magnet() : device::MagnetParameters<double>{};
     if (!made) magnet.hold_force = number("magnet.hold_force");
     magnet.residual = number(residual);
     if (magnet.residual >= magnet.hold_force)
@@ -499,7 +500,7 @@ class Search {
   }
 
   /// A gap that never closes, or never opens.
-  void check_closing(device::MagnetParameters& magnet) {
+  void check_closing(device::MagnetParameters<double>& magnet) {
     constexpr const char* key = "magnet.closing_force";
     const double gap = number("magnet.gap"), force = number(key);
     magnet.open_inductance = gap / (gap + number("magnet.lift"));

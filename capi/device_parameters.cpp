@@ -159,10 +159,10 @@ pindrive_error DeviceParameters::fill(pindrive_drive* drive, double Number::* pa
 
 // ---- electromagnet -----------------------------------------------------------------------------
 
-std::unique_ptr<const device::Electromagnet> DeviceParameters::magnet() const {
+std::unique_ptr<const device::Electromagnet<double>> DeviceParameters::magnet() const {
   if (!has_magnet()) return nullptr;
   const bool made = has("magnet.turns");
-  device::MagnetParameters found{};
+  device::MagnetParameters<double> found{};
   if (made) {
     found = device::CoilConstruction::of([&](const char* key) { return number(key); }).magnet();
     found.thermal_resistance = number("magnet.thermal_resistance");
@@ -186,7 +186,7 @@ std::unique_ptr<const device::Electromagnet> DeviceParameters::magnet() const {
   steps.reserve(times.size());
   for (std::size_t i = 0; i < times.size(); ++i)
     steps.push_back({times[i].value, volts[i].value / number("magnet.supply_voltage")});
-  return std::make_unique<const device::Electromagnet>(found, std::move(steps));
+  return std::make_unique<const device::Electromagnet<double>>(found, std::move(steps));
 }
 
 device::Controller DeviceParameters::controller() const {

@@ -49,7 +49,7 @@ class DeviceParameters {
   pindrive_error fill(pindrive_drive* drive, double Number::* part) const;
   bool has_magnet() const { return has("magnet.hold_force") || has("magnet.turns"); }
   /// The electromagnet of checked parameters, and the control block.
-  std::unique_ptr<const pindrive::device::Electromagnet> magnet() const;
+  std::unique_ptr<const pindrive::device::Electromagnet<double>> magnet() const;
   pindrive::device::Controller controller() const;
 
  private:

@@ -32,7 +32,7 @@ pindrive_error make_magnet(const Given& given, double time, Magnet& magnet) {
         std::make_unique<pindrive::device::Controller>(given.parameters().controller());
     magnet.control.sample = magnet.controller->sample_from(time);
   }
-  magnet.coil = std::make_unique<pindrive::device::Coil>(*magnet.electromagnet, time);
+  magnet.coil = std::make_unique<pindrive::device::Coil<double>>(*magnet.electromagnet, time);
   magnet.normal_force = given.parameters().plate_normal_force().value;
   return PINDRIVE_OK;
 }
@@ -172,7 +172,7 @@ pindrive_error Instance::next_event(double& time) {
   if (magnet_.next() > now.time) {
     time = std::min(time, magnet_.next());
   } else {  // a piece of the pull ends now: its next one is not the stepper's yet
-    pindrive::device::Coil ahead = *magnet_.coil;
+    pindrive::device::Coil<double> ahead = *magnet_.coil;
     ahead.pass(now.time);
     time = std::min(time > now.time ? time : ahead.next(), ahead.next());
   }
@@ -342,7 +342,7 @@ pindrive_error Instance::step(double from, double size, bool may_end_early, bool
 
 namespace {
 
-bool possible(const pindrive::device::CoilState& s) {
+bool possible(const pindrive::device::CoilState<double>& s) {
   const auto part = [](double number) { return number >= 0 && number <= 1; };
   return part(s.flux) && part(s.level) && s.warming >= 0 && std::isfinite(s.since) &&
          std::isfinite(s.warming) && std::isfinite(s.commanded);
@@ -380,7 +380,8 @@ pindrive_error Instance::go_back(const State& state) {
   if (magnet.present()) {
     if (!possible(state.coil))
       return fail(PINDRIVE_BAD_VALUE, "the bytes must be those of a state of this unit");
-    magnet.coil = std::make_unique<pindrive::device::Coil>(*magnet.electromagnet, state.coil);
+    magnet.coil =
+        std::make_unique<pindrive::device::Coil<double>>(*magnet.electromagnet, state.coil);
     pindrive_instant now;
     if (stepper) error = pindrive_stepper_now(stepper.get(), &now);
     while (stepper && !error && magnet.coil->next() < now.time)
@@ -401,7 +402,7 @@ constexpr std::uint32_t magic = 0x70646676;  // "pdfv"
 /// State in the order of its bytes, with the bytes of the stepper.
 struct Bytes {
   Values values;
-  pindrive::device::CoilState coil;
+  pindrive::device::CoilState<double> coil;
   ControlState control;
   std::vector<unsigned char> stepper;
 

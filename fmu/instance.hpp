@@ -36,8 +36,8 @@ struct ControlState {
 
 /// Magnet of a unit, its coil, and the control block of a unit with one; without a magnet, none.
 struct Magnet {
-  std::unique_ptr<const pindrive::device::Electromagnet> electromagnet;
-  std::unique_ptr<pindrive::device::Coil> coil;
+  std::unique_ptr<const pindrive::device::Electromagnet<double>> electromagnet;
+  std::unique_ptr<pindrive::device::Coil<double>> coil;
   std::unique_ptr<const pindrive::device::Controller> controller;
   ControlState control;
   double normal_force{0};  ///< of the plate without a pull, N
@@ -59,7 +59,7 @@ struct Magnet {
   void pass(double until);
   /// Factor of the friction of the plate by the present piece of the pull.
   pindrive::OwnedPiece<double> load() const {
-    return pindrive::device::load_under(coil->pull_piece(), normal_force, 0);
+    return pindrive::device::load_under(coil->pull_piece(), normal_force, 0.0);
   }
 };
 
@@ -99,7 +99,7 @@ class Instance {
 
   struct State {
     Values values;
-    pindrive::device::CoilState coil;
+    pindrive::device::CoilState<double> coil;
     ControlState control;
     Stepper stepper;
   };

@@ -175,6 +175,11 @@ def coil_course(magnet: tuple[Sequence[float], Sequence[tuple[float, float]]], s
     Pieces of a coil under commands, those of its pull (N), and its state at the end.
     """
 
+def load_along(magnet: tuple[Sequence[float], Sequence[tuple[float, float]]], along: Sequence[float], normal_force: tuple[float, float], state: tuple[float, float, float, float, float, bool, bool], switchings: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], delay: float, begin: float, end: float) -> list:
+    """
+    Derivative of the pieces of the factor of the plate friction: begin, polynomial, terms.
+    """
+
 def closest_approaches(motions: Sequence[Motion], pairs: Sequence[tuple[int, int]], duration: float) -> tuple:
     """
     Smallest x(behind) - x(ahead) of each pair of motions, m, and its time, s.

@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include "owned_motion.hpp"
 #include "pindrive/device/closest_approach.hpp"
 #include "pindrive/device/coil_course.hpp"
+#include "pindrive/numbers/dual.hpp"
 
 namespace nb = nanobind;
 namespace pd = pindrive;
@@ -25,8 +27,10 @@ using namespace pindrive_python;
 
 namespace {
 
+using Dual = pd::Dual<double>;
+
 template <class Function>
-auto column_of(const std::vector<device::FluxPiece>& pieces, Function&& f) {
+auto column_of(const std::vector<device::FluxPiece<double>>& pieces, Function&& f) {
   return mapped<double>(pieces.size(), [&](std::size_t i) { return f(pieces[i]); });
 }
 
@@ -41,8 +45,8 @@ nb::tuple piece_of(const pd::InputPiece<double>& piece) {
 }
 
 /// Columns of the pieces of a coil, pieces of its pull and its state at the end.
-nb::tuple table_of(const device::CoilCourse& course) {
-  using Piece = device::FluxPiece;
+nb::tuple table_of(const device::CoilCourse<double>& course) {
+  using Piece = device::FluxPiece<double>;
   const auto column = [&](auto&& f) { return column_of(course.pieces, f); };
   nb::dict pieces;
   pieces["begins"] = column([](const Piece& p) { return p.begin; });
@@ -56,9 +60,9 @@ nb::tuple table_of(const device::CoilCourse& course) {
   pieces["warmings"] = column([](const Piece& p) { return p.warming; });
   pieces["resistances"] = column([](const Piece& p) { return p.resistance; });
   nb::list pulls;
-  for (const device::PullPiece& pull : course.pulls) {
+  for (const device::PullPiece<double>& pull : course.pulls) {
     // The load on a plate with a normal force of 1 N is 1 more.
-    pd::OwnedPiece<double> given = device::load_under(pull, 1, 0);
+    pd::OwnedPiece<double> given = device::load_under(pull, 1.0, 0.0);
     given.piece.polynomial[0] = pull.constant;
     pulls.append(piece_of(given.piece));
   }
@@ -67,10 +71,40 @@ nb::tuple table_of(const device::CoilCourse& course) {
 
 nb::tuple coil_course(const MagnetNumbers& magnet, const CoilNumbers& from,
                       const Column& switchings, double begin, double end, std::size_t most) {
-  device::CoilCourse course;
+  device::CoilCourse<double> course;
   course.follow(magnet_of(magnet), coil_of(from), switchings.data(), switchings.size(), begin, end,
                 most);
   return table_of(course);
+}
+
+/// Derivative of the pieces of a load along numbers of the magnet, of its normal force and of a delay of all
+/// switchings.
+nb::list load_along(const MagnetNumbers& magnet, const std::vector<double>& along,
+                    std::pair<double, double> normal_force, const CoilNumbers& from,
+                    const Column& switchings, double delay, double begin, double end) {
+  const auto electromagnet = magnet_with<Dual>(
+      magnet, [&](std::size_t i) -> Dual { return {magnet.first.at(i), along.at(i)}; });
+  const auto& [since, flux, warming, level, commanded, on, command] = from;
+  std::vector<Dual> times;
+  for (std::size_t i = 0; i < switchings.size(); ++i)
+    times.emplace_back(switchings.data()[i], delay);
+  device::CoilCourse<Dual> course;
+  course.follow(electromagnet, {since, flux, warming, level, commanded, on, command}, times.data(),
+                times.size(), begin, end, std::numeric_limits<std::size_t>::max());
+  const Dual pressed{normal_force.first, normal_force.second};
+  nb::list found;
+  for (const device::PullPiece<Dual>& pull : course.pulls) {
+    const pd::OwnedPiece<Dual> load = device::load_under(pull, pressed, Dual(begin));
+    nb::list terms;
+    for (std::size_t i = 0; i < load.piece.count; ++i) {
+      const pd::InputTerm<Dual>& term = load.piece.terms[i];
+      terms.append(nb::make_tuple(term.cosine.slope, term.sine.slope, term.decay.slope,
+                                  term.frequency.slope));
+    }
+    found.append(nb::make_tuple(load.piece.begin.slope,
+                                nb::make_tuple(load.piece.polynomial[0].slope), nb::tuple(terms)));
+  }
+  return found;
 }
 
 /// Smallest difference of the positions of each pair of motions, by their indices, and its time.
@@ -100,6 +134,9 @@ void bind_scan(nb::module_& m) {
   m.def("coil_course", &coil_course, "magnet"_a, "state"_a, "switchings"_a, "begin"_a, "end"_a,
         "most"_a,
         "Pieces of a coil under commands, those of its pull (N), and its state at the end.");
+  m.def("load_along", &load_along, "magnet"_a, "along"_a, "normal_force"_a, "state"_a,
+        "switchings"_a, "delay"_a, "begin"_a, "end"_a,
+        "Derivative of the pieces of the factor of the plate friction: begin, polynomial, terms.");
   m.def("closest_approaches", &closest_approaches, "motions"_a, "pairs"_a, "duration"_a,
         "Smallest x(behind) - x(ahead) of each pair of motions, m, and its time, s.");
   nb::class_<OwnedDevice>(m, "Device", "Device whose pins are alike.")

@@ -99,20 +99,25 @@ inline std::optional<pd::StepperState<double>> motion_of(const std::vector<doubl
   return state;
 }
 
-inline device::Electromagnet magnet_of(const MagnetNumbers& given) {
-  const std::vector<double>& n = given.first;
+/// An electromagnet whose numbers are made by number(i).
+template <class T, class Numbers>
+device::Electromagnet<T> magnet_with(const MagnetNumbers& given, Numbers&& number) {
   std::vector<device::VoltageStep> steps;
   for (const auto& [time, level] : given.second) steps.push_back({time, level});
-  return device::Electromagnet({n.at(0), n.at(1), n.at(2), n.at(3), n.at(4), n.at(5), n.at(6),
-                                n.at(7), n.at(8), n.at(9), n.at(10), n.at(11), n.at(12), n.at(13)},
-                               std::move(steps));
+  return device::Electromagnet<T>(
+      {number(0), number(1), number(2), number(3), number(4), number(5), number(6), number(7),
+       number(8), number(9), number(10), number(11), number(12), number(13)},
+      std::move(steps));
+}
+inline device::Electromagnet<double> magnet_of(const MagnetNumbers& given) {
+  return magnet_with<double>(given, [&](std::size_t i) { return given.first.at(i); });
 }
 
-inline device::CoilState coil_of(const CoilNumbers& given) {
+inline device::CoilState<double> coil_of(const CoilNumbers& given) {
   const auto& [since, flux, warming, level, commanded, on, command] = given;
   return {since, flux, warming, level, commanded, on, command};
 }
-inline CoilNumbers numbers_of(const device::CoilState& s) {
+inline CoilNumbers numbers_of(const device::CoilState<double>& s) {
   return {s.since, s.flux, s.warming, s.level, s.commanded, s.on, s.command};
 }
 

@@ -182,6 +182,7 @@ OF_THE_DEVICE = {
     "printed_lines",
     "plate_velocity",
     "coil_course",
+    "load_along",
     "closest_approaches",
     "Device",
     "Scan",

@@ -11,7 +11,7 @@ using check::expect;
 
 namespace {
 
-device::MagnetParameters parameters() { return {2.0, 0.05, 1.0, 1e-3, 3e-3}; }
+device::MagnetParameters<double> parameters() { return {2.0, 0.05, 1.0, 1e-3, 3e-3}; }
 
 /// Changes of the voltage until a time: when, and whether the coil is on then.
 struct Change {
@@ -19,12 +19,12 @@ struct Change {
   bool on;
   double level;
 };
-std::vector<Change> changes(device::Coil coil, double until) {
+std::vector<Change> changes(device::Coil<double> coil, double until) {
   std::vector<Change> found;
   while (coil.next() <= until) {
-    const device::CoilState before = coil.state();
+    const device::CoilState<double> before = coil.state();
     coil.pass(coil.next());
-    const device::CoilState& now = coil.state();
+    const device::CoilState<double>& now = coil.state();
     if (now.on != before.on || now.level != before.level)
       found.push_back({now.since, now.on, now.level});
   }
@@ -32,8 +32,8 @@ std::vector<Change> changes(device::Coil coil, double until) {
 }
 
 void a_continuous_voltage() {
-  const device::Electromagnet magnet(parameters());
-  device::Coil coil(magnet, 0);
+  const device::Electromagnet<double> magnet(parameters());
+  device::Coil<double> coil(magnet, 0);
   expect(coil.pull(1) == 0.05 && std::isinf(coil.next()), "off, it pulls by the residual pull");
   coil.command(true, 0.01);
   expect(coil.state().on && coil.state().since == 0.01, "a command switches it on");
@@ -51,26 +51,26 @@ void a_continuous_voltage() {
 }
 
 void pulses() {
-  device::MagnetParameters given = parameters();
+  device::MagnetParameters<double> given = parameters();
   given.pulse_frequency = 400;
   given.pulse_duty = 0.6;
-  const device::Electromagnet magnet(given);
-  device::Coil coil(magnet, 0);
+  const device::Electromagnet<double> magnet(given);
+  device::Coil<double> coil(magnet, 0);
   coil.command(true, 0.001);  // in the first pulse, which ends at 1.5 ms
   expect(coil.state().on, "a command within a pulse switches on at once");
   const auto found = changes(coil, 0.00551);
   expect(found.size() == 4 && found[0].time == 0.6 / 400 && !found[0].on, "the pulse ends");
   expect(found[1].time == 1.0 / 400 && found[1].on && found[3].time == 2.0 / 400, "the next begin");
-  device::Coil between(magnet, 0);
+  device::Coil<double> between(magnet, 0);
   between.command(true, 0.002);
   expect(!between.state().on && between.state().command, "a command between pulses waits");
   expect(changes(between, 0.0026).front().time == 1.0 / 400, "for the next one");
   // Whatever the rounding of a multiple of the period, it is the begin of its pulse.
   given.pulse_frequency = 1 / 0.0003;
-  const device::Electromagnet odd(given);
+  const device::Electromagnet<double> odd(given);
   int wrong = 0;
   for (int k = 1; k < 2000; ++k) {
-    device::Coil at_begin(odd, 0);
+    device::Coil<double> at_begin(odd, 0);
     at_begin.command(true, k / given.pulse_frequency);
     wrong += !at_begin.state().on;
     const auto ends = changes(at_begin, (k + 0.7) / given.pulse_frequency);
@@ -81,8 +81,8 @@ void pulses() {
 }
 
 void voltage_steps() {
-  const device::Electromagnet magnet(parameters(), {{0, 1}, {0.004, 0.5}, {0.01, 0.25}});
-  device::Coil coil(magnet, 0);
+  const device::Electromagnet<double> magnet(parameters(), {{0, 1}, {0.004, 0.5}, {0.01, 0.25}});
+  device::Coil<double> coil(magnet, 0);
   coil.command(true, 0.001);
   const auto found = changes(coil, 1);
   expect(found.size() == 2 && found[0].time == 0.005 && found[0].level == 0.5, "the second step");
@@ -90,11 +90,11 @@ void voltage_steps() {
 }
 
 void the_gap() {
-  device::MagnetParameters given = parameters();
+  device::MagnetParameters<double> given = parameters();
   given.closing_flux = 0.3;
   given.open_inductance = 0.5;
-  const device::Electromagnet magnet(given);
-  device::Coil coil(magnet, 0);
+  const device::Electromagnet<double> magnet(given);
+  device::Coil<double> coil(magnet, 0);
   coil.command(true, 0);
   const double closes = 0.5e-3 * std::log(0.5 / 0.2);
   coil.pass(closes * (1 + 1e-12));
@@ -106,10 +106,10 @@ void the_gap() {
 }
 
 void saturation() {
-  device::MagnetParameters given = parameters();
+  device::MagnetParameters<double> given = parameters();
   given.saturation = 0.6;
-  const device::Electromagnet magnet(given);
-  device::Coil coil(magnet, 0);
+  const device::Electromagnet<double> magnet(given);
+  device::Coil<double> coil(magnet, 0);
   coil.command(true, 0);
   const double saturates = 1e-3 * std::log(1 / 0.4);
   expect(std::abs(coil.next() - saturates) < 1e-18,
@@ -129,7 +129,7 @@ void saturation() {
 }
 
 void states() {
-  device::MagnetParameters given = parameters();
+  device::MagnetParameters<double> given = parameters();
   given.pulse_frequency = 300;
   given.pulse_duty = 0.7;
   given.closing_flux = 0.3;
@@ -138,17 +138,17 @@ void states() {
   given.winding_resistance = 10;
   given.thermal_resistance = 100;
   given.heat_capacity = 1e-3;
-  const device::Electromagnet magnet(given);
-  device::Coil whole(magnet, 0);
+  const device::Electromagnet<double> magnet(given);
+  device::Coil<double> whole(magnet, 0);
   whole.command(true, 0.0007);
   int differing = 0;
   for (int i = 1; i < 400; ++i) {
     const double time = 0.0007 + i * 1.37e-4;
     whole.pass(time);
-    device::Coil again(magnet, whole.state());
+    device::Coil<double> again(magnet, whole.state());
     again.pass(time);
     const double later = time + 3.1e-4;
-    device::Coil ahead = whole;
+    device::Coil<double> ahead = whole;
     ahead.pass(later);
     again.pass(later);
     differing += ahead.pull(later) != again.pull(later) || ahead.flux(later) != again.flux(later) ||

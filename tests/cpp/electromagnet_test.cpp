@@ -14,8 +14,8 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-device::MagnetParameters parameters(double saturation = 0.8) {
-  device::MagnetParameters given{2.0, 0.05, saturation, 1e-3, 3e-3};
+device::MagnetParameters<double> parameters(double saturation = 0.8) {
+  device::MagnetParameters<double> given{2.0, 0.05, saturation, 1e-3, 3e-3};
   given.winding_resistance = 10;
   given.outer_resistance = 20;
   given.power = 1;
@@ -27,8 +27,8 @@ device::MagnetParameters parameters(double saturation = 0.8) {
 struct Integrated {
   double flux, warming;
 };
-Integrated integrated(const device::MagnetParameters& given, double flux, double warming, bool on,
-                      double level, double lasts) {
+Integrated integrated(const device::MagnetParameters<double>& given, double flux, double warming,
+                      bool on, double level, double lasts) {
   constexpr int steps = 200000;
   const auto slopes = [&](Integrated now) {
     const double r = given.heat_capacity > 0 ? 1 + 3.93e-3 * now.warming : 1;
@@ -52,7 +52,7 @@ Integrated integrated(const device::MagnetParameters& given, double flux, double
 }
 
 void pieces() {
-  const device::Electromagnet magnet(parameters());
+  const device::Electromagnet<double> magnet(parameters());
   for (const bool on : {true, false})
     for (const double start : {0.0, 0.3, 1.0})
       for (const double level : {1.0, 0.4}) {
@@ -68,9 +68,9 @@ void pieces() {
 }
 
 void temperature() {
-  device::MagnetParameters given = parameters(1);
+  device::MagnetParameters<double> given = parameters(1);
   given.heat_capacity = 0.02;
-  const device::Electromagnet magnet(given);
+  const device::Electromagnet<double> magnet(given);
   // Piece by piece, as long as each lasts.
   double flux = 1, warming = 0, time = 0;
   int count = 0;
@@ -89,15 +89,15 @@ void temperature() {
   expect(magnet.heating_after(magnet.piece(0, 1, 20, false, 1)) == infinity,
          "a coil that is off is one piece");
   given.heat_capacity = 0;
-  const device::Electromagnet cold(given);
+  const device::Electromagnet<double> cold(given);
   expect(cold.warming_after(cold.piece(0, 1, 0, true, 1), 1) == 0, "without a capacity it is cold");
 }
 
 void gap() {
-  device::MagnetParameters given = parameters();
+  device::MagnetParameters<double> given = parameters();
   given.closing_flux = 0.3;
   given.open_inductance = 0.5;
-  const device::Electromagnet magnet(given);
+  const device::Electromagnet<double> magnet(given);
   const auto open = magnet.piece(0, 0, 0, true, 1);
   expect(open.inductance == 0.5 && open.target == 0.5 && open.constant == 0.5e-3,
          "an open gap halves inductance, flux and time constant");
@@ -116,7 +116,7 @@ void pulls() {
     for (const double target : {1.0, 0.6, 0.3, 0.25})
       for (const double start : {0.0, 0.3, 0.5, 0.8, 1.0})
         for (const bool on : {true, false}) {
-          const device::Electromagnet magnet(parameters(saturation));
+          const device::Electromagnet<double> magnet(parameters(saturation));
           const auto piece = magnet.piece(0.1, start, 0, on, target);
           const double edge = magnet.saturating_after(piece);
           saturating += edge < infinity;
@@ -129,7 +129,7 @@ void pulls() {
         }
   expect(worst < 1e-13, "a constant and two exponentials are the pull of the flux");
   expect(saturating > 20, "before and after the iron saturates");
-  const device::Electromagnet magnet(parameters());
+  const device::Electromagnet<double> magnet(parameters());
   const auto full = magnet.pull_piece(magnet.piece(0, 1, 0, true, 1), false);
   expect(full.constant == 2 && full.once == 0 && full.twice == 0, "a saturated pull is constant");
 }

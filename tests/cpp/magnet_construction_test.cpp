@@ -31,7 +31,7 @@ void a_coil() {
 
 void times_of_a_pull() {
   for (const double sigma : {1.0, 0.6}) {
-    const device::Electromagnet magnet(
+    const device::Electromagnet<double> magnet(
         {1, 0.1, sigma, device::rise_constant(0.003, sigma), device::fall_constant(0.005, sigma)});
     const double rises = magnet.piece(0, 0, 0, true, 1).flux_after(0.003);
     const double falls = magnet.piece(0, 1, 0, false, 1).flux_after(0.005);

@@ -29,7 +29,7 @@ inline pindrive::device::Device device_with(double skin = std::numeric_limits<do
   drive.finger.stiffness = skin;
   return {drive,
           0.05,
-          pindrive::device::Electromagnet({2, 0, 1, 1e-3, 2e-3}),
+          pindrive::device::Electromagnet<double>({2, 0, 1, 1e-3, 2e-3}),
           {1000, 0.002, 0.5, 0.1},
           pindrive::device::Axis(0),
           {{0, 0}, {0.001, 0}}};

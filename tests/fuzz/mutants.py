@@ -474,7 +474,7 @@ MUTANTS = (
     Mutant(
         "a warming coil is one piece",
         "device/electromagnet.hpp",
-        "return rate > 0 ? resistance_step / (copper_rise * rate) : infinity;",
+        "return rate > 0 ? T(resistance_step / (copper_rise * rate)) : infinity;",
         "return infinity;",
     ),
     Mutant(
@@ -504,8 +504,8 @@ MUTANTS = (
     Mutant(
         "a command after the pulse at its time",
         "device/coil_course.hpp",
-        "for (double time = coil.next(); time < to && !full(); time = coil.next()) {",
-        "for (double time = coil.next(); time <= to && !full(); time = coil.next()) {",
+        "for (T time = coil.next(); time < to && !full(); time = coil.next()) {",
+        "for (T time = coil.next(); time <= to && !full(); time = coil.next()) {",
     ),
     Mutant(
         "a sample at the end",

@@ -12,33 +12,36 @@
 namespace pindrive::device {
 
 /// State of a coil: its last change of voltage, gap or resistance, and the position since then.
+template <class T>
 struct CoilState {
-  double since{0};      ///< time of that change, s
-  double flux{0};       ///< flux linkage then
-  double warming{0};    ///< above 20 °C then, K
-  double level{1};      ///< voltage while it is on
-  double commanded{0};  ///< time of the command to switch on, s
-  bool on{false};       ///< voltage across it
+  T since{0};      ///< time of that change, s
+  T flux{0};       ///< flux linkage then
+  T warming{0};    ///< above 20 °C then, K
+  T level{1};      ///< voltage while it is on
+  T commanded{0};  ///< time of the command to switch on, s
+  bool on{false};  ///< voltage across it
   bool command{false};
 };
 
 /// Coil that is simulated from change to change: next() is the time of the next one, pass() goes
 /// beyond. Between changes the pull is one piece.
+template <class T>
 class Coil {
  public:
   /// A coil without current, switched off.
-  Coil(const Electromagnet& magnet, double time) : magnet_(&magnet) {
+  Coil(const Electromagnet<T>& magnet, T time) : magnet_(&magnet) {
     state_.since = time;
     begin_piece();
   }
   /// A coil in a state that was kept; pass() goes to the present piece of the pull.
-  Coil(const Electromagnet& magnet, const CoilState& state) : magnet_(&magnet), state_(state) {
+  Coil(const Electromagnet<T>& magnet, const CoilState<T>& state)
+      : magnet_(&magnet), state_(state) {
     begin_piece();
   }
 
   /// A coil at a time, from a state before. A last change after that time, as on another clock, counts as one
   /// at the time.
-  static Coil begun(const Electromagnet& magnet, CoilState from, double time) {
+  static Coil begun(const Electromagnet<T>& magnet, CoilState<T> from, T time) {
     from.since = std::min(from.since, time);
     from.commanded = std::min(from.commanded, time);
     const bool ends = from.on && !from.command;  // the command ends at that time
@@ -52,11 +55,11 @@ class Coil {
     return coil;
   }
 
-  const CoilState& state() const { return state_; }
-  const FluxPiece& piece() const { return piece_; }
+  const CoilState<T>& state() const { return state_; }
+  const FluxPiece<T>& piece() const { return piece_; }
 
   /// Follows a command; a command that is in force changes nothing.
-  void command(bool on, double time) {
+  void command(bool on, T time) {
     if (on == state_.command) return;
     state_.command = on;
     if (!on) {
@@ -71,40 +74,40 @@ class Coil {
   }
 
   /// Time at which the present piece of the pull ends, s; infinite without a change to come.
-  double next() const {
+  T next() const {
     return std::min({saturated_ ? infinity : saturating_, closing_, heating_, next_voltage()});
   }
 
   /// Goes beyond all changes until a time.
-  void pass(double until) {
-    for (double time = next(); time <= until; time = next()) pass_next(time);
+  void pass(T until) {
+    for (T time = next(); time <= until; time = next()) pass_next(time);
   }
 
-  const PullPiece& pull_piece() const { return pull_; }
-  double pull(double time) const { return pull_.at(time); }
+  const PullPiece<T>& pull_piece() const { return pull_; }
+  T pull(T time) const { return pull_.at(time); }
   /// Flux linkage; at a closing or opening of the gap that of the change, to the bit.
-  double flux(double time) const {
+  T flux(T time) const {
     return time == closing_ ? magnet_->given().closing_flux
                             : piece_.flux_after(time - piece_.begin);
   }
   /// Current, a part of the full one.
-  double current(double time) const { return piece_.current(flux(time)); }
+  T current(T time) const { return piece_.current(flux(time)); }
   /// Warming above 20 °C, K; 0 where the temperature is not simulated.
-  double warming(double time) const { return magnet_->warming_after(piece_, time - piece_.begin); }
+  T warming(T time) const { return magnet_->warming_after(piece_, time - piece_.begin); }
 
  private:
-  static constexpr double infinity = std::numeric_limits<double>::infinity();
+  static constexpr T infinity{std::numeric_limits<double>::infinity()};
 
   /// Time from which the present voltage follows: the command or the last change.
-  double reference() const { return std::max(state_.since, state_.commanded); }
+  T reference() const { return std::max(state_.since, state_.commanded); }
   /// Number of the pulse that began last at that time: pulses begin at multiples of the period.
-  double pulse() const {
-    const double frequency = magnet_->given().pulse_frequency, time = reference();
-    const double number = std::floor(time * frequency);
+  T pulse() const {
+    const T frequency = magnet_->given().pulse_frequency, time = reference();
+    const T number = floor(time * frequency);
     if ((number + 1) / frequency <= time) return number + 1;  // rounded down
     return number / frequency <= time ? number : number - 1;
   }
-  double pulse_end() const {
+  T pulse_end() const {
     return (pulse() + magnet_->given().pulse_duty) / magnet_->given().pulse_frequency;
   }
   /// Index of the next voltage step.
@@ -115,7 +118,7 @@ class Coil {
     return next;
   }
 
-  double next_voltage() const {
+  T next_voltage() const {
     if (!state_.command) return infinity;
     if (const std::vector<VoltageStep>& steps = magnet_->steps(); !steps.empty()) {
       const std::size_t next = next_step();
@@ -125,8 +128,8 @@ class Coil {
     return state_.on ? pulse_end() : (pulse() + 1) / magnet_->given().pulse_frequency;
   }
 
-  void pass_next(double time) {
-    const double voltage = next_voltage(), own = std::min(closing_, heating_);
+  void pass_next(T time) {
+    const T voltage = next_voltage(), own = std::min(closing_, heating_);
     if (time < std::min(voltage, own)) {
       saturated_ = true;
       pull_ = magnet_->pull_piece(piece_, true);
@@ -140,8 +143,8 @@ class Coil {
   }
 
   /// Begins a piece, in which the flux continues.
-  void change(bool on, double level, double time) {
-    const double linked = flux(time), warm = warming(time);
+  void change(bool on, T level, T time) {
+    const T linked = flux(time), warm = warming(time);
     state_.since = time;
     state_.flux = linked;
     state_.warming = warm;
@@ -150,7 +153,7 @@ class Coil {
     begin_piece();
   }
   void begin_piece() {
-    const CoilState& s = state_;
+    const CoilState<T>& s = state_;
     piece_ = magnet_->piece(s.since, s.flux, s.warming, s.on, s.level);
     closing_ = s.since + magnet_->closing_after(piece_);
     heating_ = s.since + magnet_->heating_after(piece_);
@@ -159,13 +162,13 @@ class Coil {
     pull_ = magnet_->pull_piece(piece_, false);
   }
 
-  const Electromagnet* magnet_;
-  CoilState state_;
-  FluxPiece piece_{};
-  PullPiece pull_{};
-  double closing_{infinity}, heating_{infinity};  ///< times of the next change by itself, s
-  double saturating_{infinity};  ///< time at which the iron saturates, or ceases to be saturated, s
-  bool saturated_{false};        ///< that time has passed
+  const Electromagnet<T>* magnet_;
+  CoilState<T> state_;
+  FluxPiece<T> piece_{};
+  PullPiece<T> pull_{};
+  T closing_{infinity}, heating_{infinity};  ///< times of the next change by itself, s
+  T saturating_{infinity};  ///< time at which the iron saturates, or ceases to be saturated, s
+  bool saturated_{false};   ///< that time has passed
 };
 
 }  // namespace pindrive::device

@@ -54,8 +54,8 @@ struct CoilConstruction {
   double power() const { return supply_voltage * current(); }  ///< at full current, W
 
   /// Electromagnet without a residual pull, a temperature or a lift.
-  MagnetParameters magnet() const {
-    MagnetParameters found{};
+  MagnetParameters<double> magnet() const {
+    MagnetParameters<double> found{};
     found.hold_force = pull();
     found.saturation = saturation();
     found.rise_constant = inductance() / resistance();
@@ -76,7 +76,7 @@ inline double fall_constant(double fall_time, double saturation) {
 }
 
 /// Flux linkage at which the gap of a magnet closes against a force (N).
-inline double closing_flux(const MagnetParameters& magnet, double force) {
+inline double closing_flux(const MagnetParameters<double>& magnet, double force) {
   return magnet.saturation *
          std::sqrt((force - magnet.residual) / (magnet.hold_force - magnet.residual));
 }

@@ -23,7 +23,7 @@ class PinFollower {
   /// Complete state: a follower constructed from this state gives identical bits.
   struct State {
     StepperState<double> motion;
-    CoilState coil;
+    CoilState<double> coil;
     double sampled;               ///< time until which the page is sampled, s
     double passed;                ///< time of the last row of an input, s since the begin
     bool decision;                ///< last decision of the control block
@@ -33,7 +33,7 @@ class PinFollower {
   PinFollower(const ScanInputs& scan, const PinState& from)
       : device_(&scan.device),
         begin_(scan.begin),
-        coil_(Coil::begun(device_->magnet, from.coil, begin_)),
+        coil_(Coil<double>::begun(device_->magnet, from.coil, begin_)),
         sampled_(begin_),
         decision_(from.decision),
         pending_(from.pending),
@@ -44,7 +44,7 @@ class PinFollower {
   PinFollower(const ScanInputs& scan, const State& state)
       : device_(&scan.device),
         begin_(scan.begin),
-        coil_(passed(Coil(device_->magnet, state.coil), begin_, state.passed)),
+        coil_(passed(Coil<double>(device_->magnet, state.coil), begin_, state.passed)),
         sampled_(state.sampled),
         passed_(state.passed),
         decision_(state.decision),
@@ -96,7 +96,7 @@ class PinFollower {
   }
 
   const Stepper<double>& stepper() const { return stepper_; }  ///< time since the begin
-  const Coil& coil() const { return coil_; }
+  const Coil<double>& coil() const { return coil_; }
   bool decision() const { return decision_; }  ///< last decision of the control block
 
  private:
@@ -120,7 +120,7 @@ class PinFollower {
     return Held<double>(load_.piece);
   }
   /// A coil beyond the changes until a time since the begin, s.
-  static Coil passed(Coil coil, double begin, double time) {
+  static Coil<double> passed(Coil<double> coil, double begin, double time) {
     while (coil.next() - begin <= time) coil.pass(coil.next());
     return coil;
   }
@@ -165,7 +165,7 @@ class PinFollower {
 
   const Device* device_;
   double begin_;  ///< of the scan, s
-  Coil coil_;
+  Coil<double> coil_;
   OwnedPiece<double> load_;  ///< last load that was given to the stepper
   double sampled_, passed_{-infinity};
   bool decision_;

@@ -23,7 +23,7 @@ struct PinRun {
   bool commanded{false};           ///< before the first
   bool decision{false};            ///< last decision of the control block
   std::vector<double> pending;     ///< switchings that are due at the end of the path or later, s
-  CoilCourse coil;
+  CoilCourse<double> coil;
   std::vector<OwnedPiece<double>> owned;  ///< pieces of the load
   std::vector<InputPiece<double>> loads;  ///< factor of the plate friction, by these pieces
   std::vector<Segment<double>> segments;
@@ -48,7 +48,7 @@ struct PinRun {
                 most);
     if (coil.idle()) coil.end = from.coil;
     owned.clear();
-    for (const PullPiece& pull : coil.pulls)
+    for (const PullPiece<double>& pull : coil.pulls)
       owned.push_back(load_under(pull, scan.device.normal_force, begin));
     loads.clear();
     for (const OwnedPiece<double>& load : owned) loads.push_back(load.piece);

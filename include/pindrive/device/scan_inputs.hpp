@@ -21,12 +21,13 @@ namespace pindrive::device {
 
 /// Factor of the friction of a plate with a normal force (N) under a piece of a pull, on a clock that begins at a
 /// time, s.
-inline OwnedPiece<double> load_under(const PullPiece& pull, double normal_force, double begin) {
-  OwnedPiece<double> found;
+template <class T>
+OwnedPiece<T> load_under(const PullPiece<T>& pull, T normal_force, T begin) {
+  OwnedPiece<T> found;
   found.piece.begin = pull.begin - begin;
   found.piece.polynomial[0] = 1 + pull.constant / normal_force;
-  if (pull.once != 0) found.add({pull.once / normal_force, 0, pull.rate, 0});
-  if (pull.twice != 0) found.add({pull.twice / normal_force, 0, 2 * pull.rate, 0});
+  if (pull.once != 0) found.add({pull.once / normal_force, T(0), pull.rate, T(0)});
+  if (pull.twice != 0) found.add({pull.twice / normal_force, T(0), 2 * pull.rate, T(0)});
   return found;
 }
 
@@ -34,7 +35,7 @@ inline OwnedPiece<double> load_under(const PullPiece& pull, double normal_force,
 struct Device {
   Drive<double> drive;
   double normal_force;  ///< normal force of the plate without a pull, N
-  Electromagnet magnet;
+  Electromagnet<double> magnet;
   Controller controller;
   Axis axis;
   std::vector<Place> spots;  ///< offset of the spot of each pin from the hand, m
@@ -48,7 +49,7 @@ struct PinState {
   double position{0};                                        ///< m
   double velocity{0};                                        ///< m/s; NaN: carried by the plate
   double stretch{std::numeric_limits<double>::quiet_NaN()};  ///< skin stretch, m; NaN: not kept
-  CoilState coil{};
+  CoilState<double> coil{};
   bool decision{false};         ///< last decision of the control block
   std::vector<double> pending;  ///< times of the switchings that are due, s
   /// Position, velocity, skin and contacts at the end of another scan; without, those of a release.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import nan
@@ -17,6 +17,7 @@ from pindrive.device.current import CoilState, Commands, Current
 from pindrive.device.device import Device
 from pindrive.device.hand import HandPath
 from pindrive.device.page import FINER, Scene
+from pindrive.device.sensitivity import sensitivity_of
 from pindrive.device.touch import finger_load, held_stretch
 from pindrive.device.trajectory import check_vibration
 from pindrive.motion.drive import Drive
@@ -29,6 +30,7 @@ from pindrive.motion.release import (
     rows_of,
 )
 from pindrive.motion.results import Event
+from pindrive.motion.sensitivity import Sensitivity
 from pindrive.quantities import budgets
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.status import SimulationError, Status
@@ -88,18 +90,22 @@ class ScanInputs:
         """State of each pin at the begin."""
         return self.start or (PinState(),) * len(self.device.array)
 
+    def coil_numbers(self, state: PinState) -> tuple[float, float, float, float, float, bool, bool]:
+        """Return the coil of a pin at the begin as the core has it, with the command in force."""
+        coil = CoilState(self.path.begin) if state.coil is None else state.coil
+        return coil.numbers(state.decision.switched)
+
     def core(self) -> _core.Scan:
         """Return the pins at the begin, as the core has them."""
         begins = []
         for number, state in enumerate(self.states):
             _check_contacts(number, state)
-            coil = CoilState(self.path.begin) if state.coil is None else state.coil
             begins.append(
                 (
                     state.position,
                     nan if state.velocity is None else state.velocity,
                     nan if state.skin_stretch is None else state.skin_stretch,
-                    coil.numbers(state.decision.switched),
+                    self.coil_numbers(state),
                     state.decision.on,
                     [*state.decision.pending],
                     [*(state.contacts or ())],
@@ -196,6 +202,28 @@ class PinScan:
         numbers = core_numbers(self.drive, self.release, self.end - self.begin)
         core = self.core.motion(self.number)
         return Motion(self.drive, self.release, numbers, core, _core.settling_band)
+
+    def sensitivity(self, parameters: Sequence[str]) -> Sensitivity:
+        """Exact derivatives of the pin's motion with respect to parameters of the device.
+
+        The samples of the page are kept: where the hand and the page are given, a coil is switched
+        at the same times in a device that differs a little. So is the state at `begin`.
+
+        Args:
+            parameters: Names of the drive as for `Motion.sensitivity`, where `mass` and `preload`
+                also press on the plate; `magnet.hold_force`, `magnet.residual`,
+                `magnet.saturation`, `magnet.rise_constant`, `magnet.fall_constant`,
+                `magnet.pwm_frequency` and `magnet.pwm_duty` of a magnet without a coil;
+                `control.latency`.
+
+        Returns:
+            Derivatives of position, velocity and events over the time since `begin`, with NaN and
+            the reason where one does not exist.
+
+        Raises:
+            ValueError: A parameter is unknown, or this device does not have it.
+        """
+        return sensitivity_of(self, parameters)
 
     def position(self, t: ArrayLike) -> NDArray[np.float64]:
         """Deflection of the pin in the housing at times t (s, any shape), m.

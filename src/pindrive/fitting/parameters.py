@@ -16,7 +16,7 @@ from typing import Any, Final
 import numpy as np
 
 from pindrive.fitting.recording import Recording
-from pindrive.motion.core_numbers import PLACES, ROWS, CoreNumbers, entry
+from pindrive.motion.core_numbers import PLACES, ROWS, CoreNumbers, entry, mapped
 from pindrive.motion.drive import Contact, Drive
 from pindrive.motion.friction import FALLING
 from pindrive.motion.function import STEP, Function, at_begin, core_of
@@ -331,7 +331,7 @@ class Assembly:
         self._base = [core_numbers(drive, release, inf) for release in releases]
         self._durations = durations
         self._carried = [release.velocity is None for release in releases]
-        self._still = [_mapped(lambda _: 0.0, base) for base in self._base]
+        self._still = [mapped(lambda _: 0.0, base) for base in self._base]
 
     def places(self, r: int) -> Sequence[int]:
         """The parameters that change the motion of a recording."""
@@ -393,7 +393,7 @@ class Assembly:
         numbers = _assembled(values, self._base[r], self._functions[r], self._carried[r], 0.0)
         base, still = self._base[r], self._still[r]
         found = [
-            still[j] if part is base[j] else _mapped(lambda y: y.imag / STEP, part)
+            still[j] if part is base[j] else mapped(lambda y: complex(y).imag / STEP, part)
             for j, part in enumerate(numbers)
         ]
         return tuple(found)
@@ -525,9 +525,3 @@ def _at_zero(rows: Any) -> Any:
         return rows[max(after - 1, 0)][1]
     (t0, y0), (t1, y1) = rows[after - 1], rows[after]
     return y0 + (y1 - y0) * (-t0 / (t1 - t0))
-
-
-def _mapped(f: Any, numbers: Any) -> Any:
-    if isinstance(numbers, (tuple, list)):
-        return tuple(_mapped(f, part) for part in numbers)
-    return f(complex(numbers))

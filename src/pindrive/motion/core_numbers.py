@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, Final
 
 Rows = Sequence[tuple[float, float]]
 Pieces = Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]]
 """Begin, polynomial and terms (cosine, sine, decay, frequency) of each piece of a function."""
 Input = Rows | Pieces
+
+
+Place = tuple[int, ...]
+"""Place of a number in the array of the core."""
 
 
 LawNumbers = tuple[float, float, float, float, float]
@@ -86,8 +90,23 @@ ROWS: Final[dict[str, tuple[int, ...]]] = {
 """Places of all breakpoints of a table."""
 
 
-def entry(numbers: Any, place: tuple[int, ...]) -> Any:
+def entry(numbers: Any, place: Place) -> Any:
     """Return the entry at a place of the core's array."""
     for i in place:
         numbers = numbers[i]
     return numbers
+
+
+def replaced(numbers: Any, place: Place, value: Any) -> Any:
+    """Return the numbers with another value at a place."""
+    if not place:
+        return value
+    i, *rest = place
+    return (*numbers[:i], replaced(numbers[i], tuple(rest), value), *numbers[i + 1 :])
+
+
+def mapped(f: Callable[..., Any], *numbers: Any) -> Any:
+    """Return the values of f at the corresponding numbers of several containers, nested alike."""
+    if isinstance(numbers[0], (tuple, list)):
+        return tuple(mapped(f, *parts) for parts in zip(*numbers, strict=True))
+    return f(*numbers)

@@ -15,7 +15,17 @@ from numpy.typing import ArrayLike, NDArray
 import pindrive
 from pindrive import _core, lazy
 from pindrive.lazy import mpl_figure, xr
-from pindrive.motion.core_numbers import PLACES, ROWS, CoreNumbers, Input, Rows, entry
+from pindrive.motion.core_numbers import (
+    PLACES,
+    ROWS,
+    CoreNumbers,
+    Input,
+    Place,
+    Rows,
+    entry,
+    mapped,
+    replaced,
+)
 from pindrive.motion.drive import Contact, Drive
 from pindrive.motion.friction import COEFFICIENTS, PRESSED_BY, normal_force
 from pindrive.motion.function import Function, rates_of
@@ -33,8 +43,8 @@ _STEP = 2.0**-26
 _KINK = 1e-3
 """A number whose change to a neighbour is off its derivative by this part jumps or bends there."""
 
-Place = tuple[int, ...]
-"""Place of a number among the core's numbers (`CoreNumbers`)."""
+Direction = Callable[["pindrive.Motion", str], tuple[CoreNumbers, float]]
+"""Derivative of the numbers of a motion by a parameter, and the size of the parameter."""
 
 _PLACES: dict[str, Place] = {name.replace(".", "_"): place for name, place in PLACES.items()}
 _COEFFICIENTS = (
@@ -62,12 +72,18 @@ class Sensitivity(lazy.NotebookHtml):
             events; derivatives after that time do not exist and are NaN.
     """
 
-    def __init__(self, motion: pindrive.Motion, parameters: Sequence[str]) -> None:
+    def __init__(
+        self,
+        motion: pindrive.Motion,
+        parameters: Sequence[str],
+        direction: Direction | None = None,
+    ) -> None:
         if isinstance(parameters, str) or not parameters:
             raise ValueError(refusal("parameters", "a list of names", repr(parameters)))
         self._motion = motion
         self.parameters = tuple(parameters)
-        self._derivatives = tuple(_Derivative(motion, given) for given in parameters)
+        of = direction or direction_of
+        self._derivatives = tuple(_Derivative(motion, given, of) for given in parameters)
         self.gaps = {d.name: d.gap for d in self._derivatives if d.gap}
 
     def __repr__(self) -> str:
@@ -179,9 +195,9 @@ class _Derivative:
     same events. If their events differ, the motion is at the border between two kinds.
     """
 
-    def __init__(self, motion: pindrive.Motion, name: str) -> None:
+    def __init__(self, motion: pindrive.Motion, name: str, direction: Direction) -> None:
         numbers, hand = motion.core_numbers, motion.release.mouse_velocity
-        along, size = _direction(motion, name)
+        along, size = direction(motion, name)
         self.name, self.size = name, size
         self._motion = motion
         self._own = _core.simulate(*numbers)
@@ -189,9 +205,9 @@ class _Derivative:
         self._neighbours: list[tuple[float, _core.Motion]] = []
         self.course_until, self._same_ending, self.gap = inf, True, ""
         for step in (_STEP * size, -_STEP * size):
-            there = _mapped(lambda x, d, h=step: x + h * d if d else x, numbers, along)
+            there = mapped(lambda x, d, h=step: x + h * d if d else x, numbers, along)
             if motion.release.velocity is None and isinstance(hand, Function):
-                there = _replaced(there, (8,), _core.function_at(there[5], np.zeros(1))[0])
+                there = replaced(there, (8,), _core.function_at(there[5], np.zeros(1))[0])
             if _in_range(there):
                 self._compare(step, _core.simulate(*there))
 
@@ -230,7 +246,7 @@ class _Derivative:
 
 def _parting(one: _core.Motion, other: _core.Motion) -> float:
     """From when on two motions go through other modes and events, s; infinite if they never do."""
-    a, b = one.segments(), other.segments()
+    a, b = _modes(one), _modes(other)
     common = min(len(a["end"]), len(b["end"]))
 
     def first(edge: str, *names: str) -> float:
@@ -241,10 +257,23 @@ def _parting(one: _core.Motion, other: _core.Motion) -> float:
         at = np.flatnonzero(differ)
         return float(min(a[edge][at[0]], b[edge][at[0]])) if at.size else inf
 
-    return min(
-        first("begin", "plate", "finger", "plate_branch", "finger_branch", "stop"),
-        first("end", "plate_event", "finger_event", "stop_event"),
-    )
+    return min(first("begin", *_MODE), first("end", *_EVENTS))
+
+
+_MODE = ("plate", "finger", "plate_branch", "finger_branch", "stop")
+_EVENTS = ("plate_event", "finger_event", "stop_event")
+
+
+def _modes(core: _core.Motion) -> dict[str, NDArray[Any]]:
+    """Modes and events of a motion; segments of one mode without an event between them are one."""
+    table = core.segments()
+    mode, event = (np.stack([table[name] for name in names]) for names in (_MODE, _EVENTS))
+    changes = (mode[:, 1:] != mode[:, :-1]).any(axis=0) | (event[:, :-1] != 0).any(axis=0)
+    first = np.flatnonzero(np.append(True, changes))
+    last = np.append(first[1:], len(table["end"])) - 1
+    return {name: table[name][first] for name in ("begin", *_MODE)} | {
+        name: table[name][last] for name in ("end", *_EVENTS)
+    }
 
 
 _OF_THE_ENDING = ("transient.settling_time", "transient.rest_time", "transient.last_event_time")
@@ -277,7 +306,7 @@ def _numbers(
 # ---- parameters ----------------------------------------------------------------------------------
 
 
-def _direction(motion: pindrive.Motion, given: str) -> tuple[CoreNumbers, float]:
+def direction_of(motion: pindrive.Motion, given: str) -> tuple[CoreNumbers, float]:
     """Return the derivative of the core's numbers by a parameter, and the size of the parameter."""
     numbers = motion.core_numbers
     if (name := _key_as_name(given)) in _COEFFICIENTS:
@@ -297,11 +326,11 @@ def _direction(motion: pindrive.Motion, given: str) -> tuple[CoreNumbers, float]
             # static friction that is not greater.
             tied = [(contact, 1)] if static == kinetic else []
             places = [(contact, 0), *first_row, *tied]
-    along = _mapped(lambda _: 0.0, numbers)
+    along = mapped(lambda _: 0.0, numbers)
     for place, slope in (dict.fromkeys(places, 1.0) | _friction_slopes(motion.drive, name)).items():
-        along = _replaced(along, place, slope)
+        along = replaced(along, place, slope)
     if motion.release.velocity is None:
-        along = _replaced(
+        along = replaced(
             along, (8,), _start_slope(_rows_of(numbers[5]), _rows_of(along[5])) + along[8]
         )
     return along, size
@@ -317,9 +346,9 @@ def _along_function(motion: pindrive.Motion, given: str) -> tuple[CoreNumbers, f
         known = ", ".join(f"{name}.{part}" for part in function.parameters) or "none of a sum"
         raise ValueError(refusal("parameter", f"one of {known}", repr(given)))
     rates, at_begin = rates_of(function, parameter)
-    along = _replaced(_mapped(lambda _: 0.0, motion.core_numbers), PLACES[name], rates)
+    along = replaced(mapped(lambda _: 0.0, motion.core_numbers), PLACES[name], rates)
     if name == "mouse_velocity" and motion.release.velocity is None:
-        along = _replaced(along, (8,), at_begin)
+        along = replaced(along, (8,), at_begin)
     return along, abs(function.parameters[parameter]) or function.size or 1.0
 
 
@@ -331,9 +360,9 @@ def _along_friction(motion: pindrive.Motion, name: str) -> tuple[CoreNumbers, fl
     value = getattr(owner, name if owner is motion.drive else part)
     if not slopes or value is None:
         raise ValueError(refusal("parameter", "one that this motion was given", repr(name)))
-    along = _mapped(lambda _: 0.0, motion.core_numbers)
+    along = mapped(lambda _: 0.0, motion.core_numbers)
     for place, slope in slopes.items():
-        along = _replaced(along, place, slope)
+        along = replaced(along, place, slope)
     largest = max(map(abs, slopes.values())) or 1.0
     return along, abs(value) or _natural_size(motion, next(iter(slopes))) / largest
 
@@ -384,7 +413,8 @@ def _unit(given: str) -> str:
     name = re.sub(r"^(plate|finger)_", r"\1.", given)
     table, _, column = name.partition("[")
     if not column:
-        return QUANTITIES[name if name in QUANTITIES else given].unit
+        keys = (name, given, given.rpartition(".")[2])
+        return next(QUANTITIES[key].unit for key in keys if key in QUANTITIES)
     part = column.partition("].")[2]
     across = QUANTITIES[COLUMNS[QUANTITIES[table].rows_of][0]]
     return across.unit if across.name.endswith(part) else QUANTITIES[table].unit
@@ -493,20 +523,3 @@ def _in_range(numbers: CoreNumbers) -> bool:
         and all(load >= 0.0 for _, load in (*plate_load, *finger_load))
         and not abs(stretch) * finger[2] > finger[1] * finger_load[0][1]
     )
-
-
-# ---- nested numbers ------------------------------------------------------------------------------
-
-
-def _replaced(numbers: Any, place: Place, value: Any) -> Any:
-    if not place:
-        return value
-    i, *rest = place
-    return (*numbers[:i], _replaced(numbers[i], tuple(rest), value), *numbers[i + 1 :])
-
-
-def _mapped(f: Callable[..., float], *numbers: Any) -> Any:
-    """Return the values of f at the corresponding numbers of several containers, nested alike."""
-    if isinstance(numbers[0], (tuple, list)):
-        return tuple(_mapped(f, *parts) for parts in zip(*numbers, strict=True))
-    return f(*numbers)

@@ -1,0 +1,146 @@
+"""Derivatives of the motion of a pin in a scan, beside differences of whole scans."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from math import radians
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pindrive import Contact, Drive
+from pindrive.device import (
+    Coil,
+    ControlBlock,
+    Device,
+    Electromagnet,
+    PinArray,
+    PinScan,
+    Scene,
+    scan,
+    strokes,
+)
+
+STEP = 1e-6  # of the size of a parameter
+FINGERS = {"rigid": Contact(0.005, 0.0075), "skin": Contact(0.020, 0.030, stiffness=300.0)}
+CONTROL = ControlBlock(latency=0.0023)
+COIL = Coil(
+    turns=300,
+    pole_area=6e-6,
+    gap=6e-5,
+    wire_diameter=1e-4,
+    turn_length=0.016,
+    supply_voltage=3.0,
+)
+
+
+def of_contact(contact: str, name: str) -> Callable[[Device, float], Device]:
+    def changed(device: Device, by: float) -> Device:
+        part = getattr(device.drive, contact)
+        drive = replace(
+            device.drive, **{contact: replace(part, **{name: getattr(part, name) + by})}
+        )
+        return replace(device, drive=drive)
+
+    return changed
+
+
+def of(part: str, name: str) -> Callable[[Device, float], Device]:
+    def changed(device: Device, by: float) -> Device:
+        before = getattr(device, part)
+        return replace(device, **{part: replace(before, **{name: getattr(before, name) + by})})
+
+    return changed
+
+
+CHANGES = {
+    **{name: of("drive", name) for name in ("mass", "stiffness", "damping", "preload")},
+    "plate_kinetic": of_contact("plate", "kinetic"),
+    "finger_kinetic": of_contact("finger", "kinetic"),
+    "finger_static": of_contact("finger", "static"),
+    **{
+        f"magnet.{name}": of("magnet", name)
+        for name in ("hold_force", "residual", "saturation", "rise_constant", "fall_constant")
+    },
+    "control.latency": of("control", "latency"),
+}
+
+
+def device(finger: str = "rigid", axis: float = 0.0, **parts: Any) -> Device:
+    drive = Drive(
+        mass=0.010,
+        stiffness=100.0,
+        damping=0.32,
+        preload=0.02,
+        plate=Contact(0.022, 0.0265),
+        finger=FINGERS[finger],
+    )
+    magnet = Electromagnet.from_times(hold_force=1.2, residual=0.02, saturation=0.8)
+    array = PinArray.grid(1, 1, 0.003, axis=radians(axis))
+    made = Device(drive=drive, magnet=magnet, control=CONTROL, array=array)
+    return replace(made, **parts)
+
+
+def scanned(given: Device) -> PinScan:
+    scene = Scene.from_grating((0.004, 0.009), count=2, margin=0.006)
+    left, right, _, _ = scene.extent
+    way = [(left + 0.003, scene.lines[0]), (right - 0.003, scene.lines[0])]
+    return scan(given, scene, strokes(way, 0.06)).pins[0]
+
+
+def compare(given: Device, parameter: str, change: Callable[[Device, float], Device]) -> None:
+    pin = scanned(given)
+    times = np.linspace(0.0, pin.end - pin.begin, 400)[1:-1]
+    slopes = pin.sensitivity([parameter])
+    step = STEP * slopes.sizes[0]
+    more, less = (scanned(change(given, by)).motion.position(times) for by in (step, -step))
+    found, expected = slopes.position(times)[0], (more - less) / (2 * step)
+    assert not slopes.gaps
+    assert np.abs(found).max() > 0
+    noise = 0.01 * np.abs(pin.motion.position(times)).max() / slopes.sizes[0]  # of differences
+    assert np.abs(found - expected).max() < 1e-5 * max(np.abs(found).max(), noise)
+    units = slopes.to_dataset().parameter_unit
+    assert units.item()
+
+
+@pytest.mark.parametrize("axis", [0.0, 25.0], ids=["along", "oblique"])
+@pytest.mark.parametrize("finger", FINGERS)
+@pytest.mark.parametrize("parameter", CHANGES)
+def test_derivatives_are_those_of_whole_scans(parameter: str, finger: str, axis: float) -> None:
+    """The hand and the page alone decide when a coil is switched, so a scan changes smoothly."""
+    compare(device(finger, axis), parameter, CHANGES[parameter])
+
+
+@pytest.mark.parametrize("name", ["pwm_frequency", "pwm_duty"])
+def test_pulses(name: str) -> None:
+    pulsed = Electromagnet.from_times(hold_force=1.2, pwm_frequency=437.0, pwm_duty=0.8)
+    compare(device(magnet=pulsed), f"magnet.{name}", of("magnet", name))
+
+
+def test_the_normal_force_presses_on_coefficients_too() -> None:
+    drive = Drive(
+        mass=0.010,
+        stiffness=100.0,
+        damping=0.32,
+        preload=0.02,
+        plate=Contact(coefficient=0.22, static_coefficient=0.27),
+        finger=FINGERS["rigid"],
+    )
+    for name in ("mass", "preload"):
+        compare(device(drive=drive), name, of("drive", name))
+
+
+@pytest.mark.parametrize(
+    ("parameter", "magnet"),
+    [
+        ("magnet.hold_force", Electromagnet.from_coil(COIL)),
+        ("magnet.pwm_duty", Electromagnet.from_times()),
+        ("magnet.weight", Electromagnet.from_times()),
+    ],
+    ids=["of a coil", "no pulses", "unknown"],
+)
+def test_parameters_that_a_device_does_not_have(parameter: str, magnet: Electromagnet) -> None:
+    with pytest.raises(ValueError, match=parameter):
+        scanned(device(magnet=magnet)).sensitivity([parameter])
