@@ -1,14 +1,59 @@
 // The ledger of energies on a damped swing between two stops of the pin, term by term.
 #include "pindrive/motion/energy.hpp"
 
+#include <string>
+#include <vector>
+
 #include "check.hpp"
 #include "pindrive/certificate/certify.hpp"
+#include "pindrive/events/simulate.hpp"
+#include "pindrive/numbers/dual.hpp"
 
 namespace pd = pindrive;
 using check::expect;
 using check::near;
 
+namespace {
+
+/// Ledger of a pin of a mass under a hand that moves back and forth, whose pull decays.
+template <class T>
+pd::Ledger<T> under_functions(T mass) {
+  const pd::Drive<T> drive{mass, 100, 0.32, {T(0.022), T(0.0265)}, {T(0.005), T(0.0075)}};
+  const pd::InputTerm<T> wave{0, 0.05, 0, 31}, pull{4, 0, 20, 0};
+  const pd::InputPiece<T> hand{0, {T(0.06)}, &wave, 1}, load{0, {T(1)}, &pull, 1};
+  pd::Inputs<T> inputs{pd::Profile<T>(&hand, 1), T(0), T(0.06), T(0.6)};
+  inputs.plate_load = {&load, 1};
+  std::vector<pd::Segment<T>> segments;
+  const auto outcome = pd::simulate(
+      drive, inputs, [&](const pd::Segment<T>& segment) { segments.push_back(segment); });
+  expect(segments.size() > 5, "there are events");
+  const pd::Motion<T> motion(drive, inputs, segments.data(), segments.size(), outcome);
+  return pd::energy_ledger(motion, T(0.6));
+}
+
+/// A term changes with the times of events: the ledger closes in its derivative, too.
+void derivatives() {
+  const auto found = under_functions(pd::Dual<double>(0.01, 1));
+  const double h = 1e-8;
+  const auto more = under_functions(0.01 + h), less = under_functions(0.01 - h);
+  const double largest = std::abs(found.inertia_work.slope);
+  expect(std::abs(found.residual().slope) < 1e-12 * largest, "a derivative closes the ledger");
+  for (const auto& [name, of] : pd::ledger_numbers<pd::Dual<double>>) {
+    if (std::string(name) == "residual") continue;
+    const auto at = [&, key = std::string(name)](const pd::Ledger<double>& ledger) {
+      for (const auto& [other, value] : pd::ledger_numbers<double>)
+        if (key == other) return value(ledger);
+      return std::numeric_limits<double>::quiet_NaN();
+    };
+    const double slope = (at(more) - at(less)) / (2 * h);
+    expect(std::abs(of(found).slope - slope) < 1e-5 * largest, name);
+  }
+}
+
+}  // namespace
+
 int main() {
+  derivatives();
   // From rest at 1 mm, without friction: what the spring loses the damper takes.
   const pd::Drive<double> drive{0.01, 100, 0.1, {}, {}};
   const pd::Inputs<double> inputs{0.0, 1e-3, 0};

@@ -48,12 +48,13 @@ void steps() {
   int count = 0;
   pd::detail::each_step(
       0.0, 2.0, [&](double t) { return sum.from(t).reach(); },
-      [&](double t, double length) {
+      [&](double t, double next) {
+        const double length = next - t;
         const auto p = sum.from(t).expanded(length);
         for (const double part : {0.0, 0.4, 1.0})
           worst = std::max(worst, std::abs(p.at(part * length) - direct(t + part * length)));
         expect(t == end, "steps follow each other");
-        end = t + length;
+        end = next;
         ++count;
         return true;
       });

@@ -220,7 +220,8 @@ class ByTerms {
     const auto reach = [&](Real<T> tau) {
       return std::min(motion_.reach(tau), finger_force_.from(tau).reach());
     };
-    each_step(T(0), to, reach, [&](T from, Real<T> length) {
+    each_step(T(0), to, reach, [&](T from, T end) {
+      const Real<T> length = plain(end - from);
       return goes_on(visit, from, length,
                      [&](const TermSum<T>& sum) { return sum.from(from).expanded(length); });
     });
@@ -265,8 +266,8 @@ class ByTerms {
     const auto reach = [&](Real<T> tau) {
       return std::min(p.from(tau).reach(), q.from(tau).reach());
     };
-    each_step(from, to, reach, [&](T low, Real<T> length) {
-      sum += gauss<T>([&](T tau) { return p.at(tau) * q.at(tau); }, low, low + length);
+    each_step(from, to, reach, [&](T low, T high) {
+      sum += gauss<T>([&](T tau) { return p.at(tau) * q.at(tau); }, low, high);
       return true;
     });
     return sum;

@@ -245,14 +245,14 @@ class TermSum {
   int count_{0};
 };
 
-/// Steps of sums from one time to another, as their Taylor polynomials hold: calls visit(begin, length)
+/// Steps of sums from one time to another, as their Taylor polynomials hold: calls visit(begin, end)
 /// with each, in order, until visit returns false. `reach(τ)` is the longest step after τ.
 template <class T, class Reach, class Visitor>
 void each_step(const T& from, const T& to, Reach&& reach, Visitor&& visit) {
   for (T low = from; low < to;) {
     T high = std::min(T(low + reach(plain(low))), to);
     if (!(high > low)) high = to;  // so late that a step is lost in rounding
-    if (!visit(low, plain(high - low))) return;
+    if (!visit(low, high)) return;
     low = high;
   }
 }
