@@ -1,7 +1,10 @@
 // One motion: what its sink sees, how it is stopped, and the limits that end it.
 #include "pindrive/events/simulate.hpp"
 
+#include <vector>
+
 #include "check.hpp"
+#include "pindrive/model/named_function.hpp"
 
 namespace pd = pindrive;
 using check::expect;
@@ -11,9 +14,33 @@ namespace {
 const pd::Drive<double> drive{0.010, 100.0, 0.40, {0.020, 0.020}, {0.005, 0.005}};
 const pd::Inputs<double> inputs{0.10, 1.5e-3, 0.10};
 
+/// A pin that a plate takes along over the finger to the end of a stroke has its smallest velocities within rounding.
+void ends_of_strokes() {
+  int turned = 0, carried = 0;
+  for (int i = 0; i < 500; ++i) {
+    const double lasts = 0.05 + 0.3 * (i * 37 % 101) / 101, way = 0.005 + 0.05 * (i * 53 % 97) / 97;
+    const double end = 0.013 * (i % 3) + lasts;
+    const auto stroke = pd::named_function<double>(*pd::function_kind("minimum_jerk"),
+                                                   {way, lasts, end - lasts, 0});
+    std::vector<pd::InputPiece<double>> pieces;
+    for (std::size_t k = 0; k < stroke.count; ++k) pieces.push_back(stroke.pieces[k].piece);
+    const pd::Drive<double> body{
+        0.01 + 0.001 * (i % 7), 100, 0.32, {0.022, 0.0265}, {0.005, 0.0075}};
+    const pd::Inputs<double> hand{{pieces.data(), pieces.size()}, 1e-3 * (i * 29 % 41) / 41, 0, 1};
+    pd::simulate(body, hand, [&](const pd::Segment<double>& segment) {
+      const bool nearly = segment.end < end && segment.end > (1 - 1e-6) * end;
+      turned += nearly && segment.event.finger != pd::Transition{};
+      carried += segment.end == end && segment.mode.plate == pd::ContactState::stick;
+    });
+  }
+  expect(carried > 50, "strokes take pins along");
+  expect(turned == 0, "... that do not turn shortly before the end");
+}
+
 }  // namespace
 
 int main() {
+  ends_of_strokes();
   int segments = 0;
   double until = 0;
   bool joined = true;

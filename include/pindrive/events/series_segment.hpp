@@ -89,18 +89,19 @@ class SeriesSegment {
       if (!last) return T(0);
       return abs((on_plate ? last->speed : has_slider_state ? last->skin : last->velocity).c[0]);
     };
-    // A function has the rounding of its terms; a pin that creeps has it in its velocity.
+    // A function has the rounding of its terms; a pin that creeps, or that the plate takes along, has it in its
+    // velocity.
     const auto unsure = [&](const Curve<T>& input) {
       return input.straight() ? T(0) : T(input.rounding(end));
     };
     const T of_plate_velocity = unsure(equation.plate_velocity) + unsure(equation.across);
-    const bool creeps = segment.eliminated == EliminatedPart::of_friction;
+    const bool follows = plate.stuck() || segment.eliminated == EliminatedPart::of_friction;
     first_ = guards.defer_grazing(first_, breakpoint, [&](const Guard<T>& guard, T tau) {
       const Polynomial<T>& path = paths.begin()[&guard - guards.begin()].path;
       const T force_error = guard.bound == ActiveGuard::none || guard.bound == ActiveGuard::push
                                 ? state.force_error
                                 : rounding<T> * (path.size() + speed_of(guard.plate)) +
-                                      (guard.plate || creeps ? of_plate_velocity : T(0));
+                                      (guard.plate || follows ? of_plate_velocity : T(0));
       const T fall = path.derivative().at(guard.zero - since) * (tau - guard.zero);
       return stays_at_bound(fall, path.at(tau - since), force_error);
     });
