@@ -2,6 +2,7 @@
 #include "pindrive/device/coil_course.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -102,11 +103,23 @@ void limits() {
   expect(course.pieces.front().begin == 0 && course.pieces.front().on, "a change of another clock");
 }
 
+/// The numbers of a magnet, in order.
+template <class T>
+std::array<T, 14> numbers_of(const device::MagnetParameters<T>& magnet) {
+  const auto& [hold_force, residual, saturation, rise, fall, flux, inductance, frequency, duty,
+               winding, outer, power, cooling, capacity] = magnet;
+  return {hold_force, residual, saturation, rise,  fall,  flux,    inductance,
+          frequency,  duty,     winding,    outer, power, cooling, capacity};
+}
+template <class T>
+device::MagnetParameters<T> magnet_of(const std::array<T, 14>& n) {
+  return {n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8], n[9], n[10], n[11], n[12], n[13]};
+}
+
 /// Derivatives by each parameter and by a delay of all switchings, beside differences: with pulses, with a gap that
 /// closes, and with a coil that heats.
 void derivatives() {
   using Dual = pindrive::Dual<double>;
-  constexpr std::size_t count = 14;
   device::MagnetParameters<double> pulsed = parameters(), closing{2.0, 0.05, 0.7, 1e-3, 3e-3},
                                    hot = closing;
   closing.closing_flux = 0.4;
@@ -118,23 +131,22 @@ void derivatives() {
   hot.heat_capacity = 0.5;
   const double switchings[]{0.0031, 0.0094, 0.0203, 0.0333};
   double worst = 0, most = 0;
-  for (const auto& given : {pulsed, closing, hot}) {
+  for (const auto& magnet : {pulsed, closing, hot}) {
+    const auto given = numbers_of(magnet);
+    const std::size_t count = given.size();
     const auto course_of = [&](auto along, double step) {
       using T = decltype(along(0));
-      device::MagnetParameters<T> moved{};
-      static_assert(sizeof(moved) == count * sizeof(T));
-      const auto* from = &given.hold_force;
-      T* to = &moved.hold_force;
-      for (std::size_t i = 0; i < count; ++i) to[i] = from[i] + step * along(i);
+      std::array<T, 14> moved;
+      for (std::size_t i = 0; i < count; ++i) moved[i] = given[i] + step * along(i);
       std::vector<T> times;
       for (const double t : switchings) times.push_back(t + step * along(count));
       device::CoilCourse<T> course;
-      course.follow(device::Electromagnet<T>(moved), {}, times.data(), times.size(), T(0), T(0.05),
-                    unlimited);
+      course.follow(device::Electromagnet<T>(magnet_of(moved)), {}, times.data(), times.size(),
+                    T(0), T(0.05), unlimited);
       return course;
     };
     for (std::size_t of = 0; of <= count; ++of) {
-      const double size = of == count ? 1e-3 : (&given.hold_force)[of];
+      const double size = of == count ? 1e-3 : given[of];
       if (size == 0) continue;
       const auto along = [&](std::size_t i) { return i == of ? size : 0.0; };
       const auto exact = course_of([&](std::size_t i) { return Dual(0, along(i)); }, 1);

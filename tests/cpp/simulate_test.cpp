@@ -23,6 +23,7 @@ void ends_of_strokes() {
     const auto stroke = pd::named_function<double>(*pd::function_kind("minimum_jerk"),
                                                    {way, lasts, end - lasts, 0});
     std::vector<pd::InputPiece<double>> pieces;
+    pieces.reserve(stroke.count);
     for (std::size_t k = 0; k < stroke.count; ++k) pieces.push_back(stroke.pieces[k].piece);
     const pd::Drive<double> body{
         0.01 + 0.001 * (i % 7), 100, 0.32, {0.022, 0.0265}, {0.005, 0.0075}};
