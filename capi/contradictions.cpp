@@ -443,12 +443,9 @@ class Search {
     constexpr const char *voltage = "magnet.voltage", *residual = "magnet.residual";
     if (!made && has(voltage))
       add(voltage, {}, "given with a coil, by turns, gap, wire_diameter and the like|it alone");
-    const auto coil = device::CoilConstruction::of([&](const char* key) { return number(key); });
-    if (made && !check_coil(coil, made)) return;
-    device::MagnetParameters<double> magnet =
-        made ? coil.magnet() : device::MagnetParameters<double>{};
-    if (!made) magnet.hold_force = number("magnet.hold_force");
-    magnet.residual = number(residual);
+    const auto value = [&](const char* key) { return number(key); };
+    if (made && !check_coil(device::construction_by_keys(value), made)) return;
+    const device::MagnetParameters<double> magnet = device::magnet_by_keys(value);
     if (magnet.residual >= magnet.hold_force)
       reject(residual, {"magnet.hold_force"}, "less than the hold force, %v N", magnet.hold_force);
     else if (has("magnet.lift") && has("magnet.closing_force"))
@@ -476,7 +473,7 @@ class Search {
   }
 
   /// Each value is in range, but a quotient of values may be out of its own.
-  bool check_coil(const device::CoilConstruction& coil, const char* made) {
+  bool check_coil(const device::CoilConstruction<double>& coil, const char* made) {
     const struct {
       const char* name;
       double value;
@@ -500,11 +497,9 @@ class Search {
   }
 
   /// A gap that never closes, or never opens.
-  void check_closing(device::MagnetParameters<double>& magnet) {
+  void check_closing(const device::MagnetParameters<double>& magnet) {
     constexpr const char* key = "magnet.closing_force";
-    const double gap = number("magnet.gap"), force = number(key);
-    magnet.open_inductance = gap / (gap + number("magnet.lift"));
-    magnet.closing_flux = device::closing_flux(magnet, force);
+    const double force = number(key);
     const double open = magnet.open_inductance / magnet.saturation;
     const double most =
         magnet.residual + (magnet.hold_force - magnet.residual) * std::min(open * open, 1.0);
@@ -517,7 +512,7 @@ class Search {
 
   void check_poles() {
     const double diameter = number("magnet.outer_diameter");
-    const double face = device::CoilConstruction::pi / 4 * diameter * diameter;
+    const double face = device::CoilConstruction<double>::pi / 4 * diameter * diameter;
     if (2 * number("magnet.pole_area") > face)
       reject("magnet.pole_area", {"magnet.outer_diameter"},
              "at most half of the magnet's face, %g m^2, as it has two poles", 0.5 * face);

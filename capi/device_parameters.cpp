@@ -161,27 +161,8 @@ pindrive_error DeviceParameters::fill(pindrive_drive* drive, double Number::* pa
 
 std::unique_ptr<const device::Electromagnet<double>> DeviceParameters::magnet() const {
   if (!has_magnet()) return nullptr;
-  const bool made = has("magnet.turns");
-  device::MagnetParameters<double> found{};
-  if (made) {
-    found = device::CoilConstruction::of([&](const char* key) { return number(key); }).magnet();
-    found.thermal_resistance = number("magnet.thermal_resistance");
-    found.heat_capacity = of("magnet.heat_capacity").value;
-  } else {
-    found.saturation = number("magnet.saturation");
-    found.rise_constant = device::rise_constant(number("magnet.rise_time"), found.saturation);
-    found.fall_constant = device::fall_constant(number("magnet.fall_time"), found.saturation);
-    found.hold_force = number("magnet.hold_force");
-  }
-  found.residual = number("magnet.residual");
-  if (has("magnet.lift")) {
-    const double gap = number("magnet.gap");
-    found.open_inductance = gap / (gap + number("magnet.lift"));
-    found.closing_flux = device::closing_flux(found, number("magnet.closing_force"));
-  }
-  found.pulse_duty = of("magnet.pwm_duty", 1).value;
-  found.pulse_frequency = of("magnet.pwm_frequency", 1).value;
-  std::vector<device::VoltageStep> steps;
+  const auto found = device::magnet_by_keys([&](const char* key) { return number(key); });
+  std::vector<device::VoltageStep<double>> steps;
   const auto times = list("magnet.voltage.time"), volts = list("magnet.voltage.value");
   steps.reserve(times.size());
   for (std::size_t i = 0; i < times.size(); ++i)

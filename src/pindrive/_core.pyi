@@ -1,6 +1,6 @@
 """The exact core. All quantities in SI units; nothing is checked here."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Annotated
 
 import numpy
@@ -170,12 +170,20 @@ def plate_velocity(path: tuple[Annotated[NDArray[numpy.float64], dict(shape=(Non
     Times since the begin; velocity along and across the axis, at these times and as pieces where the path has bends; whether across it moves.
     """
 
+def coil_numbers(values: Mapping[str, float]) -> dict[str, float]:
+    """Derived numbers of a coil by the keys of a device file, SI."""
+
+def magnet_numbers(values: Mapping[str, float], along: str) -> tuple:
+    """
+    Numbers of an electromagnet by the keys of a device file; their derivatives by one key.
+    """
+
 def coil_course(magnet: tuple[Sequence[float], Sequence[tuple[float, float]]], state: tuple[float, float, float, float, float, bool, bool], switchings: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], begin: float, end: float, most: int) -> tuple:
     """
     Pieces of a coil under commands, those of its pull (N), and its state at the end.
     """
 
-def load_along(magnet: tuple[Sequence[float], Sequence[tuple[float, float]]], along: Sequence[float], normal_force: tuple[float, float], state: tuple[float, float, float, float, float, bool, bool], switchings: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], delay: float, begin: float, end: float) -> list:
+def load_along(magnet: tuple[Sequence[float], Sequence[tuple[float, float]]], along: tuple[Sequence[float], Sequence[tuple[float, float]]], normal_force: tuple[float, float], state: tuple[float, float, float, float, float, bool, bool], switchings: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], delay: float, begin: float, end: float) -> list:
     """
     Derivative of the pieces of the factor of the plate friction: begin, polynomial, terms.
     """

@@ -2,13 +2,17 @@
 #include "_scan.hpp"
 
 #include <nanobind/nanobind.h>
+#include <nanobind/stl/map.h>
 #include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <map>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -17,6 +21,7 @@
 #include "owned_motion.hpp"
 #include "pindrive/device/closest_approach.hpp"
 #include "pindrive/device/coil_course.hpp"
+#include "pindrive/device/magnet_construction.hpp"
 #include "pindrive/numbers/dual.hpp"
 
 namespace nb = nanobind;
@@ -34,14 +39,20 @@ auto column_of(const std::vector<device::FluxPiece<double>>& pieces, Function&& 
   return mapped<double>(pieces.size(), [&](std::size_t i) { return f(pieces[i]); });
 }
 
-/// A piece of a function as Python has it: begin, polynomial, terms.
-nb::tuple piece_of(const pd::InputPiece<double>& piece) {
+/// Begin, polynomial and terms of a piece for Python, each number through `number`.
+template <class T, class Number>
+nb::tuple piece_of(const pd::InputPiece<T>& piece, Number&& number) {
   nb::list terms;
   for (std::size_t i = 0; i < piece.count; ++i) {
-    const pd::InputTerm<double>& term = piece.terms[i];
-    terms.append(nb::make_tuple(term.cosine, term.sine, term.decay, term.frequency));
+    const pd::InputTerm<T>& term = piece.terms[i];
+    terms.append(nb::make_tuple(number(term.cosine), number(term.sine), number(term.decay),
+                                number(term.frequency)));
   }
-  return nb::make_tuple(piece.begin, nb::make_tuple(piece.polynomial[0]), nb::tuple(terms));
+  return nb::make_tuple(number(piece.begin), nb::make_tuple(number(piece.polynomial[0])),
+                        nb::tuple(terms));
+}
+nb::tuple piece_of(const pd::InputPiece<double>& piece) {
+  return piece_of(piece, [](double value) { return value; });
 }
 
 /// Columns of the pieces of a coil, pieces of its pull and its state at the end.
@@ -69,6 +80,43 @@ nb::tuple table_of(const device::CoilCourse<double>& course) {
   return nb::make_tuple(pieces, pulls, numbers_of(course.end));
 }
 
+using Keys = std::map<std::string, double>;
+
+/// Reads keys of a device file with a derivative of 1 for one key; NaN without a value.
+auto reader_of(const Keys& values, const std::string& along) {
+  return [&](const char* key) -> Dual {
+    const auto found = values.find(key);
+    if (found == values.end()) return {std::numeric_limits<double>::quiet_NaN(), 0};
+    return {found->second, found->first == along ? 1.0 : 0.0};
+  };
+}
+
+/// Derived numbers of a coil by the keys of a device file.
+std::map<std::string, double> coil_numbers(const Keys& values) {
+  const auto coil = device::construction_by_keys(reader_of(values, ""));
+  return {{"resistance", coil.resistance().value},
+          {"inductance", coil.inductance().value},
+          {"current", coil.current().value},
+          {"field", coil.field().value},
+          {"saturation", coil.saturation().value},
+          {"pull", coil.pull().value},
+          {"power", coil.power().value}};
+}
+
+/// Numbers of an electromagnet by the keys of a device file, and the derivatives by one key.
+nb::tuple magnet_numbers(const Keys& values, const std::string& along) {
+  const device::MagnetParameters<Dual> m = device::magnet_by_keys(reader_of(values, along));
+  std::vector<double> numbers, slopes;
+  for (const Dual& number :
+       {m.hold_force, m.residual, m.saturation, m.rise_constant, m.fall_constant, m.closing_flux,
+        m.open_inductance, m.pulse_frequency, m.pulse_duty, m.winding_resistance,
+        m.outer_resistance, m.power, m.thermal_resistance, m.heat_capacity}) {
+    numbers.push_back(number.value);
+    slopes.push_back(number.slope);
+  }
+  return nb::make_tuple(numbers, slopes);
+}
+
 nb::tuple coil_course(const MagnetNumbers& magnet, const CoilNumbers& from,
                       const Column& switchings, double begin, double end, std::size_t most) {
   device::CoilCourse<double> course;
@@ -79,11 +127,11 @@ nb::tuple coil_course(const MagnetNumbers& magnet, const CoilNumbers& from,
 
 /// Derivative of the pieces of a load along numbers of the magnet, of its normal force and of a delay of all
 /// switchings.
-nb::list load_along(const MagnetNumbers& magnet, const std::vector<double>& along,
+nb::list load_along(const MagnetNumbers& magnet, const MagnetNumbers& along,
                     std::pair<double, double> normal_force, const CoilNumbers& from,
                     const Column& switchings, double delay, double begin, double end) {
   const auto electromagnet = magnet_with<Dual>(
-      magnet, [&](std::size_t i) -> Dual { return {magnet.first.at(i), along.at(i)}; });
+      magnet, along, [](double value, double slope) -> Dual { return {value, slope}; });
   const auto& [since, flux, warming, level, commanded, on, command] = from;
   std::vector<Dual> times;
   for (std::size_t i = 0; i < switchings.size(); ++i)
@@ -95,14 +143,7 @@ nb::list load_along(const MagnetNumbers& magnet, const std::vector<double>& alon
   nb::list found;
   for (const device::PullPiece<Dual>& pull : course.pulls) {
     const pd::OwnedPiece<Dual> load = device::load_under(pull, pressed, Dual(begin));
-    nb::list terms;
-    for (std::size_t i = 0; i < load.piece.count; ++i) {
-      const pd::InputTerm<Dual>& term = load.piece.terms[i];
-      terms.append(nb::make_tuple(term.cosine.slope, term.sine.slope, term.decay.slope,
-                                  term.frequency.slope));
-    }
-    found.append(nb::make_tuple(load.piece.begin.slope,
-                                nb::make_tuple(load.piece.polynomial[0].slope), nb::tuple(terms)));
+    found.append(piece_of(load.piece, [](const Dual& of) { return of.slope; }));
   }
   return found;
 }
@@ -131,6 +172,10 @@ nb::tuple closest_approaches(const std::vector<const pd::StoredMotion<double>*>&
 }  // namespace
 
 void bind_scan(nb::module_& m) {
+  m.def("coil_numbers", &coil_numbers, "values"_a,
+        "Derived numbers of a coil by the keys of a device file, SI.");
+  m.def("magnet_numbers", &magnet_numbers, "values"_a, "along"_a,
+        "Numbers of an electromagnet by the keys of a device file; their derivatives by one key.");
   m.def("coil_course", &coil_course, "magnet"_a, "state"_a, "switchings"_a, "begin"_a, "end"_a,
         "most"_a,
         "Pieces of a coil under commands, those of its pull (N), and its state at the end.");

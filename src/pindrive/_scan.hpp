@@ -99,18 +99,22 @@ inline std::optional<pd::StepperState<double>> motion_of(const std::vector<doubl
   return state;
 }
 
-/// An electromagnet whose numbers are made by number(i).
-template <class T, class Numbers>
-device::Electromagnet<T> magnet_with(const MagnetNumbers& given, Numbers&& number) {
-  std::vector<device::VoltageStep> steps;
-  for (const auto& [time, level] : given.second) steps.push_back({time, level});
+/// An electromagnet whose numbers are each made of a number and its derivative.
+template <class T, class Made>
+device::Electromagnet<T> magnet_with(const MagnetNumbers& given, const MagnetNumbers& along,
+                                     Made&& made) {
+  const auto number = [&](std::size_t i) { return made(given.first.at(i), along.first.at(i)); };
+  std::vector<device::VoltageStep<T>> steps;
+  for (std::size_t i = 0; i < given.second.size(); ++i)
+    steps.push_back(
+        {given.second[i].first, made(given.second[i].second, along.second.at(i).second)});
   return device::Electromagnet<T>(
       {number(0), number(1), number(2), number(3), number(4), number(5), number(6), number(7),
        number(8), number(9), number(10), number(11), number(12), number(13)},
       std::move(steps));
 }
 inline device::Electromagnet<double> magnet_of(const MagnetNumbers& given) {
-  return magnet_with<double>(given, [&](std::size_t i) { return given.first.at(i); });
+  return magnet_with<double>(given, given, [](double value, double) { return value; });
 }
 
 inline device::CoilState<double> coil_of(const CoilNumbers& given) {

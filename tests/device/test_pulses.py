@@ -23,11 +23,12 @@ from pindrive.device import (
     PinArray,
     scan,
 )
-from pindrive.device.closing import CLOSED
+from pindrive.device.closing import Closing
 from pindrive.device.heating import Heat
 from pindrive.device.reading import Reading
 
 ON, OFF = 0.0103, 0.0631
+CLOSED = Closing(0.0, 1.0)  # a gap that does not open
 COPPER_RISE = 3.93e-3  # per kelvin, of annealed copper from 20 °C (IEC 60028)
 COMMANDS = Commands(np.array([ON, OFF]))
 

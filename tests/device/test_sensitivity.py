@@ -22,6 +22,7 @@ from pindrive.device import (
     scan,
     strokes,
 )
+from pindrive.device.coil import COIL_NEEDS
 
 STEP = 1e-6  # of the size of a parameter
 FINGERS = {"rigid": Contact(0.005, 0.0075), "skin": Contact(0.020, 0.030, stiffness=300.0)}
@@ -33,7 +34,12 @@ COIL = Coil(
     wire_diameter=1e-4,
     turn_length=0.016,
     supply_voltage=3.0,
+    release_resistance=2.0,
+    saturation_field=0.5,
 )
+HOT = replace(COIL, thermal_resistance=40.0, heat_capacity=0.02)
+LIFTED = replace(COIL, lift=4e-5, closing_force=0.2)
+VOLTAGE = [(0.0, 2.9), (0.004, 1.5)]
 
 
 def of_contact(contact: str, name: str) -> Callable[[Device, float], Device]:
@@ -66,6 +72,17 @@ CHANGES = {
     },
     "control.latency": of("control", "latency"),
 }
+
+
+def of_coil(name: str, **more: Any) -> Callable[[Device, float], Device]:
+    def changed(device: Device, by: float) -> Device:
+        coil = device.magnet.coil
+        assert coil is not None
+        moved = replace(coil, **{name: getattr(coil, name) + by})
+        magnet = Electromagnet.from_coil(moved, residual=device.magnet.residual, **more)
+        return replace(device, magnet=magnet)
+
+    return changed
 
 
 def device(finger: str = "rigid", axis: float = 0.0, **parts: Any) -> Device:
@@ -119,6 +136,27 @@ def test_pulses(name: str) -> None:
     compare(device(magnet=pulsed), f"magnet.{name}", of("magnet", name))
 
 
+@pytest.mark.parametrize(
+    ("coil", "name"),
+    [
+        *((LIFTED, name) for name in COIL_NEEDS),
+        *((LIFTED, name) for name in ("release_resistance", "lift", "closing_force")),
+        (COIL, "saturation_field"),
+        (HOT, "thermal_resistance"),
+        (HOT, "heat_capacity"),
+        (HOT, "turns"),
+    ],
+)
+def test_numbers_of_a_coil(coil: Coil, name: str) -> None:
+    compare(device(magnet=Electromagnet.from_coil(coil)), f"magnet.{name}", of_coil(name))
+
+
+@pytest.mark.parametrize("name", ["supply_voltage", "gap"])
+def test_a_voltage_over_time_holds(name: str) -> None:
+    magnet = Electromagnet.from_coil(LIFTED, voltage=VOLTAGE)
+    compare(device(magnet=magnet), f"magnet.{name}", of_coil(name, voltage=VOLTAGE))
+
+
 def test_the_normal_force_presses_on_coefficients_too() -> None:
     drive = Drive(
         mass=0.010,
@@ -136,10 +174,11 @@ def test_the_normal_force_presses_on_coefficients_too() -> None:
     ("parameter", "magnet"),
     [
         ("magnet.hold_force", Electromagnet.from_coil(COIL)),
+        ("magnet.lift", Electromagnet.from_coil(COIL)),
         ("magnet.pwm_duty", Electromagnet.from_times()),
         ("magnet.weight", Electromagnet.from_times()),
     ],
-    ids=["of a coil", "no pulses", "unknown"],
+    ids=["of a coil", "no lift", "no pulses", "unknown"],
 )
 def test_parameters_that_a_device_does_not_have(parameter: str, magnet: Electromagnet) -> None:
     with pytest.raises(ValueError, match=parameter):

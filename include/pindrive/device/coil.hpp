@@ -112,7 +112,7 @@ class Coil {
   }
   /// Index of the next voltage step.
   std::size_t next_step() const {
-    const std::vector<VoltageStep>& steps = magnet_->steps();
+    const std::vector<VoltageStep<T>>& steps = magnet_->steps();
     std::size_t next = 1;
     while (next < steps.size() && state_.commanded + steps[next].time <= reference()) ++next;
     return next;
@@ -120,7 +120,7 @@ class Coil {
 
   T next_voltage() const {
     if (!state_.command) return infinity;
-    if (const std::vector<VoltageStep>& steps = magnet_->steps(); !steps.empty()) {
+    if (const std::vector<VoltageStep<T>>& steps = magnet_->steps(); !steps.empty()) {
       const std::size_t next = next_step();
       return next < steps.size() ? state_.commanded + steps[next].time : infinity;
     }

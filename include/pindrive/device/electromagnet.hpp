@@ -12,12 +12,14 @@
 
 namespace pindrive::device {
 
-using detail::abs, detail::exp, detail::expm1, detail::floor, detail::log;
+using detail::abs, detail::exp, detail::expm1, detail::floor, detail::isnan, detail::log,
+    detail::sqrt;
 
 /// Voltage from a time since the coil was switched on, until the next step.
+template <class T>
 struct VoltageStep {
-  double time;   ///< s; the first 0
-  double level;  ///< part of the full voltage, from 0 to 1
+  double time;  ///< s; the first 0
+  T level;      ///< part of the full voltage, from 0 to 1
 };
 
 /// Exponential approach of the flux linkage at constant voltage and gap.
@@ -77,11 +79,11 @@ struct MagnetParameters {
 template <class T>
 class Electromagnet {
  public:
-  explicit Electromagnet(const MagnetParameters<T>& given, std::vector<VoltageStep> steps = {})
+  explicit Electromagnet(const MagnetParameters<T>& given, std::vector<VoltageStep<T>> steps = {})
       : given_(given), steps_(std::move(steps)) {}
 
   const MagnetParameters<T>& given() const { return given_; }
-  const std::vector<VoltageStep>& steps() const { return steps_; }
+  const std::vector<VoltageStep<T>>& steps() const { return steps_; }
   bool pulses() const {
     return steps_.empty() && given_.pulse_duty < 1 && given_.pulse_frequency > 0;
   }
@@ -193,7 +195,7 @@ class Electromagnet {
   }
 
   MagnetParameters<T> given_;
-  std::vector<VoltageStep> steps_;
+  std::vector<VoltageStep<T>> steps_;
 };
 
 }  // namespace pindrive::device

@@ -11,7 +11,6 @@ the inductance with the open gap over that with the closed one.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,7 +21,3 @@ class Closing:
     """The flux linkage at which it closes and opens, a part of that of the full current."""
     inductance: float
     """q, the inductance while it is open over that while it is closed."""
-
-
-CLOSED: Final = Closing(flux=0.0, inductance=1.0)
-"""That of a gap that does not open."""

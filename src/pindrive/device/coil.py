@@ -3,24 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import MISSING, fields
-from math import pi
 from typing import Final
 
+from pindrive import _core
 from pindrive.device.heating import Heat
 from pindrive.quantities.contradictions import refuse
 from pindrive.quantities.electromagnet import COIL as ROWS
 from pindrive.quantities.electromagnet import MADE, MAGNET
 from pindrive.quantities.part import Number, OptionalNumber, Part, checked_by
-from pindrive.quantities.quantity import Rows
 
 TABLE: Final = Part(MAGNET + ROWS + MADE)
 """Table of the device file with the keys of a magnet."""
 default: Final = TABLE.default
-
-MAGNETIC_CONSTANT: Final = 1.25663706127e-6
-"""N/A², CODATA 2022."""
-COPPER: Final = 1 / 58e6
-"""Resistivity of annealed copper at 20 °C, ohm m (IEC 60028)."""
 
 
 @checked_by(TABLE)
@@ -76,37 +70,37 @@ class Coil:
     @property
     def resistance(self) -> float:
         """R = ρ N l / (π d²/4), ohm, at 20 °C."""
-        return COPPER * self.turns * self.turn_length / (pi / 4.0 * self.wire_diameter**2)
+        return self._number("resistance")
 
     @property
     def inductance(self) -> float:
         """L = N B A / I = μ0 N² A / 2g, H, with the closed gap."""
-        return MAGNETIC_CONSTANT * self.turns**2 * self.pole_area / (2.0 * self.gap)
+        return self._number("inductance")
 
     @property
     def current(self) -> float:
         """Full current I = U / R, A."""
-        return self.supply_voltage / self.resistance
+        return self._number("current")
 
     @property
     def field(self) -> float:
         """B = μ0 N I / 2g at full current if the iron did not saturate, T."""
-        return MAGNETIC_CONSTANT * self.turns * self.current / (2.0 * self.gap)
+        return self._number("field")
 
     @property
     def saturation(self) -> float:
         """The part of the full current at which the iron saturates, at most 1."""
-        return min(1.0, self.saturation_field / self.field)
+        return self._number("saturation")
 
     @property
     def pull(self) -> float:
         """Two poles' B² A / 2μ0 at full current or saturation, N."""
-        return min(self.field, self.saturation_field) ** 2 * self.pole_area / MAGNETIC_CONSTANT
+        return self._number("pull")
 
     @property
     def power(self) -> float:
         """U I while it is on, W."""
-        return self.supply_voltage * self.current
+        return self._number("power")
 
     @property
     def heat(self) -> Heat | None:
@@ -120,13 +114,17 @@ class Coil:
         """The part of the time it may be on before it warms by more than is allowed, at most 1."""
         return min(1.0, self.temperature_rise / (self.thermal_resistance * self.power))
 
+    def _number(self, name: str) -> float:
+        """Return a number of the core (include/pindrive/device/magnet_construction.hpp)."""
+        return _core.coil_numbers(values_of(self))[name]
+
 
 COIL: Final = tuple(field.name for field in fields(Coil))
 COIL_NEEDS: Final = tuple(field.name for field in fields(Coil) if field.default is MISSING)
 """Mandatory keys of a coil."""
 
 
-def values_of(coil: Coil) -> dict[str, float | Rows | None]:
+def values_of(coil: Coil) -> dict[str, float]:
     """The given values of a coil by the keys of a device file."""
     values = {f"magnet.{name}": getattr(coil, name) for name in COIL}
     return {key: value for key, value in values.items() if value is not None}

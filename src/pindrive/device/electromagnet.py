@@ -17,7 +17,8 @@ from typing import Final, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pindrive.device.closing import CLOSED, Closing
+from pindrive import _core
+from pindrive.device.closing import Closing
 from pindrive.device.coil import TABLE, Coil, default, values_of
 from pindrive.device.current import (
     CoilState,
@@ -33,6 +34,22 @@ from pindrive.quantities.refusal import refusal
 
 DIRECT: Final = ("hold_force", "rise_time", "fall_time", "saturation")
 """Source of the pull without a coil."""
+_PLACES: Final = {
+    "hold_force": 0,
+    "residual": 1,
+    "saturation": 2,
+    "rise_constant": 3,
+    "fall_constant": 4,
+    "pwm_frequency": 7,
+    "pwm_duty": 8,
+}
+"""Places of the parameters among the numbers of the core."""
+_CLOSED: Final = (0.0, 1.0)
+"""Flux linkage at which the gap closes, and inductance with the open gap: it stays closed."""
+_COLD: Final = 5 * (0.0,)
+"""Resistances, power, thermal resistance and heat capacity: the temperature is not simulated."""
+_WITH_COIL: Final = ("residual", "pwm_frequency", "pwm_duty")
+"""Parameters beside those of a coil."""
 
 
 @checked_by(TABLE)
@@ -153,11 +170,12 @@ class Electromagnet:
         """
         if voltage is not None:
             refuse(values_of(coil) | {"magnet.voltage": tuple(voltage)}, whole=True)
+        (hold_force, _, saturation, rise, fall, *_), _ = _core.magnet_numbers(values_of(coil), "")
         return cls(
-            hold_force=coil.pull,
-            rise_constant=coil.inductance / coil.resistance,
-            fall_constant=coil.inductance / (coil.resistance + coil.release_resistance),
-            saturation=coil.saturation,
+            hold_force=hold_force,
+            rise_constant=rise,
+            fall_constant=fall,
+            saturation=saturation,
             residual=residual,
             pwm_frequency=pwm_frequency,
             pwm_duty=pwm_duty,
@@ -170,11 +188,8 @@ class Electromagnet:
     @cached_property
     def closing(self) -> Closing:
         """Closing and opening of the gap under its poles; without a lift it stays closed."""
-        coil = self.coil
-        if coil is None or coil.lift is None or coil.closing_force is None:
-            return CLOSED
-        part = (coil.closing_force - self.residual) / (self.hold_force - self.residual)
-        return Closing(self.saturation * sqrt(part), coil.gap / (coil.gap + coil.lift))
+        flux, inductance = self.core_numbers[0][5:7]
+        return Closing(flux, inductance)
 
     @property
     def rise_time(self) -> float:
@@ -260,25 +275,41 @@ class Electromagnet:
     @property
     def core_numbers(self) -> Numbers:
         """The electromagnet as the core has it, in the order of `MagnetParameters`."""
-        coil, heat = self.coil, None if self.coil is None else self.coil.heat
-        pulses, steps = self.pulses, self.steps
-        numbers = [
-            self.hold_force,
-            self.residual,
-            self.saturation,
-            self.rise_constant,
-            self.fall_constant,
-            self.closing.flux,
-            self.closing.inductance,
-            0.0 if pulses is None else pulses.frequency,
-            1.0 if pulses is None else pulses.duty,
-            0.0 if coil is None else coil.resistance,
-            0.0 if coil is None else coil.release_resistance,
-            0.0 if heat is None else heat.power,
-            0.0 if heat is None else heat.thermal_resistance,
-            0.0 if heat is None else heat.heat_capacity,
-        ]
-        return numbers, [] if steps is None else [*zip(steps.times, steps.levels, strict=True)]
+        steps = [] if self.steps is None else zip(self.steps.times, self.steps.levels, strict=True)
+        if self.coil is not None:
+            numbers, _ = _core.magnet_numbers(self._values, "")
+            return numbers, [*steps]
+        pulls = (self.hold_force, self.residual, self.saturation)
+        constants = (self.rise_constant, self.fall_constant)
+        pulses = (0.0, 1.0) if self.pulses is None else (self.pulses.frequency, self.pulses.duty)
+        return [*pulls, *constants, *_CLOSED, *pulses, *_COLD], [*steps]
+
+    @property
+    def _values(self) -> dict[str, float]:
+        """The given values by the keys of a device file, without the size of the magnet."""
+        names = tuple(_PLACES) if self.coil is None else _WITH_COIL
+        own = {f"magnet.{name}": getattr(self, name) for name in names}
+        given = {key: value for key, value in own.items() if value is not None}
+        return given if self.coil is None else values_of(self.coil) | given
+
+    def core_derivative(self, key: str) -> tuple[Numbers, float]:
+        """Derivative of `core_numbers` by a key of a device file, and the size of its value.
+
+        Raises:
+            ValueError: The electromagnet was not given this key.
+        """
+        values = self._values
+        if key not in values:
+            raise ValueError(refusal("parameter", f"one of {', '.join(values)}", repr(key)))
+        numbers, levels = self.core_numbers
+        size = abs(values[key]) or self.hold_force
+        if self.coil is None:
+            place = _PLACES[key.removeprefix("magnet.")]
+            return ([float(i == place) for i in range(len(numbers))], []), size
+        _, slopes = _core.magnet_numbers(values, key)
+        # The levels are parts of the supply voltage.
+        rate = -1.0 / self.coil.supply_voltage if key == "magnet.supply_voltage" else 0.0
+        return (slopes, [(time, rate * level) for time, level in levels]), size
 
     @property
     def _cold(self) -> Numbers:

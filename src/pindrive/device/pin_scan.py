@@ -211,10 +211,10 @@ class PinScan:
 
         Args:
             parameters: Names of the drive as for `Motion.sensitivity`, where `mass` and `preload`
-                also press on the plate; `magnet.hold_force`, `magnet.residual`,
-                `magnet.saturation`, `magnet.rise_constant`, `magnet.fall_constant`,
-                `magnet.pwm_frequency` and `magnet.pwm_duty` of a magnet without a coil;
-                `control.latency`.
+                also press on the plate; `magnet.turns` and all other numbers of `Coil` that the
+                device gives, or `magnet.hold_force`, `magnet.saturation`, `magnet.rise_constant`
+                and `magnet.fall_constant` of a magnet without a coil; `magnet.residual`,
+                `magnet.pwm_frequency`, `magnet.pwm_duty`; `control.latency`.
 
         Returns:
             Derivatives of position, velocity and events over the time since `begin`, with NaN and

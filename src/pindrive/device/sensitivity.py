@@ -7,31 +7,17 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 from pindrive import _core
+from pindrive.device.current import Numbers
 from pindrive.motion.core_numbers import PLACES, CoreNumbers, mapped, replaced
 from pindrive.motion.friction import PRESSED_BY
 from pindrive.motion.function import Function
 from pindrive.motion.motion import Motion
 from pindrive.motion.sensitivity import Sensitivity, direction_of
-from pindrive.quantities.refusal import refusal
 
 if TYPE_CHECKING:
     from pindrive.device.pin_scan import PinScan
 
-_MAGNET: Final = (
-    "hold_force",
-    "residual",
-    "saturation",
-    "rise_constant",
-    "fall_constant",
-    "",  # flux at which the gap closes
-    "",  # inductance with the open gap
-    "pwm_frequency",
-    "pwm_duty",
-)
-"""Parameters of a magnet without a coil, in the order of the core."""
 _LATENCY: Final = "control.latency"
-PARAMETERS: Final = (*(f"magnet.{name}" for name in _MAGNET if name), _LATENCY)
-"""Parameters of the magnet and the control block."""
 
 
 def sensitivity_of(pin: PinScan, parameters: Sequence[str]) -> Sensitivity:
@@ -42,29 +28,27 @@ def sensitivity_of(pin: PinScan, parameters: Sequence[str]) -> Sensitivity:
 def _direction(pin: PinScan, motion: Motion, name: str) -> tuple[CoreNumbers, float]:
     """Return the derivative of the core's numbers by a parameter, and the size of the parameter."""
     device, drive = pin.inputs.device, pin.drive
-    magnet, pressed, delay = [0.0] * len(device.magnet.core_numbers[0]), 0.0, 0.0
+    numbers, levels = device.magnet.core_numbers
+    magnet: Numbers = [0.0] * len(numbers), [(time, 0.0) for time, _ in levels]
+    pressed, delay, of_magnet = 0.0, 0.0, name.startswith("magnet.")
     along: CoreNumbers = mapped(lambda _: 0.0, motion.core_numbers)
     if name == _LATENCY:
         delay, size = 1.0, device.control.latency or 1.0 / device.control.sample_rate
-    elif name in PARAMETERS:
-        key = name.removeprefix("magnet.")
-        value = getattr(device.magnet, key)
-        if value is None or device.magnet.coil is not None:
-            raise ValueError(refusal("parameter", "one that this device was given", repr(name)))
-        magnet[_MAGNET.index(key)], size = 1.0, abs(value) or device.magnet.hold_force
+    elif of_magnet:
+        magnet, size = device.magnet.core_derivative(name)
     else:
         pressed = PRESSED_BY["plate"].get(name, 0.0)
         if name == "preload" and drive.plate.coefficient is None:
             size = drive.preload or drive.normal_force
         else:
             along, size = direction_of(motion, name)
-    if any(magnet) or pressed or delay:
+    if of_magnet or pressed or delay:
         load = _load_along(pin, magnet, pressed, delay)
         along = replaced(along, PLACES["plate_load"], load)
     return along, size
 
 
-def _load_along(pin: PinScan, magnet: list[float], pressed: float, delay: float) -> Any:
+def _load_along(pin: PinScan, magnet: Numbers, pressed: float, delay: float) -> Any:
     """Derivative of the pieces of the load on the plate; the samples of the page hold."""
     given, commands = pin.inputs, pin.commands
     pieces = _core.load_along(
