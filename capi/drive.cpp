@@ -1,5 +1,6 @@
 // The C interface: drives and releases by the names of their numbers, how they are checked, and what an error says.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
@@ -8,6 +9,8 @@
 #include <new>
 #include <utility>
 
+#include "function_pieces.hpp"
+#include "function_sum.hpp"
 #include "interface.hpp"
 #include "owned_motion.hpp"
 #include "pindrive.h"
@@ -194,7 +197,7 @@ pindrive_error check_rows(const char* name, const pd::Rows& rows, bool negative,
 constexpr double largest_decay = 1e9, largest_frequency = 1e7;
 
 /// Pieces in order, with numbers in range.
-pindrive_error check_pieces(const char* name, const std::vector<pd::PieceNumbers>& pieces) {
+pindrive_error check_pieces(const char* name, const pd::Pieces& pieces) {
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const pd::PieceNumbers& piece = pieces[i];
     if (!std::isfinite(piece.begin) || (i > 0 && !(piece.begin > pieces[i - 1].begin)))
@@ -220,6 +223,38 @@ pindrive_error check_pieces(const char* name, const std::vector<pd::PieceNumbers
     }
   }
   return PINDRIVE_OK;
+}
+
+/// Copies pieces.
+pindrive_error read_pieces(const pindrive_piece* pieces, size_t count, pd::Pieces& made) {
+  made.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    made[i].begin = pieces[i].begin;
+    std::copy_n(pieces[i].polynomial, made[i].polynomial.size(), made[i].polynomial.begin());
+    if (pieces[i].count > 0 && !pieces[i].terms) return null_pointer("terms");
+    for (std::size_t j = 0; j < pieces[i].count; ++j) {
+      const pindrive_term& term = pieces[i].terms[j];
+      made[i].terms.push_back({term.cosine, term.sine, term.decay, term.frequency});
+    }
+  }
+  return PINDRIVE_OK;
+}
+
+/// Calls use(input, pieces) with an input of a release and the given pieces.
+template <class Use>
+pindrive_error take_function(pindrive_release* release, const char* name,
+                             const pindrive_piece* pieces, size_t count, Use&& use) {
+  if (!release) return null_pointer("release");
+  if (!name) return null_pointer("name");
+  if (!pieces) return null_pointer("pieces");
+  pd::InputNumbers* input = profile(*release, name);
+  if (!input) return bad_name("a release", name, input_names);
+  if (count == 0) return fail(PINDRIVE_BAD_VALUE, "a function must have at least one piece, not 0");
+  return guarded([&]() -> pindrive_error {
+    pd::Pieces made;
+    if (const pindrive_error error = read_pieces(pieces, count, made)) return error;
+    return use(*input, std::move(made));
+  });
 }
 
 /// A function of time: a velocity may not jump, a load may not be negative.
@@ -497,25 +532,46 @@ pindrive_error pindrive_release_set_profile(pindrive_release* release, const cha
 
 pindrive_error pindrive_release_set_function(pindrive_release* release, const char* name,
                                              const pindrive_piece* pieces, size_t count) {
-  if (!release) return null_pointer("release");
-  if (!name) return null_pointer("name");
+  return take_function(release, name, pieces, count,
+                       [](pd::InputNumbers& input, pd::Pieces made) -> pindrive_error {
+                         input = {{}, std::move(made)};
+                         return PINDRIVE_OK;
+                       });
+}
+
+pindrive_error pindrive_release_add_function(pindrive_release* release, const char* name,
+                                             const pindrive_piece* pieces, size_t count) {
+  return take_function(release, name, pieces, count,
+                       [&](pd::InputNumbers& input, pd::Pieces made) -> pindrive_error {
+                         const pd::Pieces before = pd::as_function(input);
+                         for (const pd::Pieces* each : {&before, &std::as_const(made)})
+                           if (const pindrive_error error = check_pieces(name, *each)) return error;
+                         input = {{}, pd::sum_of(before, made)};
+                         return PINDRIVE_OK;
+                       });
+}
+
+pindrive_error pindrive_function(const char* kind, const double* numbers, size_t count,
+                                 pindrive_piece* pieces, pindrive_term* terms, size_t* found) {
+  if (!kind) return null_pointer("kind");
+  if (!numbers) return null_pointer("numbers");
   if (!pieces) return null_pointer("pieces");
-  pd::InputNumbers* input = profile(*release, name);
-  if (!input) return bad_name("a release", name, input_names);
-  if (count == 0) return fail(PINDRIVE_BAD_VALUE, "a function must have at least one piece, not 0");
+  if (!terms) return null_pointer("terms");
+  if (!found) return null_pointer("found");
+  const pd::FunctionKind* const known = pd::function_kind(kind);
+  if (!known) return bad_name("a function", kind, "harmonic, minimum_jerk, exponential");
+  if (count != known->count())
+    return fail(PINDRIVE_BAD_VALUE, "%s must have %zu numbers, not %zu", kind, known->count(),
+                count);
+  std::array<double, 4> given{};
+  std::copy_n(numbers, count, given.begin());
+  const pd::NamedFunction<double> made = pd::named_function(*known, given);
+  write_pieces(made, [](double number) { return number; }, pieces, terms);
+  *found = made.count;
   return guarded([&]() -> pindrive_error {
-    std::vector<pd::PieceNumbers> made(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      made[i].begin = pieces[i].begin;
-      std::copy_n(pieces[i].polynomial, made[i].polynomial.size(), made[i].polynomial.begin());
-      if (pieces[i].count > 0 && !pieces[i].terms) return null_pointer("terms");
-      for (std::size_t j = 0; j < pieces[i].count; ++j) {
-        const pindrive_term& term = pieces[i].terms[j];
-        made[i].terms.push_back({term.cosine, term.sine, term.decay, term.frequency});
-      }
-    }
-    *input = {{}, std::move(made)};
-    return PINDRIVE_OK;
+    pd::Pieces checked;
+    if (const pindrive_error error = read_pieces(pieces, *found, checked)) return error;
+    return check_pieces(kind, checked);
   });
 }
 

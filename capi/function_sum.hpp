@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "owned_motion.hpp"
@@ -63,8 +64,8 @@ inline Pieces sum_of(const Pieces& one, const Pieces& other) {
   return sum;
 }
 
-/// An input as pieces: a constant and rows too, of which the later one holds at a step.
-inline Pieces pieces_of(const InputNumbers& input) {
+/// An input as a function; of two rows at one time, the later value holds.
+inline Pieces as_function(const InputNumbers& input) {
   if (!input.pieces.empty()) return input.pieces;
   Pieces pieces;
   for (std::size_t i = 0; i < input.rows.size(); ++i) {

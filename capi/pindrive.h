@@ -166,6 +166,20 @@ PINDRIVE_API pindrive_error pindrive_release_set_function(pindrive_release *rele
                                                           const char *name,
                                                           const pindrive_piece *pieces,
                                                           size_t count);
+/* Adds a function to an input of a release, whatever it was: a constant, rows or a function. */
+PINDRIVE_API pindrive_error pindrive_release_add_function(pindrive_release *release,
+                                                          const char *name,
+                                                          const pindrive_piece *pieces,
+                                                          size_t count);
+
+/* The pieces of a function of `count` numbers, SI:
+ *   "harmonic": mean, amplitude, frequency (Hz), phase (rad); mean + amplitude sin(2 pi frequency t + phase)
+ *   "minimum_jerk": distance, duration, begin; the velocity of a stroke from rest to rest
+ *   "exponential": start, end, time constant, begin; from start to end
+ * `pieces` and `terms` have room for three each; the pieces refer to the terms. `found` of them are set. */
+PINDRIVE_API pindrive_error pindrive_function(const char *kind, const double *numbers,
+                                              size_t count, pindrive_piece *pieces,
+                                              pindrive_term *terms, size_t *found);
 
 /* ---- simulation ------------------------------------------------------------------------------ */
 

@@ -4,6 +4,8 @@
 #include <array>
 #include <cstring>
 
+#include "function_pieces.hpp"
+
 namespace pindrive_fmu {
 
 namespace {
@@ -26,18 +28,8 @@ pindrive_error set_function(pindrive_release* release, const char* input,
                             double Number::* part) {
   std::array<pindrive_piece, 3> pieces{};
   std::array<pindrive_term, 3> terms{};
-  for (std::size_t i = 0; i < function.count; ++i) {
-    const pindrive::InputPiece<Number>& piece = function.pieces[i].piece;
-    if (piece.count > 0) {
-      const pindrive::InputTerm<Number>& term = piece.terms[0];
-      terms[i] = {term.cosine.*part, term.sine.*part, term.decay.*part, term.frequency.*part};
-    }
-    pieces[i].begin = piece.begin.*part;
-    for (std::size_t n = 0; n < piece.polynomial.size(); ++n)
-      pieces[i].polynomial[n] = piece.polynomial[n].*part;
-    pieces[i].terms = &terms[i];
-    pieces[i].count = piece.count;
-  }
+  pindrive_c::write_pieces(
+      function, [&](const Number& number) { return number.*part; }, pieces.data(), terms.data());
   return pindrive_release_set_function(release, input, pieces.data(), function.count);
 }
 

@@ -32,6 +32,7 @@ from pindrive.motion.release import INPUTS
 from pindrive.plot.style import CURVES, EVENT_SHAPE, PALETTE, SIGNS, event_name
 from pindrive.quantities import budgets
 from pindrive.quantities.drive import COLUMNS
+from pindrive.quantities.functions import EXAMPLES_OF, FUNCTIONS, FUNCTIONS_OF, OWN_UNIT
 from pindrive.quantities.names import OTHER_WORDS
 from pindrive.quantities.quantity import Bounds, Quantity
 from pindrive.quantities.results import CHANNELS, MOTION, OUTPUTS
@@ -41,6 +42,8 @@ from pindrive.quantities.units import DEFINITIONS
 READER = Path(__file__).resolve().parents[1] / "examples" / "tactile-reader.toml"
 PARTS = [name for pair in COLUMNS.values() for name in pair]
 """Quantities of a drive's parts in its rows."""
+UNITS = {"1": "", OWN_UNIT: "{unit}"}
+"""Words of units; the page has that of the input for a parameter of a function."""
 
 
 def brief(fields: dict[str, Any]) -> dict[str, Any]:
@@ -64,7 +67,7 @@ def bounds(quantity: Quantity, of: Bounds) -> dict[str, Any]:
             "upperClosed": of.upper_closed,
             "infinite": of.also == inf,
             "zero": of.also == 0.0,
-            "words": of.words("" if quantity.unit == "1" else quantity.unit),
+            "words": of.words(UNITS.get(quantity.unit, quantity.unit)),
         }
     )
 
@@ -163,6 +166,12 @@ def tables() -> dict[str, Any]:
             contact: {QUANTITIES[name].key: factor for name, factor in parts.items()}
             for contact, parts in PRESSED_BY.items()
         },
+        "functions": {
+            kind: [checked(parameter) for parameter in parameters]
+            for kind, parameters in FUNCTIONS.items()
+        },
+        "functionsOf": FUNCTIONS_OF,
+        "functionExamples": EXAMPLES_OF,
         "overTime": INPUTS,
         "studyKeys": STUDY_KEYS,
         "inputRows": budgets.INPUT_ROWS.most,

@@ -27,6 +27,7 @@
 
 #include "_contact.hpp"
 #include "arrays.hpp"
+#include "function_sum.hpp"
 #include "interrupt.hpp"
 #include "owned_motion.hpp"
 #include "pindrive/certificate/certify.hpp"
@@ -75,6 +76,13 @@ pd::InputNumbers input_of(Input&& input) {
   pd::InputNumbers found;
   for (Piece& piece : std::get<std::vector<Piece>>(input))
     found.pieces.push_back(as<pd::PieceNumbers>(std::move(piece)));
+  return found;
+}
+
+std::vector<Piece> numbers_of(pd::Pieces pieces) {
+  std::vector<Piece> found;
+  for (pd::PieceNumbers& piece : pieces)
+    found.emplace_back(piece.begin, piece.polynomial, std::move(piece.terms));
   return found;
 }
 
@@ -498,6 +506,22 @@ NB_MODULE(_core, m) {
                               [&](std::size_t i) { return profile.from(times.data()[i]).value; });
       },
       "pieces"_a, "times"_a, "The values of a function at times (s).");
+  m.def(
+      "sum_of_functions",
+      [](std::vector<Piece> one, std::vector<Piece> other) {
+        return numbers_of(
+            pd::sum_of(input_of(std::move(one)).pieces, input_of(std::move(other)).pieces));
+      },
+      "one"_a, "other"_a, "The pieces of the sum of two functions.");
+  m.def(
+      "function_from",
+      [](std::vector<Piece> pieces, double time) {
+        return numbers_of({pd::piece_from(input_of(std::move(pieces)).pieces, time)});
+      },
+      "pieces"_a, "time"_a, "The piece of a function from a time on (s), in a list.");
+  m.def(
+      "function_of_rows", [](Rows rows) { return numbers_of(pd::as_function({std::move(rows)})); },
+      "rows"_a, "The pieces of rows (time, value); the later value holds at a step.");
   m.def("function_pieces", &pieces_of<double, double>, "kind"_a, "numbers"_a,
         "The pieces of a named function; four numbers, of which the last may have no effect.");
   m.def("function_pieces_along", &pieces_of<std::complex<double>, Dual>, "kind"_a, "numbers"_a,

@@ -116,6 +116,15 @@ def input_period(inputs: Sequence[Sequence[tuple[float, float]] | Sequence[tuple
 def function_at(pieces: Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], times: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]:
     """The values of a function at times (s)."""
 
+def sum_of_functions(one: Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], other: Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]]) -> list[tuple[float, list[float], list[list[float]]]]:
+    """The pieces of the sum of two functions."""
+
+def function_from(pieces: Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], time: float) -> list[tuple[float, list[float], list[list[float]]]]:
+    """The piece of a function from a time on (s), in a list."""
+
+def function_of_rows(rows: Sequence[tuple[float, float]]) -> list[tuple[float, list[float], list[list[float]]]]:
+    """The pieces of rows (time, value); the later value holds at a step."""
+
 def function_pieces(kind: str, numbers: Sequence[float]) -> list[tuple[float, list[float], list[list[float]]]]:
     """
     The pieces of a named function; four numbers, of which the last may have no effect.

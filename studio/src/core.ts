@@ -12,13 +12,19 @@ export interface Piece {
   readonly polynomial: readonly number[];
   readonly terms: readonly Term[];
 }
-export interface Pieces {
+/** Function of time: its pieces, and the parameters from which they were made, by name. */
+export interface Part {
+  readonly parameters?: Readonly<Record<string, number>>;
   readonly pieces: readonly Piece[];
+}
+/** Sum of functions of time. */
+export interface TimeFunction {
+  readonly parts: readonly Part[];
 }
 /** Sizes of pindrive_piece and pindrive_term, and the place of the terms in a piece. */
 export const PIECE_BYTES = 64;
 export const TERM_BYTES = 32;
-export const TERMS_AT = 56;
+const TERMS_AT = 56;
 
 /** A drive and a release in the names of pindrive.h; a rate along which they change looks alike. */
 export interface Input {
@@ -26,7 +32,7 @@ export interface Input {
   readonly curves: Readonly<Record<string, Rows>>;
   readonly release: Readonly<Record<string, number>>;
   readonly profiles: Readonly<Record<string, Rows>>;
-  readonly functions: Readonly<Record<string, Pieces>>;
+  readonly functions: Readonly<Record<string, TimeFunction>>;
 }
 
 export const QUANTITIES = [
@@ -164,12 +170,12 @@ export class Core {
    * Problems of values of a device file, SI, in a line each: the bounds of each value, and what they require of
    * each other; `whole`: of a device with magnet, control block and array. Null: given, but not known.
    */
-  problems(values: Readonly<Record<string, number | Rows | Pieces | null>>, whole = false): string[] {
+  problems(values: Readonly<Record<string, number | Rows | TimeFunction | null>>, whole = false): string[] {
     // A function contradicts others by its first value.
     const given = Object.fromEntries(
       Object.entries(values).map(([key, value]) => [
         key,
-        typeof value === "object" && value !== null && "pieces" in value ? valueAt(value, 0) : value,
+        typeof value === "object" && value !== null && "parts" in value ? valueAt(value, 0) : value,
       ]),
     ) as Record<string, number | Rows | null>;
     const keys = Object.keys(given);
@@ -203,6 +209,39 @@ export class Core {
       this.wasm.pindrive_direction!(angle, at, at + 8);
       const [x, y] = new Float64Array(this.buffer, at, 2);
       return [x!, y!];
+    });
+  }
+
+  /** The pieces of a function of a few numbers, SI. Throws CoreError on numbers out of range. */
+  functionPieces(kind: string, numbers: readonly number[]): Piece[] {
+    const most = 3; // pieces, and terms
+    const termsAt = most * PIECE_BYTES;
+    const numbersAt = termsAt + most * TERM_BYTES;
+    return this.borrowed(numbersAt + 8 * numbers.length + 4, (at) =>
+      this.named([kind], ([address]) => {
+        const count = at + numbersAt + 8 * numbers.length;
+        new Float64Array(this.buffer, at + numbersAt, numbers.length).set(numbers);
+        this.call("function", address!, at + numbersAt, numbers.length, at, at + termsAt, count);
+        return this.piecesAt(at, this.view().getUint32(count, true));
+      }),
+    );
+  }
+
+  /** The pieces that the core has written. */
+  piecesAt(address: number, count: number): Piece[] {
+    const view = this.view();
+    const read = (from: number, length: number): number[] =>
+      Array.from({ length }, (_, i) => view.getFloat64(from + 8 * i, true));
+    return Array.from({ length: count }, (_, i): Piece => {
+      const from = address + PIECE_BYTES * i;
+      const [begin, ...polynomial] = read(from, 7) as [number, ...number[]];
+      const terms = view.getUint32(from + TERMS_AT, true);
+      const length = view.getUint32(from + TERMS_AT + 4, true);
+      return {
+        begin,
+        polynomial: polynomial.slice(0, Math.max(polynomial.findLastIndex((p) => p !== 0) + 1, 1)),
+        terms: Array.from({ length }, (_, j) => read(terms + TERM_BYTES * j, 4) as unknown as Term),
+      };
     });
   }
 
@@ -369,8 +408,10 @@ export class Core {
     for (const [name, rows] of Object.entries(input.profiles)) {
       this.setRows("release_set_profile", release, name, rows);
     }
-    for (const [name, { pieces }] of Object.entries(input.functions)) {
-      this.setPieces(release, name, pieces);
+    for (const [name, { parts }] of Object.entries(input.functions)) {
+      parts.forEach(({ pieces }, i) => {
+        this.setPieces(i ? "release_add_function" : "release_set_function", release, name, pieces);
+      });
     }
   }
 
@@ -378,7 +419,7 @@ export class Core {
     this.named([name], ([address]) => this.call(setter, target, address!, value));
   }
 
-  private setPieces(release: number, name: string, pieces: readonly Piece[]): void {
+  private setPieces(setter: string, release: number, name: string, pieces: readonly Piece[]): void {
     const terms = pieces.reduce((sum, piece) => sum + piece.terms.length, 0);
     this.borrowed(PIECE_BYTES * pieces.length + TERM_BYTES * terms, (at) =>
       this.named([name], ([address]) => {
@@ -398,7 +439,7 @@ export class Core {
             next += TERM_BYTES;
           }
         });
-        this.call("release_set_function", release, address!, at, pieces.length);
+        this.call(setter, release, address!, at, pieces.length);
       }),
     );
   }

@@ -1,5 +1,5 @@
 // A design: the values that a device file gives, what follows from them, and what the core is given.
-import type { Core, Input, Pieces, Rows } from "./core";
+import type { Core, Input, Rows, TimeFunction } from "./core";
 import { type Device, readDevice } from "./device";
 import type { Given } from "./files";
 import {
@@ -52,8 +52,8 @@ export function isRows(value: Value | null | undefined): value is Rows {
   return Array.isArray(value);
 }
 
-export function isPieces(value: Value | null | undefined): value is Pieces {
-  return typeof value === "object" && value !== null && "pieces" in value;
+export function isFunction(value: Value | null | undefined): value is TimeFunction {
+  return typeof value === "object" && value !== null && "parts" in value;
 }
 
 /** Value of a key: the given one, or the default of a missing key; null: none. */
@@ -98,10 +98,10 @@ export function coreInput(values: Values): Input {
     if (typeof value === "number") release[name] = value;
   }
   const profiles: Record<string, Rows> = {};
-  const functions: Record<string, Pieces> = {};
+  const functions: Record<string, TimeFunction> = {};
   for (const name of TABLES.overTime) {
     const value = valueFor(values, `motion.${name}`)!;
-    if (isPieces(value)) {
+    if (isFunction(value)) {
       functions[name] = value;
       continue;
     }
@@ -146,7 +146,7 @@ export function withValue(values: Values, key: string, value: Value | null): Val
       continue;
     }
     const scale = (y: number): number => (y / before) * after;
-    if (isPieces(given)) continue;
+    if (isFunction(given)) continue;
     next[other] = isRows(given)
       ? given[0]![1] === 0
         ? given
@@ -254,7 +254,7 @@ export function variedKeys(values: Values): string[] {
     if (key === "motion.duration" || key === "motion.settling_band") return false;
     if (DRIVE.get(key)!.choices || key.endsWith(".exponent")) return false;
     const value = values[key];
-    if (isPieces(value)) return false;
+    if (isFunction(value)) return false;
     return value !== undefined && (isRows(value) ? value.some(([, y]) => y !== 0) : value !== 0);
   });
 }
@@ -266,7 +266,7 @@ export function settlingBand(values: Values): number {
 /** The plate's velocity in the housing at a time, m/s. */
 export function plateVelocity(values: Values, t: number): number {
   const given = values[MOUSE];
-  if (isPieces(given)) return valueAt(given, t);
+  if (isFunction(given)) return valueAt(given, t);
   if (!isRows(given)) return given ?? 0;
   const after = given.findIndex(([time]) => time > t);
   if (after === 0) return given[0]![1];
@@ -278,7 +278,7 @@ export function plateVelocity(values: Values, t: number): number {
 /** Distance of the plate since the release, m. */
 export function plateDistance(values: Values, t: number): number {
   const given = values[MOUSE];
-  if (isPieces(given)) return integralUntil(given, t);
+  if (isFunction(given)) return integralUntil(given, t);
   if (!isRows(given)) return (given ?? 0) * t;
   const times = [0, ...given.map(([time]) => time).filter((time) => time > 0 && time < t), t];
   let sum = 0;

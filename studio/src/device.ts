@@ -1,21 +1,15 @@
 // Device files: TOML with units, read into the values of a drive and its release, and written again.
 // What is wrong is said in the lines that the command prints: file, key, value and bound.
-import type { Core, Piece, Pieces, Row, Rows, Term } from "./core";
+import type { Core, Rows } from "./core";
 import type { Value, Values } from "./friction";
+import { isFunctionTable, readFunction } from "./functions";
 import { nearest, unknownInFile } from "./names";
-import { floatRepr, general, quoted } from "./numbertext";
-import { columnsOf, DRIVE, INPUTS, type Quantity, required, TABLES } from "./table";
+import { quoted } from "./numbertext";
+import { DRIVE, INPUTS, type Quantity, TABLES } from "./table";
 import { isTable, parseToml, TomlError, type TomlTable, type TomlValue } from "./toml";
-import { toSi, UnitError } from "./units";
+import { Refusal, readNumber, readRows, refusal } from "./values";
 
 const MOUSE = "motion.mouse_velocity";
-
-/** A value that is refused; its words have no place yet. */
-class Refusal extends Error {
-  constructor(label: string, requirement: string, given: string) {
-    super(`${label} must be ${requirement}, got ${given}`);
-  }
-}
 
 export interface Device {
   readonly name: string;
@@ -194,13 +188,27 @@ class Reader {
   private read(key: string, quantity: Quantity): Value | null {
     const [table, name] = split(key);
     try {
-      return this.rows[key] ?? readValue(this.tables[table]![name]!, quantity);
+      const given = this.tables[table]![name]!;
+      if (this.rows[key]) return this.rows[key];
+      const isFunction = quantity.rowsOf === "profile" && isFunctionTable(given);
+      return isFunction ? readFunction(this.core, given, quantity) : readValue(given, quantity);
     } catch (error) {
       if (!(error instanceof Refusal)) throw error;
       this.problems.push(`${this.file}: ${error.message}`);
       return null;
     }
   }
+}
+
+function readValue(value: TomlValue, quantity: Quantity): Value {
+  if (quantity.rowsOf === "profile" && typeof value === "string" && /\.csv\s*$/i.test(value)) {
+    const words = "a value or rows in a page, which may open no files (`pindrive studio FILE` reads it)";
+    throw refusal(quantity.key, words, quoted(value));
+  }
+  if (quantity.rows && (Array.isArray(value) || !quantity.mayBeConstant)) {
+    return readRows(value, quantity);
+  }
+  return readNumber(value, quantity, quantity.usual ?? "", quantity.key);
 }
 
 /** The values in the tables about the drive, SI, of a device that was read. */
@@ -217,92 +225,4 @@ export function settingsOf(around: Device["around"]): Values {
 function split(key: string): [string, string] {
   const dot = key.indexOf(".");
   return dot < 0 ? [key, ""] : [key.slice(0, dot), key.slice(dot + 1)];
-}
-
-// ---- values ----------------------------------------------------------------------------------------
-
-function readValue(value: TomlValue, quantity: Quantity): Value {
-  if (quantity.rowsOf === "profile" && typeof value === "string" && /\.csv\s*$/i.test(value)) {
-    const words = "a value or rows in a page, which may open no files (`pindrive studio FILE` reads it)";
-    throw new Refusal(quantity.key, words, quoted(value));
-  }
-  const first = Array.isArray(value) ? value[0] : value;
-  if (quantity.rowsOf === "profile" && isTable(first)) return readPieces(value, quantity);
-  if (quantity.rows && (Array.isArray(value) || !quantity.mayBeConstant)) {
-    return readRows(value, quantity);
-  }
-  return readNumber(value, quantity, quantity.usual ?? "", quantity.key);
-}
-
-/** A number from text with a unit, or a bare one where the quantity has no unit. Throws in words. */
-export function readNumber(value: TomlValue, quantity: Quantity, example: string, label: string): number {
-  if (quantity.choices) {
-    const found = quantity.choices.indexOf(String(value));
-    if (typeof value === "string" && found >= 0) return found;
-    throw new Refusal(label, `one of ${quantity.choices.join(", ")}`, quoted(value));
-  }
-  const bare = typeof value === "bigint" ? String(value) : typeof value === "number" ? floatRepr(value) : "";
-  let found: number;
-  try {
-    found = toSi(typeof value === "string" ? value : bare, quantity.unit || "1", example);
-  } catch (error) {
-    if (!(error instanceof UnitError)) throw error;
-    throw new Refusal(label, error.message, quoted(value));
-  }
-  const words = required(quantity, found);
-  if (words) throw new Refusal(label, words, quoted(value));
-  return found;
-}
-
-/** A value as a design has it: "22 mN". */
-function usualOf(quantity: Quantity, value: number): string {
-  return `${general(value * quantity.displayScale, 12)} ${quantity.displayUnit ?? ""}`.trimEnd();
-}
-
-/** A function of time by its pieces, in SI numbers; the functions with names are for Python to read. */
-function readPieces(value: TomlValue, quantity: Quantity): Pieces {
-  const example = '{ pieces = [{ begin = "0 s", polynomial = [0.06], terms = [] }] }';
-  const refuse = (): never => {
-    throw new Refusal(quantity.key, `a value, rows, or pieces in a page, like ${example}`, quoted(value));
-  };
-  const list = (given: TomlValue | undefined, least: number, most: number): number[] => {
-    const numbers = Array.isArray(given) ? given.map(Number) : refuse();
-    if (numbers.length < least || numbers.length > most || !numbers.every(Number.isFinite)) refuse();
-    return numbers;
-  };
-  if (!isTable(value) || !Array.isArray(value.pieces) || !value.pieces.length) return refuse();
-  const pieces = value.pieces.map((given): Piece => {
-    if (!isTable(given) || typeof given.begin !== "string") return refuse();
-    const terms = Array.isArray(given.terms ?? []) ? ((given.terms ?? []) as TomlValue[]) : refuse();
-    return {
-      begin: toSi(given.begin, "s", "0 s"),
-      polynomial: list(given.polynomial ?? [], 0, 6),
-      terms: terms.map((term) => list(term, 4, 4) as unknown as Term),
-    };
-  });
-  return { pieces };
-}
-
-function readRows(value: TomlValue, quantity: Quantity): Rows {
-  const key = quantity.key;
-  const [across, along] = columnsOf(quantity);
-  const [first, second] = TABLES.columns[quantity.rowsOf!]!.map((name) => name.split(".").pop()!) as [
-    string,
-    string,
-  ];
-  const last = quantity.rows![quantity.rows!.length - 1]!;
-  const examples = [usualOf(across, last[0]), usualOf(quantity, last[1])] as const;
-  if (!Array.isArray(value) || !value.length) {
-    throw new Refusal(key, `rows, like ${quantity.usualRows}`, quoted(value));
-  }
-  return value.map((row, i): Row => {
-    if (!Array.isArray(row) || row.length !== 2) {
-      const like = examples.map((example) => quoted(example)).join(", ");
-      throw new Refusal(`${key}[${i}]`, `a ${first} and a ${second}, like ${like}`, quoted(row));
-    }
-    return [
-      readNumber(row[0]!, across, examples[0], `${key}[${i}] ${first}`),
-      readNumber(row[1]!, along, examples[1], `${key}[${i}] ${second}`),
-    ];
-  });
 }

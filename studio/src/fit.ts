@@ -1,7 +1,7 @@
 // A recording fitted: its time offset, and parameters by Gauss-Newton steps with exact derivatives.
 
 import { type Core, CoreError, type Motion, type QuantityName } from "./core";
-import { coreInput, direction, isPieces, isRows, withValue } from "./design";
+import { coreInput, direction, isFunction, isRows, withValue } from "./design";
 import type { Values } from "./friction";
 import type { Channel, Recording } from "./recording";
 
@@ -144,7 +144,7 @@ function scaled(values: Values, key: string, factor: number): Values {
   return withValue(
     values,
     key,
-    isPieces(value)
+    isFunction(value)
       ? value
       : isRows(value)
         ? value.map(([x, y]) => [x, y * factor] as const)

@@ -1,8 +1,8 @@
 // Friction by forces or by coefficients: what presses on a contact, and the forces that follow.
-import type { Pieces, Rows } from "./core";
+import type { Rows, TimeFunction } from "./core";
 import { DRIVE, TABLES } from "./table";
 
-export type Value = number | Rows | Pieces;
+export type Value = number | Rows | TimeFunction;
 /** The values of keys that are given, SI. */
 export type Values = Readonly<Record<string, Value>>;
 /** Keys with defaults of missing ones; null without a default. */

@@ -9,7 +9,10 @@ const BY_PART = 0.9;
 
 /** The keys most like an unknown one, the likeliest first; at the top of a file tables, too. */
 export function nearest(given: string): string[] {
-  const keys = given.includes(".") ? TABLES.keys : [...TABLES.tables, ...TABLES.keys];
+  return nearestOf(given, given.includes(".") ? TABLES.keys : [...TABLES.tables, ...TABLES.keys]);
+}
+
+function nearestOf(given: string, keys: readonly string[]): string[] {
   const plain = given.trim().replaceAll(".", "_");
   const usual = plain
     .split("_")
@@ -38,14 +41,20 @@ export function unknownInFile(key: string): string {
   if (key === "plate.stiffness") {
     return `${key} cannot be given, the plate is rigid; skin gives way by finger.stiffness`;
   }
-  const said = /^[\w.-]{1,60}$/.test(key) ? key : quoted(key);
-  const near = nearest(key);
-  if (!near.length) {
-    const count = TABLES.keys.length + (key.includes(".") ? 0 : TABLES.tables.length);
-    return `unknown key ${said}; none is like it; docs/reference/device-file.md lists all ${count}`;
-  }
-  const last = near.pop()!;
-  return `unknown key ${said}; did you mean ${near.length ? `${near.join(", ")} or ${last}` : last}?`;
+  const count = TABLES.keys.length + (key.includes(".") ? 0 : TABLES.tables.length);
+  return said("key", key, nearest(key), `none is like it; docs/reference/device-file.md lists all ${count}`);
+}
+
+/** Message for an unknown name of a kind, where there are few names. */
+export function unknown(kind: string, name: string, names: readonly string[]): string {
+  return said(kind, name, nearestOf(name, names), `there are ${names.join(", ")}`);
+}
+
+function said(kind: string, name: string, near: string[], without: string): string {
+  const shown = /^[\w.-]{1,60}$/.test(name) ? name : quoted(name);
+  const last = near.pop();
+  const meant = near.length ? `${near.join(", ")} or ${last}` : last;
+  return `unknown ${kind} ${shown}; ${meant ? `did you mean ${meant}?` : without}`;
 }
 
 /** The keys that are written so, or else all that end so after the dot. */

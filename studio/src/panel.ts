@@ -1,6 +1,5 @@
 // The parameters of the current design: a slider and a field each, with unit, bounds and meaning.
-import { applies, isPieces, isRows, valueFor, withValue } from "./design";
-import { readNumber } from "./device";
+import { applies, isFunction, isRows, valueFor, withValue } from "./design";
 import { h, option, show, symbol, textField } from "./dom";
 import type { Value, Values } from "./friction";
 import {
@@ -15,6 +14,7 @@ import {
 } from "./friction";
 import { partOf, type Range, rangeOf, valueAt } from "./range";
 import { columnsOf, DRIVE, plausible, type Quantity, TABLES, text, unitOf } from "./table";
+import { readNumber } from "./values";
 import { fieldText, written } from "./write";
 
 const GROUPS: readonly (readonly [string, string])[] = [
@@ -190,7 +190,7 @@ export class Panel {
         field.value = "";
         field.placeholder = isRows(value)
           ? "rows"
-          : isPieces(value)
+          : isFunction(value)
             ? "a function"
             : absentWords(key, values);
         note.textContent = "";

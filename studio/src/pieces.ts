@@ -1,5 +1,5 @@
 // Functions of time in pieces: their values and integrals.
-import type { Piece, Pieces, Term } from "./core";
+import type { Part, Piece, Term, TimeFunction } from "./core";
 
 /** The piece at a time, s; before the first, the first at its begin. */
 function pieceAt(pieces: readonly Piece[], t: number): [Piece, number] {
@@ -8,7 +8,11 @@ function pieceAt(pieces: readonly Piece[], t: number): [Piece, number] {
   return [piece, Math.max(t - piece.begin, 0)];
 }
 
-export function valueAt({ pieces }: Pieces, t: number): number {
+export function valueAt({ parts }: TimeFunction, t: number): number {
+  return parts.reduce((sum, part) => sum + partAt(part, t), 0);
+}
+
+function partAt({ pieces }: Part, t: number): number {
   const [piece, tau] = pieceAt(pieces, t);
   const terms = piece.terms.map(([cosine, sine, decay, frequency]) => {
     const phase = frequency * tau;
@@ -18,14 +22,18 @@ export function valueAt({ pieces }: Pieces, t: number): number {
 }
 
 /** Integral from 0 to a time, s. */
-export function integralUntil(function_: Pieces, t: number): number {
-  const { pieces } = function_;
+export function integralUntil({ parts }: TimeFunction, t: number): number {
+  return parts.reduce((sum, part) => sum + integralOf(part, t), 0);
+}
+
+function integralOf(part: Part, t: number): number {
+  const { pieces } = part;
   const edges = [0, ...pieces.map(({ begin }) => begin).filter((begin) => begin > 0 && begin < t), t];
   let sum = 0;
   for (let i = 1; i < edges.length; ++i) {
     const [from, to] = [edges[i - 1]!, edges[i]!];
     const [piece, tau] = pieceAt(pieces, from);
-    if (piece.begin > from) sum += valueAt(function_, from) * (to - from);
+    if (piece.begin > from) sum += partAt(part, from) * (to - from);
     else sum += integral(piece, tau, tau + to - from);
   }
   return sum;

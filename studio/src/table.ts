@@ -69,6 +69,12 @@ interface Tables {
   readonly coefficients: Readonly<Record<string, string>>;
   /** Normal force on each contact: keys, and their factors. */
   readonly pressedBy: Readonly<Record<string, Readonly<Record<string, number>>>>;
+  /** Parameters of functions of time, by the name of the function; one without a unit has that of its input. */
+  readonly functions: Readonly<Record<string, readonly Quantity[]>>;
+  /** Functions that each input may be. */
+  readonly functionsOf: Readonly<Record<string, readonly string[]>>;
+  /** Examples of the parameters that have the unit of their input. */
+  readonly functionExamples: Readonly<Record<string, Readonly<Record<string, number>>>>;
   /** Inputs of a release over time, by name. */
   readonly overTime: readonly string[];
   readonly studyKeys: readonly string[];

@@ -1,7 +1,8 @@
 // Files that the page writes: device files (TOML), samples and events (CSV).
 
-import type { Pieces, QuantityName } from "./core";
-import { type Design, isPieces, isRows } from "./design";
+import type { QuantityName } from "./core";
+import { type Design, isFunction, isRows } from "./design";
+import { functionText } from "./functions";
 import { floatRepr, general } from "./numbertext";
 import type { Curves } from "./sample";
 import { columnsOf, DRIVE, type Quantity, SERIES, TABLES } from "./table";
@@ -37,8 +38,8 @@ export function deviceFile(design: Design): string {
     if (own !== table) lines.push("", `[${own}]`);
     table = own;
     lines.push(`# ${quantity.symbol}: ${quantity.meaning}`);
-    const shown = isPieces(value)
-      ? piecesText(value)
+    const shown = isFunction(value)
+      ? functionText(quantity, value)
       : isRows(value)
         ? rowsText(quantity, value)
         : valueText(quantity, value);
@@ -50,7 +51,8 @@ export function deviceFile(design: Design): string {
   return `${lines.join("\n")}\n`;
 }
 
-function valueText(quantity: Quantity, value: number): string {
+/** A value as it stands in a device file, in quotes or bare. */
+export function valueText(quantity: Quantity, value: number): string {
   const text = written(quantity, value);
   return (quantity.unit || "1") === "1" && !quantity.choices ? text : JSON.stringify(text);
 }
@@ -58,16 +60,6 @@ function valueText(quantity: Quantity, value: number): string {
 function rowsText(quantity: Quantity, rows: readonly (readonly [number, number])[]): string {
   const [across] = columnsOf(quantity);
   return `[${rows.map(([x, y]) => `[${valueText(across, x)}, ${valueText(quantity, y)}]`).join(", ")}]`;
-}
-
-function piecesText({ pieces }: Pieces): string {
-  const list = (numbers: readonly number[]): string => `[${numbers.map(floatRepr).join(", ")}]`;
-  const parts = pieces.map(
-    ({ begin, polynomial, terms }) =>
-      `{ begin = ${JSON.stringify(`${floatRepr(begin)} s`)}, polynomial = ${list(polynomial)}, ` +
-      `terms = [${terms.map(list).join(", ")}] }`,
-  );
-  return `{ pieces = [${parts.join(", ")}] }`;
 }
 
 function toml(value: TomlValue): string {

@@ -701,6 +701,50 @@ static void stepped_functions(void) {
   pindrive_release_free(direction);
 }
 
+/* Functions by their names, and sums: a constant and two functions are one function. */
+static void named_functions(void) {
+  const double wave[] = {0, 0.01, 8, 0.3}, stroke[] = {0.02, 0.4, 0.1}, backwards[] = {0.02, -0.4, 0.1};
+  const double fast[] = {0, 1, 1e8, 0};
+  pindrive_drive *drive = the_drive();
+  pindrive_release *release = the_release();
+  pindrive_piece pieces[3];
+  pindrive_term terms[3];
+  pindrive_stepper *stepper = NULL;
+  pindrive_instant now;
+  size_t count = 0;
+  const double t = 0.25, s = 0.375;
+  double expected = 0.06 + 0.01 * sin(2 * 3.141592653589793 * 8 * 0.25 + 0.3);
+  pindrive_release_set(release, "velocity", NAN);
+  pindrive_release_set(release, "duration", 1);
+  pindrive_release_set(release, "mouse_velocity", 0.06);
+  expect(pindrive_function("harmonic", wave, 4, pieces, terms, &count) == PINDRIVE_OK && count == 1,
+         "a sinusoid by its name");
+  expect(pieces[0].terms == terms && pieces[0].count == 1 && terms[0].cosine == 0.01 * sin(0.3), "has a term");
+  expect(pindrive_release_add_function(release, "mouse_velocity", pieces, count) == PINDRIVE_OK,
+         "added to a constant");
+  expect(pindrive_function("minimum_jerk", stroke, 3, pieces, terms, &count) == PINDRIVE_OK && count == 3,
+         "a stroke by its name");
+  expect(pieces[1].begin == 0.1 && pieces[1].count == 0 && pieces[1].terms == NULL, "has none");
+  expect(pindrive_release_add_function(release, "mouse_velocity", pieces, count) == PINDRIVE_OK,
+         "added to a function");
+  expected += 30 * 0.02 / 0.4 * s * s * (1 - s) * (1 - s);
+  pindrive_stepper_new(drive, release, 0, &stepper);
+  position_after(stepper, t, 0.01);
+  expect(pindrive_stepper_now(stepper, &now) == PINDRIVE_OK && fabs(now.mouse_velocity - expected) < 1e-15,
+         "the sum is the hand's velocity");
+  refuses(pindrive_function("sine", wave, 4, pieces, terms, &count), PINDRIVE_BAD_NAME, "minimum_jerk");
+  refuses(pindrive_function("harmonic", wave, 3, pieces, terms, &count), PINDRIVE_BAD_VALUE,
+          "must have 4 numbers, not 3");
+  refuses(pindrive_function("harmonic", fast, 4, pieces, terms, &count), PINDRIVE_BAD_VALUE,
+          "a rate of harmonic must be");
+  refuses(pindrive_function("minimum_jerk", backwards, 3, pieces, terms, &count), PINDRIVE_BAD_VALUE,
+          "of minimum_jerk must begin after");
+  refuses(pindrive_release_add_function(release, "speed", pieces, 1), PINDRIVE_BAD_NAME, "the inputs");
+  pindrive_stepper_free(stepper);
+  pindrive_drive_free(drive);
+  pindrive_release_free(release);
+}
+
 /* Inputs as functions of time: a sinusoid has a periodic response. */
 static void functions(void) {
   const pindrive_term wave = {0, 0.1, 0, 75}, along = {0, 1, 0, 0}, fast = {0, 1, 0, 1e8};
@@ -770,6 +814,7 @@ int main(void) {
   derivatives();
   mistakes();
   functions();
+  named_functions();
   stepped_functions();
   stopping();
   a_batch();

@@ -207,8 +207,11 @@ OF_THE_EXTENSION = {
     "function_range",
     "function_at",
     "function_kinds",
+    "function_from",
+    "function_of_rows",
     "function_pieces",
     "function_pieces_along",
+    "sum_of_functions",
     "input_period",
 } | OF_THE_DEVICE
 """Names of the extension without a function in C."""

@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pindrive import Profile
+from pindrive import Profile, simulate
 from pindrive.files.device import DeviceFile, load_device
 from pindrive.files.keys import DRIVE, NUMERIC_KEYS, template
 from pindrive.files.overrides import ConfigError
-from studio_cases import Ask, as_input
+from studio_cases import Ask, as_input, doubles
 
 EXAMPLES = [
     path
@@ -109,6 +109,26 @@ WRONG = [
     ('"100 mm/s"', '"100 mm/s"\nforce = "1 m"'),
     ('"100 mm/s"', '"100 mm/s"\nfinger_load = -1'),
     ('"100 mm/s"', '"100 mm/s"\nacross_velocity = [["0 s", "1 m/s"], ["0 s", "2 m/s"]]'),
+    ('"100 mm/s"', "{}"),
+    ('"100 mm/s"', '{ mean = "60 mm/s" }'),
+    ('"100 mm/s"', '{ amplitude = "60 mm/s", frequency = "8 Hz" }'),
+    ('"100 mm/s"', '{ mean = "0 m/s", amplitude = "1 m/s", frequency = "0 Hz" }'),
+    ('"100 mm/s"', '{ mean = "0 m/s", amplitude = "1 m/s", frequency = "2e6 Hz" }'),
+    ('"100 mm/s"', '{ mean = "0 m/s", amplitude = "1e13 m/s", frequency = "2 Hz" }'),
+    ('"100 mm/s"', '{ mean = "0 m", amplitude = "1 m/s", frequency = "2 Hz" }'),
+    ('"100 mm/s"', '{ mean = "0 m/s", amplitude = "1 m/s", frequency = 2 }'),
+    ('"100 mm/s"', '{ men = "0 m/s", amplitude = "1 m/s", frequency = "2 Hz" }'),
+    ('"100 mm/s"', '{ mean = "0 m/s", zzzz = "1 m/s" }'),
+    ('"100 mm/s"', '{ mean = "0 m/s", distance = "1 m" }'),
+    ('"100 mm/s"', '{ distance = "20 mm", duration = "0 s" }'),
+    ('"100 mm/s"', '{ start = "1 m/s", end = "0 m/s", time_constant = "1e-8 s" }'),
+    ('"100 mm/s"', '[{ start = "1 m/s", end = "0 m/s", time_constant = "1 s", begin = "-1 s" }]'),
+    ('"100 mm/s"', '[{ distance = "20 mm", duration = "1 s" }, { distance = "20 mm" }]'),
+    ('"100 mm/s"', '{ pieces = [{ begin = "1 m", polynomial = [1] }] }'),
+    ('"100 mm/s"', "{ pieces = [{ polynomial = [1] }] }"),
+    ('"100 mm/s"', "{ pieces = [] }"),
+    ('"100 mm/s"', '"100 mm/s"\nplate_load = { distance = "20 mm", duration = "1 s" }'),
+    ('"100 mm/s"', '"100 mm/s"\nforce = { mean = "0 N" }'),
     ('"10 g"', '"10 g"\nstop_stiffness = "1 N/m"'),
     ('"10 g"', '"10 g"\nstop_damping = "0 N*s/m"'),
     ('"10 g"', '"10 g"\ntravel = "3 mm"\nstop_damping = "1 N*s/m"'),
@@ -197,6 +217,45 @@ def test_device_file_error_has_the_words_of_the_command(node: Ask, tmp_path: Pat
         if forms([line.removeprefix("FILE: ") for line in said]) != forms(expected):
             differ.append((expected, said))
     assert not differ, f"{len(differ)} of {len(texts)}: {differ[:6]}"
+
+
+WAVE = '{ mean = "60 mm/s", amplitude = "10 mm/s", frequency = "8 Hz" }'
+TURNED = WAVE.replace(" }", ', phase = "0.3 rad" }')
+STROKE = '{ distance = "20 mm", duration = "0.4 s", begin = "0.1 s" }'
+PULL = 'plate_load = { start = 5, end = 1, time_constant = "5 ms", begin = "0.03 s" }\n'
+PIECES = (
+    'force = { pieces = [{ begin = "0 s", polynomial = [0.01, 0.5], terms = [[1, 2, 3, 4]] }] }\n'
+)
+RELEASE = 'displacement = "2 mm"\nvelocity = "0 mm/s"\nduration = "0.6 s"\n'
+UNDER_FUNCTIONS = [
+    GOOD.replace('"100 mm/s"', f"{hand}\n{RELEASE}{others}")
+    for hand, others in (
+        (WAVE, ""),
+        (TURNED, PULL),
+        (STROKE, PIECES),
+        (f"[{STROKE}, {WAVE}]", PULL),
+    )
+]
+"""Devices whose inputs are functions of time."""
+
+
+def test_functions_are_read_and_written_like_python(node: Ask, tmp_path: Path) -> None:
+    """The page has the motion of Python, and writes what it has read."""
+    path = tmp_path / "device.toml"
+    for text, found in zip(UNDER_FUNCTIONS, read(node, UNDER_FUNCTIONS), strict=True):
+        path.write_text(text, "utf-8")
+        device = load_device(path)
+        (motion,) = node([{"simulate": found["core"], "duration": 0.6}])
+        expected = simulate(device.drive, device.release, duration=0.6)
+        times = doubles(motion["times"])
+        position, velocity, *_ = np.reshape(doubles(motion["values"]), (5, -1))
+        # The page finds it by series, Python in closed form.
+        np.testing.assert_allclose(position, expected.position(times), rtol=0.0, atol=1e-14)
+        np.testing.assert_allclose(velocity, expected.velocity(times), rtol=0.0, atol=1e-11)
+        path.write_text(found["written"], "utf-8")
+        again = load_device(path)
+        assert (again.drive, again.release) == (device.drive, device.release)
+        assert ("pieces" in found["written"]) == ("pieces" in text)
 
 
 @pytest.mark.parametrize("bad", [b"mass = \xff", "mass = 'µ'".encode("latin-1"), b"\x89HDF..."])

@@ -9,7 +9,7 @@ import cmath
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from math import cos, exp, inf, isfinite, sin
+from math import inf, isfinite
 from typing import TYPE_CHECKING, Any, Final, NamedTuple, overload
 
 from pindrive import _core
@@ -170,10 +170,8 @@ class Function:
         added = as_function(other, self.unit)
         if self.unit and added.unit and self.unit != added.unit:
             raise ValueError(refusal("a sum", f"of values in {self.unit}", f"one in {added.unit}"))
-        begins = sorted({piece.begin for f in (self, added) for piece in f.pieces})
-        parts = [[_piece_at(f.pieces, begin) for f in (self, added)] for begin in begins]
-        summed = [_sum(begin, *each) for begin, each in zip(begins, parts, strict=True)]
-        return Function(summed, self.unit or added.unit)
+        summed = _core.sum_of_functions(self.core, added.core)
+        return function_of(summed, self.unit or added.unit)
 
     __radd__ = __add__
 
@@ -194,7 +192,7 @@ class Function:
         following = as_function(other, self.unit)
         kept = [piece for piece in self.pieces if piece.begin < since]
         # The value of a piece that begins before time 0 is that at time 0.
-        first = _piece_at(following.pieces, 0.0)
+        first = function_of(_core.function_from(following.core, 0.0), "").pieces[0]
         later = [
             piece.from_time(piece.begin + since) for piece in following.pieces if piece.begin > 0
         ]
@@ -305,14 +303,7 @@ def as_function(given: float | str | Profile | Function, unit: str) -> Function:
     if not isinstance(given, Profile):
         value = _number("a value", unit, given)
         return Function((InputPiece(polynomial=(value,)),), unit)
-    last = len(given.times) - 1
-    pieces = []
-    for i, (time, value) in enumerate(given.rows):
-        if i < last and given.times[i + 1] == time:
-            continue  # the later value of a step holds
-        rate = 0.0 if i == last else (given.values[i + 1] - value) / (given.times[i + 1] - time)
-        pieces.append(InputPiece(time, (value, rate)))
-    return Function(pieces, given.unit)
+    return function_of(_core.function_of_rows(given.rows), given.unit)
 
 
 STEP: Final = 1e-30
@@ -386,45 +377,6 @@ def _number(name: str, unit: str, given: object) -> float:
     if not abs(number) <= 1e12:
         raise ValueError(refusal(name, "from -1e12 to 1e12", f"{number!r} {unit}".rstrip()))
     return number
-
-
-def _piece_at(pieces: tuple[InputPiece, ...], time: float) -> InputPiece:
-    """Return the function at a time as a piece that begins there."""
-    before = [piece for piece in pieces if piece.begin <= time]
-    if not before:
-        return InputPiece(time, (_value_at(pieces[0], 0.0),))
-    piece = before[-1]
-    after = time - piece.begin
-    return piece if after == 0 else _shifted(piece, after)._replace(begin=time)
-
-
-def _shifted(piece: InputPiece, after: float) -> InputPiece:
-    """Return a piece with its time counted from a time after its begin."""
-    p = list(piece.polynomial)
-    for k in range(len(p) - 1):
-        for i in range(len(p) - 2, k - 1, -1):
-            p[i] += after * p[i + 1]
-    terms = []
-    for cosine, sine, decay, frequency in piece.terms:
-        part, c, s = exp(-decay * after), cos(frequency * after), sin(frequency * after)
-        turned = (part * (cosine * c + sine * s), part * (sine * c - cosine * s))
-        terms.append(InputTerm(*turned, decay, frequency))
-    return InputPiece(0.0, tuple(p), tuple(terms))
-
-
-def _value_at(piece: InputPiece, after: float) -> float:
-    shifted = _shifted(piece, after)
-    return sum(shifted.polynomial[:1]) + sum(term.cosine for term in shifted.terms)
-
-
-def _sum(begin: float, one: InputPiece, other: InputPiece) -> InputPiece:
-    size = max(len(one.polynomial), len(other.polynomial))
-    padded = [each.polynomial + (0.0,) * (size - len(each.polynomial)) for each in (one, other)]
-    return InputPiece(
-        begin,
-        tuple(a + b for a, b in zip(*padded, strict=True)),
-        one.terms + other.terms,
-    )
 
 
 _LIMITS: Final = {"decay": (0.0, 1e9), "frequency": (0.0, 1e7)}

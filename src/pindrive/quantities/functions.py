@@ -89,15 +89,14 @@ FUNCTIONS_OF: Final[dict[str, tuple[str, ...]]] = {
     "finger_load": ("harmonic", "exponential"),
 }
 """The functions that each input may be."""
-
-
-_EXAMPLES: Final[dict[str, dict[str, float]]] = {
+EXAMPLES_OF: Final[dict[str, dict[str, float]]] = {
     "mouse_velocity": {"mean": 0.06, "amplitude": 0.01, "start": 0.06, "end": 0.0},
     "plate_load": {"mean": 3.0, "amplitude": 2.0, "start": 5.0, "end": 1.0},
     "across_velocity": {"mean": 0.0, "amplitude": 0.01, "start": 0.01, "end": 0.0},
     "force": {"mean": 0.0, "amplitude": 0.1, "start": 0.3, "end": 0.0},
     "finger_load": {"mean": 1.0, "amplitude": 0.5, "start": 1.0, "end": 0.5},
 }
+"""Usual values of the parameters that have the unit of their input, SI."""
 
 
 def _of(owner: Quantity, parameter: Quantity) -> Quantity:
@@ -109,7 +108,7 @@ def _of(owner: Quantity, parameter: Quantity) -> Quantity:
         unit=parameter.unit or owner.unit,
         symbol=f"{owner.symbol} {parameter.symbol}",
         meaning=f"{owner.name.replace('_', ' ')}: {parameter.meaning}",
-        example=_EXAMPLES[owner.name].get(parameter.name, parameter.example),
+        example=EXAMPLES_OF[owner.name].get(parameter.name, parameter.example),
     )
 
 

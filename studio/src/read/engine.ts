@@ -1,5 +1,5 @@
 // The device of a page, simulated live: tasks of a worker, and its answers.
-import type { Core, Pieces } from "../core";
+import type { Core, Piece } from "../core";
 import { Device, type DeviceInput, type Line, type Raster, Scan, type SpeedLimit, type Start } from "./scan";
 
 /** Quantities of each sample, in their order. */
@@ -47,7 +47,7 @@ export interface Limits {
 }
 /** Rows of the factor of the plate friction of a pin: time, s, and factor. */
 export interface Load {
-  readonly load: Pieces;
+  readonly load: readonly Piece[];
 }
 export interface Failure {
   readonly failed: string;

@@ -1,16 +1,5 @@
 // A device under a hand in the core: the functions of capi/pindrive.h for scans. SI units throughout.
-import {
-  type Core,
-  CoreError,
-  PIECE_BYTES,
-  type Piece,
-  type Pieces,
-  type Row,
-  type Rows,
-  TERM_BYTES,
-  TERMS_AT,
-  type Term,
-} from "../core";
+import { type Core, CoreError, PIECE_BYTES, type Piece, type Row, type Rows, TERM_BYTES } from "../core";
 
 /** A device by the keys of a device file, with the spots of its pins from the hand, m. */
 export interface DeviceInput {
@@ -155,7 +144,7 @@ export class Scan {
   }
 
   /** Factor of the plate friction of one pin over the time since the begin, before the first advance. */
-  load(pin: number): Pieces {
+  load(pin: number): Piece[] {
     const { core, handle } = this;
     const ask = (pieces: number, terms: number, capacity: number): number =>
       core.borrowed(4, (at) => {
@@ -165,24 +154,7 @@ export class Scan {
     const count = ask(0, 0, 0);
     return core.borrowed((PIECE_BYTES + 2 * TERM_BYTES) * count, (at) => {
       ask(at, at + PIECE_BYTES * count, count);
-      const view = core.view();
-      const number = (from: number): number => view.getFloat64(from, true);
-      const pieces = Array.from({ length: count }, (_, i): Piece => {
-        const from = at + PIECE_BYTES * i;
-        const [terms, own] = [0, 4].map((offset) => view.getUint32(from + TERMS_AT + offset, true)) as [
-          number,
-          number,
-        ];
-        return {
-          begin: number(from),
-          polynomial: [number(from + 8)],
-          terms: Array.from({ length: own }, (_, j): Term => {
-            const term = terms + TERM_BYTES * j;
-            return [number(term), number(term + 8), number(term + 16), number(term + 24)];
-          }),
-        };
-      });
-      return { pieces };
+      return core.piecesAt(at, count);
     });
   }
 
