@@ -12,7 +12,7 @@ import xarray as xr
 from scipy.integrate import solve_ivp
 
 from command import GOOD, refused, run
-from pindrive import Contact, Drive, load_device
+from pindrive import load_device
 from pindrive.device import (
     Coil,
     CoilState,
@@ -25,6 +25,7 @@ from pindrive.device import (
 )
 from pindrive.device.current import Current, Pulses
 from pindrive.device.reading import Reading
+from tactile_mouse import SKIN, drive
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -242,9 +243,8 @@ SCANNED = Electromagnet.from_coil(
 def test_a_scan_in_two_halves_is_the_scan_in_one(pulsed: bool) -> None:
     """Cut wherever: just before the gap closes, between its opening and the next switching."""
     made = SCANNED if pulsed else DRIVEN["voltage"]
-    plate, skin = Contact(0.022, 0.0265), Contact(0.020, 0.030, stiffness=300.0)
-    drive = Drive(mass=0.010, stiffness=100.0, damping=0.32, plate=plate, finger=skin)
-    device = Device(drive=drive, magnet=made, control=ControlBlock(latency=0.017), array=PinArray())
+    control = ControlBlock(latency=0.017)
+    device = Device(drive=drive(SKIN), magnet=made, control=control, array=PinArray())
     reading = Reading()
     scene = reading.grating([0.004], device.array)
     path = reading.strokes(scene, device.array)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
 from command import GOOD, run
-from pindrive import Contact, Drive, Motion, Profile, Release, simulate
+from pindrive import Contact, Motion, Profile, Release, simulate
 from pindrive.cli.scan_tables import scan_report
 from pindrive.cli.tables import console, meeting_words
 from pindrive.device import Device, Electromagnet, HandPath, PinArray, Scan, Scene, scan
@@ -27,20 +27,9 @@ from pindrive.evaluation import evaluate
 from pindrive.files.device import load_device
 from pindrive.plot.scan import plot_reliefs, plot_scan
 from random_scans import RandomScan
+from tactile_mouse import SKIN, drive
 
 NOTHING = Contact(0.0)
-
-
-def drive(
-    damping: float = 0.32, finger: Contact | None = None, plate: Contact | None = None
-) -> Drive:
-    return Drive(
-        mass=0.010,
-        stiffness=100.0,
-        damping=damping,
-        plate=plate or Contact(0.022, 0.0265),
-        finger=finger or Contact(0.020, 0.030, stiffness=300.0),
-    )
 
 
 def closest(behind: Motion, ahead: Motion) -> tuple[float, float]:
@@ -70,7 +59,7 @@ def sampled(behind: Motion, ahead: Motion, count: int = 40_001) -> float:
 
 def test_two_free_pins_by_hand() -> None:
     """X = X e^(-δt) (cos ωt + δ/ω sin ωt), its extremes every half period; their difference too."""
-    free = drive(0.2, NOTHING, NOTHING)
+    free = drive(NOTHING, NOTHING, damping=0.2)
     delta = 0.2 / 0.020
     omega = sqrt(1e4 - delta**2)
     for x0, x1 in ((0.001, 0.003), (0.003, 0.001), (-0.002, 0.001)):
@@ -84,7 +73,7 @@ def test_two_free_pins_by_hand() -> None:
 
 def test_two_frequencies_by_hand() -> None:
     """Undamped, one pin twice as heavy four times: cos 100 t against cos 50 t."""
-    light, heavy = (replace(drive(0.0, NOTHING, NOTHING), mass=m) for m in (0.010, 0.040))
+    light, heavy = (replace(drive(NOTHING, NOTHING, damping=0.0), mass=m) for m in (0.010, 0.040))
     motions = [simulate(body, Release(0.0, 0.001), duration=0.5) for body in (light, heavy)]
     # cos 2u - cos u is least where 4 cos u = 1: 2/16 - 1 - 1/4
     assert closest(*motions)[0] == pytest.approx(-1.125e-3, abs=1e-12)
@@ -114,8 +103,8 @@ def test_friction_curves_and_cycles_against_samples() -> None:
     falling = Contact(curve=[(0.0, 0.03), (0.05, 0.015), (0.2, 0.01)])
     slipping = Contact(0.05, 0.15)
     for body, speed in (
-        (drive(0.05, falling), Profile([0.0, 0.4, 2.0], [0.02, 0.12, -0.05])),
-        (drive(0.1, Contact(0.002), slipping), 0.02),
+        (drive(falling, damping=0.05), Profile([0.0, 0.4, 2.0], [0.02, 0.12, -0.05])),
+        (drive(Contact(0.002), slipping, damping=0.1), 0.02),
     ):
         motions = [
             simulate(body, Release(speed, x, velocity=0.0), duration=2.0) for x in (0.0, 0.004)
@@ -128,7 +117,7 @@ def test_friction_curves_and_cycles_against_samples() -> None:
 
 def test_the_bound_on_the_acceleration_holds_where_the_damping_changes() -> None:
     """A steep curve under a load that comes and goes: the bound is above all samples, and near."""
-    body = drive(0.05, NOTHING, Contact(curve=[(0.0, 0.05), (0.02, 0.01), (0.2, 0.2)]))
+    body = drive(NOTHING, Contact(curve=[(0.0, 0.05), (0.02, 0.01), (0.2, 0.2)]), damping=0.05)
     load = Profile([0.0, 0.1, 0.2, 0.4], [1.0, 20.0, 0.1, 5.0])
     motion = simulate(body, Release(0.06, 0.002, plate_load=load), duration=0.4)
     steps = ~np.isnan(motion.acceleration_bounds)
@@ -146,7 +135,7 @@ def test_acceleration_of_series_steps_is_not_evaluated(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Their bounds are known: of pins that never stop slipping only positions are evaluated."""
-    body = drive(0.05, NOTHING, Contact(curve=[(0.0, 0.05), (0.02, 0.01), (0.2, 0.2)]))
+    body = drive(NOTHING, Contact(curve=[(0.0, 0.05), (0.02, 0.01), (0.2, 0.2)]), damping=0.05)
     load = Profile([0.0, 0.2], [1.0, 0.1])
     pair = [simulate(body, Release(0.3, x, plate_load=load), duration=0.2) for x in (2e-3, 1e-3)]
     series = [~np.isnan(motion.acceleration_bounds) for motion in pair]
@@ -180,7 +169,7 @@ def across(scene: Scene, margin: float = 0.017, speed: float = 0.06) -> HandPath
 def scanned(array: PinArray) -> Scan:
     magnet = Electromagnet.from_times(hold_force=3.0)
     scene = grating()
-    return scan(Device(drive=drive(), magnet=magnet, array=array), scene, across(scene))
+    return scan(Device(drive=drive(SKIN), magnet=magnet, array=array), scene, across(scene))
 
 
 def test_a_pin_that_is_carried_comes_closer_to_the_one_behind() -> None:
@@ -202,9 +191,9 @@ def test_a_turned_device_on_a_turned_page_has_the_same_gaps() -> None:
     scene, path = grating(), across(grating())
     turned = Scene(scene.luminance[::-1, ::-1], scene.pixel, (-scene.extent[1], -scene.extent[3]))
     back = HandPath(path.times, -path.vx, -path.vy, (-float(path.x[0]), -float(path.y[0])))
-    magnet = Electromagnet.from_times(hold_force=3.0)
+    body, magnet = drive(SKIN), Electromagnet.from_times(hold_force=3.0)
     one, other = (
-        scan(Device(drive=drive(), magnet=magnet, array=PinArray.grid(3, 1, a, axis=axis)), s, p)
+        scan(Device(drive=body, magnet=magnet, array=PinArray.grid(3, 1, a, axis=axis)), s, p)
         for a, axis, s, p in ((0.003, 0.0, scene, path), (0.003, pi, turned, back))
     )
     assert [g.size for g in one.gaps] == pytest.approx([g.size for g in other.gaps], abs=1e-11)
@@ -213,7 +202,7 @@ def test_a_turned_device_on_a_turned_page_has_the_same_gaps() -> None:
 def test_later_clock_shifts_all_times() -> None:
     scene, path = grating(), across(grating())
     late = HandPath(path.times + 16.0, path.vx, path.vy, (float(path.x[0]), float(path.y[0])))
-    device = Device(drive=drive(), array=PinArray.grid(2, 1, 0.003))
+    device = Device(drive=drive(SKIN), array=PinArray.grid(2, 1, 0.003))
     one, other = (scan(device, scene, p).gaps[0] for p in (path, late))
     assert other.time - one.time == pytest.approx(16.0, abs=1e-6)
     assert other.size == pytest.approx(one.size, abs=1e-9)
@@ -342,7 +331,7 @@ def test_no_pin_goes_beyond_its_excursion() -> None:
 )
 def test_geometry_reports_whether_pins_can_meet(pitch: float, words: str) -> None:
     magnet = Electromagnet.from_times(hold_force=3.0)
-    device = Device(drive=drive(), magnet=magnet, array=PinArray.grid(2, 2, pitch))
+    device = Device(drive=drive(SKIN), magnet=magnet, array=PinArray.grid(2, 2, pitch))
     found = " ".join(meeting_words(device, 0.06))
     assert words in found
     reach = 0.0265 * (1.0 + 3.0 / 0.0980665) / 100.0 + 0.06 / 100.0

@@ -13,7 +13,7 @@ import pytest
 import xarray as xr
 
 from command import GOOD, refused, run
-from pindrive import Contact, Drive, load_device
+from pindrive import load_device
 from pindrive.device import Coil, Device, Electromagnet, PinArray, scan
 from pindrive.device.coil import COIL_NEEDS
 from pindrive.device.electromagnet import DIRECT
@@ -23,14 +23,9 @@ from pindrive.evaluation import evaluate
 from pindrive.files.keys import NUMERIC_KEYS, line, template
 from pindrive.plot.scan import plot_reliefs, plot_scan
 from pindrive.quantities.device import READER
+from tactile_mouse import SKIN, drive
 
-DRIVE = Drive(
-    mass=0.010,
-    stiffness=100.0,
-    damping=0.32,
-    plate=Contact(0.022, 0.0265),
-    finger=Contact(0.020, 0.030, stiffness=300.0),
-)
+DRIVE = drive(SKIN)
 WIDE = Electromagnet(hold_force=1.0, outer_diameter="8 mm", height="24 mm")
 
 

@@ -12,7 +12,7 @@ import xarray as xr
 from scipy.integrate import solve_ivp
 
 from command import GOOD, refused, run
-from pindrive import Contact, Drive, load_device
+from pindrive import load_device
 from pindrive.device import (
     Coil,
     CoilState,
@@ -26,6 +26,7 @@ from pindrive.device import (
 from pindrive.device.closing import Closing
 from pindrive.device.heating import Heat
 from pindrive.device.reading import Reading
+from tactile_mouse import SKIN, drive
 
 ON, OFF = 0.0103, 0.0631
 CLOSED = Closing(0.0, 1.0)  # a gap that does not open
@@ -89,8 +90,7 @@ def test_rows_of_pulses_keep_their_bound(duty: float, frequency: float) -> None:
     assert np.abs(current.pull(t) - made.pull(current(t))).max() <= 1e-12
 
 
-PLATE, SKIN = Contact(0.022, 0.0265), Contact(0.020, 0.030, stiffness=300.0)
-DRIVE = Drive(mass=0.010, stiffness=100.0, damping=0.32, plate=PLATE, finger=SKIN)
+DRIVE = drive(SKIN)
 COIL = Coil(
     turns=300,
     pole_area=6e-6,

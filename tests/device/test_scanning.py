@@ -12,7 +12,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from oracle.scan_cycles import distance
-from pindrive import Contact, Drive
+from pindrive import Contact
 from pindrive.device import (
     ControlBlock,
     Device,
@@ -28,15 +28,9 @@ from pindrive.device import (
     strokes,
 )
 from random_scans import mirrored, sampled
+from tactile_mouse import PLATE, RIGID, SKIN, drive
 
-PLATE = Contact(0.022, 0.0265)
-RIGID = Contact(0.005, 0.0075)
-SKIN = Contact(0.020, 0.030, stiffness=300.0)
 STRIBECK = Contact(curve=[(0.0, 0.022), (0.02, 0.012), (0.3, 0.025)], static=0.0265)
-
-
-def drive(finger: Contact = RIGID, plate: Contact = PLATE) -> Drive:
-    return Drive(mass=0.010, stiffness=100.0, damping=0.32, plate=plate, finger=finger)
 
 
 def grating(*pitches: float, count: int = 2) -> Scene:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pindrive import Contact, Drive
+from pindrive import Contact
 from pindrive.device import (
     Coil,
     ControlBlock,
@@ -23,9 +23,10 @@ from pindrive.device import (
     strokes,
 )
 from pindrive.device.coil import COIL_NEEDS
+from tactile_mouse import RIGID, SKIN, drive
 
 STEP = 1e-6  # of the size of a parameter
-FINGERS = {"rigid": Contact(0.005, 0.0075), "skin": Contact(0.020, 0.030, stiffness=300.0)}
+FINGERS = {"rigid": RIGID, "skin": SKIN}
 CONTROL = ControlBlock(latency=0.0023)
 COIL = Coil(
     turns=300,
@@ -86,18 +87,13 @@ def of_coil(name: str, **more: Any) -> Callable[[Device, float], Device]:
 
 
 def device(finger: str = "rigid", axis: float = 0.0, **parts: Any) -> Device:
-    drive = Drive(
-        mass=0.010,
-        stiffness=100.0,
-        damping=0.32,
-        preload=0.02,
-        plate=Contact(0.022, 0.0265),
-        finger=FINGERS[finger],
-    )
-    magnet = Electromagnet.from_times(hold_force=1.2, residual=0.02, saturation=0.8)
-    array = PinArray.grid(1, 1, 0.003, axis=radians(axis))
-    made = Device(drive=drive, magnet=magnet, control=CONTROL, array=array)
-    return replace(made, **parts)
+    given: dict[str, Any] = {
+        "drive": drive(FINGERS[finger], preload=0.02),
+        "magnet": Electromagnet.from_times(hold_force=1.2, residual=0.02, saturation=0.8),
+        "control": CONTROL,
+        "array": PinArray.grid(1, 1, 0.003, axis=radians(axis)),
+    }
+    return Device(**(given | parts))
 
 
 def scanned(given: Device) -> PinScan:
@@ -158,16 +154,9 @@ def test_a_voltage_over_time_holds(name: str) -> None:
 
 
 def test_the_normal_force_presses_on_coefficients_too() -> None:
-    drive = Drive(
-        mass=0.010,
-        stiffness=100.0,
-        damping=0.32,
-        preload=0.02,
-        plate=Contact(coefficient=0.22, static_coefficient=0.27),
-        finger=FINGERS["rigid"],
-    )
+    pressed = drive(plate=Contact(coefficient=0.22, static_coefficient=0.27), preload=0.02)
     for name in ("mass", "preload"):
-        compare(device(drive=drive), name, of("drive", name))
+        compare(device(drive=pressed), name, of("drive", name))
 
 
 @pytest.mark.parametrize(

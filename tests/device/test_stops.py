@@ -17,15 +17,9 @@ from pindrive import Contact, Drive, Release, simulate
 from pindrive.device import Device, Electromagnet, HandPath, PinArray, Scan, Scene, scan
 from pindrive.plot.motion import plot_motion
 from pindrive.quantities.status import Status
+from tactile_mouse import SKIN, drive
 
-RIGID = Drive(
-    mass=0.010,
-    stiffness=100.0,
-    damping=0.32,
-    plate=Contact(0.022, 0.0265),
-    finger=Contact(0.020, 0.030, stiffness=300.0),
-    travel=5.8e-4,
-)
+RIGID = drive(SKIN, travel=5.8e-4)
 ELASTIC = replace(RIGID, stop_stiffness=1e4, stop_damping=3.0)
 SCENE = Scene.from_grating([0.004, 0.007], count=2, margin=0.03, height=0.004)
 PATH = HandPath([0.0, 0.8], [0.06, 0.06], [0.0, 0.0], (0.017, SCENE.lines[0]))

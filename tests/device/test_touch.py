@@ -10,30 +10,25 @@ import numpy as np
 import pytest
 
 from oracle.scan_cycles import distance
-from pindrive import Contact, Drive, Profile, load_device
+from pindrive import Contact, Profile, load_device
 from pindrive.device import Device, Electromagnet, HandPath, PinArray, Scene, scan, strokes
 from pindrive.device.touch import spans
 from pindrive.evaluation.tactile_image import paint
 from random_scans import sampled
+from tactile_mouse import drive
 
 RIGID = Contact(coefficient=0.5, static_coefficient=0.75)
 SKIN = Contact(coefficient=0.5, static_coefficient=0.75, stiffness=300.0)
-PLATE = Contact(0.022, 0.0265)
 LIFTS = Profile([0.15, 0.17, 0.45, 0.5], [0.010, 0.0, 0.0, 0.030])
 """Over two lines in the middle of the scan below it is lifted."""
 
 
 def device(finger: Contact = RIGID, touch_force: float = 0.010, pins: int = 1) -> Device:
-    drive = Drive(
-        mass=0.010,
-        stiffness=100.0,
-        damping=0.32,
-        plate=PLATE,
-        finger=finger,
-        touch_force=touch_force,
+    return Device(
+        drive=drive(finger, touch_force=touch_force),
+        magnet=Electromagnet.from_times(hold_force=1.2),
+        array=PinArray.grid(pins, 1, 0.002),
     )
-    magnet = Electromagnet.from_times(hold_force=1.2)
-    return Device(drive=drive, magnet=magnet, array=PinArray.grid(pins, 1, 0.002))
 
 
 def page() -> tuple[Scene, HandPath]:

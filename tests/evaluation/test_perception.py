@@ -27,14 +27,7 @@ from pindrive.device import (
 from pindrive.evaluation import Evaluation, Line, evaluate
 from pindrive.evaluation.line_crossings import FATES, printed_lines
 from random_scans import RandomScan, later, mirrored
-
-PLATE = Contact(0.022, 0.0265)
-RIGID = Contact(0.005, 0.0075)
-SKIN = Contact(0.020, 0.030, stiffness=300.0)
-
-
-def drive(finger: Contact = RIGID, damping: float = 0.32) -> Drive:
-    return Drive(mass=0.010, stiffness=100.0, damping=damping, plate=PLATE, finger=finger)
+from tactile_mouse import RIGID, SKIN, drive
 
 
 def grating(*pitches: float, count: int = 2, margin: float = 0.012) -> Scene:

@@ -34,15 +34,9 @@ from pindrive.evaluation.resolution import (
 )
 from pindrive.plot.resolution import plot_speeds
 from pindrive.quantities.table import QUANTITIES
+from tactile_mouse import PLATE, RIGID, SKIN, drive
 
-PLATE = Contact(0.022, 0.0265)
-RIGID = Contact(0.005, 0.0075)
-SKIN = Contact(0.020, 0.030, stiffness=300.0)
 MINIMAL = Path(__file__).parents[1] / "minimal.toml"
-
-
-def drive(finger: Contact = RIGID, damping: float = 0.32) -> Drive:
-    return Drive(mass=0.010, stiffness=100.0, damping=damping, plate=PLATE, finger=finger)
 
 
 DEVICE = Device(drive=drive())
