@@ -198,7 +198,11 @@ class PinScan:
 
     @cached_property
     def motion(self) -> Motion:
-        """The pin's motion, over the time since `begin`."""
+        """The pin's motion, over the time since `begin`.
+
+        Derivatives of this motion hold the load on the plate; those by `PinScan.sensitivity` follow
+        the magnet, which presses with the weight of the pin.
+        """
         numbers = core_numbers(self.drive, self.release, self.end - self.begin)
         core = self.core.motion(self.number)
         return Motion(self.drive, self.release, numbers, core, _core.settling_band)

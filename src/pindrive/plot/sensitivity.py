@@ -193,7 +193,7 @@ def plot_motion_sensitivity(found: Sensitivity) -> Figure:
         named = zip(found.parameters, found.sizes, slopes, strict=True)
         for (name, size, slope), look in zip(named, cycle(CURVES), strict=False):
             axes.plot(1e3 * times, 1e3 * size * slope, label=name, **look)
-        axes.set_xlabel("time after release (ms)")
+        axes.set_xlabel("time (ms)")
         axes.set_ylabel(r"$p\,\partial x/\partial p$ (mm)")
         axes.set_title(
             "How far each parameter $p$ moves the pin, for a change by its own size",
