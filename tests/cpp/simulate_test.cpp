@@ -38,10 +38,43 @@ void ends_of_strokes() {
   expect(turned == 0, "... that do not turn shortly before the end");
 }
 
+/// Counts the brief segments of carried and resting pins, under a hand that swings by a part of its mean velocity.
+int brief_segments(double part, int& held) {
+  int brief = 0;
+  for (int i = 0; i < 600; ++i) {
+    constexpr double frequencies[] = {1, 2, 5, 8, 10, 12.5, 20, 50};
+    const double mean = 0.012 * (1 + i % 5), frequency = frequencies[i % 8];
+    const auto hand =
+        pd::named_function<double>(*pd::function_kind("harmonic"),
+                                   {mean, part * mean, frequency, (i % 3) * 1.5707963267948966});
+    const pd::InputPiece<double> piece = hand.pieces[0].piece;
+    const double plate = i % 2 ? 0.005 : 0.02, finger = 0.025 - plate;
+    const pd::Drive<double> body{
+        0.01, 20.0 + 7 * (i % 11), 0.2, {plate, 1.3 * plate}, {finger, 1.5 * finger}};
+    const pd::Inputs<double> given{{&piece, 1}, 1e-3 * (i * 29 % 41) / 41, 0, 3 / frequency};
+    pd::simulate(body, given, [&](const pd::Segment<double>& segment) {
+      const bool stuck = segment.mode.stuck();
+      held += stuck;
+      brief += stuck && segment.end - segment.begin < 1e-5 / frequency;
+    });
+  }
+  return brief;
+}
+
+/// A velocity that only touches rest is negative there by rounding.
+void hands_that_touch_rest() {
+  int held = 0;
+  for (const double part : {1.0, 1 + 2.2e-16, 1 - 2.2e-16})
+    expect(brief_segments(part, held) == 0, "a pin does not turn where the hand only touches rest");
+  expect(held > 1000, "though many are held then");
+  expect(brief_segments(1 + 1e-12, held) > 100, "but where it turns by a little");
+}
+
 }  // namespace
 
 int main() {
   ends_of_strokes();
+  hands_that_touch_rest();
   int segments = 0;
   double until = 0;
   bool joined = true;

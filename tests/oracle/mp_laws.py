@@ -217,34 +217,37 @@ class Pin:
         half = self.step(t, state, h / 2, halvings - 1)
         return self.step(t + h / 2, half, h / 2, halvings - 1)
 
-    def select(self, t: mpf, state: State, still: set[str], spent: bool = False) -> State:
-        """The mode at an instant, from the contacts that do not slide; `spent`: they slip now."""
+    def select(self, t: mpf, state: State, still: list[str], spent: bool = False) -> State:
+        """The mode at an instant, from the contacts that do not slide, of which the first holds.
+
+        Where pin and plate are at rest at once, the contact that does not hold slips as the plate
+        accelerates. `spent`: the contacts slip now.
+        """
         x, v = state
         if self.given["across_velocity"](t) != (0, 0):
             self.plate = None
-            still = still - {"plate"}
+            still = [contact for contact in still if contact != "plate"]
         if "plate" in still:
-            v = self.context.mpf(0) if self.finger == 0 else self.at("mouse_velocity", t)
+            v = self.at("mouse_velocity", t)
         if "finger" in still:
             v = self.context.mpf(0)
-        for contact in sorted(still, reverse=True):
+        drags = (self.drags(t) > 0) - (self.drags(t) < 0)
+        slips = {}
+        for contact in still:
             if contact == "plate":
                 self.plate = 0
-                self.finger = (v > 0) - (v < 0) or self.finger
+                self.finger = (v > 0) - (v < 0) or drags or self.finger
             else:
                 self.finger = 0
                 u = v - self.at("mouse_velocity", t)
                 if self.plate is not None:
-                    self.plate = (u > 0) - (u < 0)
+                    self.plate = (u > 0) - (u < 0) or -drags
             force = self.needed(t, x, v)
             if not spent and abs(force) <= self.limit(t):
                 return x, v
             # It slips against the force that would hold it.
-            side = -1 if force > 0 else 1
-            if contact == "plate":
-                self.plate = side
-            else:
-                self.finger = side
+            slips[contact] = -1 if force > 0 else 1
+        self.plate, self.finger = slips.get("plate", self.plate), slips.get("finger", self.finger)
         return x, v
 
 
@@ -275,17 +278,18 @@ def solve(
     t, end = number(0), times[-1]
     u = v - pin.at("mouse_velocity", t)
     pin.plate, pin.finger = (u > 0) - (u < 0), (v > 0) - (v < 0)
-    still = {name for name, at in (("plate", u), ("finger", v)) if at == 0}
+    still = [name for name, at in (("plate", u), ("finger", v)) if at == 0]
     x, v = pin.select(t, (x, v), still)
     changes: list[Change] = []
     while t < end and not stop(len(changes)):
         bound = min(each for each in (*breaks, *times) if each > t)
         t, (x, v), broken = follow(pin, t, (x, v), bound)
         before = {"plate": pin.plate, "finger": pin.finger}
-        held = {contact for contact, mode in before.items() if mode == 0}
+        held = [contact for contact, mode in before.items() if mode == 0]
         if broken:
             slides = broken in before
-            x, v = pin.select(t, (x, v), {broken} if slides else held, spent=not slides)
+            still = [*held, broken] if slides else held
+            x, v = pin.select(t, (x, v), still, spent=not slides)
         elif t in breaks:
             pin.begin(t)
             x, v = pin.select(t, (x, v), held)

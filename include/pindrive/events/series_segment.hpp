@@ -73,7 +73,7 @@ class SeriesSegment {
     const T late = rounding<T> * (segment.begin + end);
     guards.clear();
     for (const auto& guard : paths) {
-      const bool ends = guard.zero == never && last && falls_to_zero(guard.path, late);
+      const bool ends = guard.zero == never && last && falls_to_zero(guard.path, late, guard.known);
       guards.add_known(ends ? end : since + guard.zero, guard.bound, guard.plate, guard.side,
                        segment.mode.stuck() && !held && &guard - paths.begin() < 2);
     }
@@ -211,12 +211,15 @@ class SeriesSegment {
     if (!(end > clear)) return T(0);
     T zero = never;
     const auto* first = guards.end();
-    for (const auto& guard : guards)
-      sign_changes(guard.path, 1, clear, end, std::min(zero, end), [&](T tau) {
-        if (tau < zero) first = &guard;
-        zero = std::min(zero, tau);
-        return false;
+    for (const auto& guard : guards) {
+      const T own = zero_beyond<T>(guard.known, [&](T raise, auto&& visit) {
+        auto raised = guard.path;
+        raised += Line<T>{raise, T(0)};
+        sign_changes(raised, 1, clear, end, std::min(zero, end), visit);
       });
+      if (own < zero) first = &guard;
+      zero = std::min(zero, own);
+    }
     step_.reset();
     driven_.emplace(motion);
     if (!(zero < never)) return end;
@@ -237,10 +240,10 @@ class SeriesSegment {
   }
 
   /// True if a polynomial that is positive reaches zero within a time after its end.
-  static bool falls_to_zero(const Polynomial<T>& path, T late) {
+  static bool falls_to_zero(const Polynomial<T>& path, T late, detail::Real<T> known) {
     const T end(path.span), value = path.at(end);
     if (value * end > late * T(series_order) * path.size()) return false;
-    return value + late * path.derivative().at(end) <= 0;
+    return value + late * path.derivative().at(end) <= -known;
   }
   /// True if an input is zero within rounding from a time to another: at its ends and at a time between them that is
   /// no period.

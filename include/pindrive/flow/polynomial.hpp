@@ -302,14 +302,34 @@ T first_zero(const Polynomial<T>& guard) {
   return first;
 }
 
-/// First zero at which a quantity that begins positive becomes negative by more than its rounding; infinity if none. A
-/// quantity that only touches zero, as a velocity at the end of a stroke, has none.
+/// Zero at which a quantity that begins positive becomes negative by more than its rounding; infinity if none.
+///
+/// `changes(raise, visit)` calls visit(τ) at each sign change of the quantity plus `raise`, in order, until visit
+/// returns false. A quantity that only touches zero, as a velocity at the end of a stroke, has none.
+template <class T, class Changes>
+T zero_beyond(Real<T> known, Changes&& changes) {
+  constexpr T never{std::numeric_limits<Real<T>>::infinity()};
+  T beyond = never, last = never;
+  changes(known, [&](const T& tau) {
+    beyond = tau;
+    return false;
+  });
+  if (known == 0 || !(beyond < never)) return beyond;
+  bool falls = false;
+  changes(0, [&](const T& tau) {
+    falls = !falls;
+    if (falls && (tau <= beyond || last == never)) last = tau;
+    return tau < beyond;
+  });
+  return last < never ? last : beyond;
+}
 template <class T>
-Real<T> zero_beyond(const Polynomial<T>& p, Real<T> known) {
-  Polynomial<T> raised = p;
-  raised.c[0] += known;
-  const Real<T> never = std::numeric_limits<Real<T>>::infinity();
-  return first_zero(raised) < never ? plain(first_zero(p)) : never;
+T zero_beyond(const Polynomial<T>& p, Real<T> known) {
+  return zero_beyond<T>(known, [&](Real<T> raise, auto&& visit) {
+    Polynomial<T> raised = p;
+    raised.c[0] += raise;
+    sign_changes(raised, 1, visit);
+  });
 }
 
 }  // namespace pindrive::detail

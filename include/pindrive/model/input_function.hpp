@@ -173,6 +173,8 @@ struct OwnedPiece {
 /// Input from an instant on, until the next breakpoint: a line, or a part of a piece.
 template <class T>
 struct Curve {
+  using Real = detail::Real<T>;
+
   T value{0}, rate{0};
   const InputPiece<T>* piece{nullptr};  ///< null for a line
   T since{0};                           ///< time since the begin of the piece, s
@@ -183,11 +185,20 @@ struct Curve {
       : value(line.value), rate(line.rate) {}
   /// Part of a piece after a time from its begin.
   Curve(const InputPiece<T>& of, T after) : since(after) {
-    std::array<T, 2> c;
-    of.expand(after, T(1), c, 1);
+    std::array<T, 3> c;
+    of.expand(after, T(1), c, 2);
     value = c[0];
     rate = c[1];
-    if (!of.straight()) piece = &of;
+    if (of.straight()) return;
+    piece = &of;
+    using std::abs;
+    const Real known = detail::rounding<Real>, time = abs(plain(of.begin)) + abs(plain(after));
+    // A function that touches zero within the resolution of time touches it now.
+    if (abs(plain(value)) <= known * of.size(after) &&
+        abs(plain(rate)) <= known * time * abs(2 * plain(c[2]))) {
+      value -= plain(value);
+      rate -= plain(rate);
+    }
   }
 
   /// Part of a piece at a time that is so long after its begin; its terms may have decayed.

@@ -117,7 +117,7 @@ class CreepFlow : public IteratedStep<T> {
   Real until_zero(const SeriesEquation<T>& e, Real part, Real step) const {
     if (e.across.straight() || !(part < std::numeric_limits<Real>::infinity())) return part;
     const auto w = T(balance_.side()) * polynomial_of(e.across, part * step);
-    return std::min(part, zero_beyond(w, e.across.rounding(T(part * step))) / step);
+    return std::min(part, plain(zero_beyond(w, e.across.rounding(T(part * step)))) / step);
   }
 
   /// One iteration in the time σ = τ/step: the series of t from that of a, and from t a new a below

@@ -235,7 +235,7 @@ class SeriesFlow : public SeriesExpansion<T> {
   Real turns_back(const SeriesEquation<T>& e) const {
     const T end(span());
     const Real known = e.plate_velocity.rounding(end) + e.across.rounding(end);
-    return std::min(span(), zero_beyond(speed, known));
+    return std::min(span(), plain(zero_beyond(speed, known)));
   }
   /// Sign of the velocity along a straight path with which the step begins.
   int sense_of_path() const {

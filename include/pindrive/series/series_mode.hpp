@@ -19,6 +19,8 @@ namespace pindrive::detail {
 template <class T>
 class SeriesMode {
  public:
+  using Real = detail::Real<T>;
+
   SeriesMode(const Drive<T>& drive, const Mode& mode, const InputCurves<T>& inputs)
       : drive_(drive), mode_(mode), inputs_(inputs) {}
 
@@ -150,6 +152,8 @@ class SeriesMode {
     ActiveGuard bound;
     bool plate;
     int side;
+    Real known{
+        0};  ///< rounding of a speed that is given: one that only touches zero within it has no zero
     T zero{never};  ///< time at which a polynomial becomes negative, s; infinite if never
   };
 
@@ -170,21 +174,24 @@ class SeriesMode {
     void assign(const Guards<Other>& others, const Guard<Other>* zero) {
       count_ = 0;
       for (const Guard<Other>& guard : others)
-        list_[count_++] = {{}, guard.bound, guard.plate, guard.side, &guard == zero ? T(0) : never};
+        list_[count_++] = {{},         guard.bound, guard.plate,
+                           guard.side, guard.known, &guard == zero ? T(0) : never};
     }
 
    private:
     friend class SeriesMode;
-    void add(Polynomial<T> path, bool at_zero, ActiveGuard bound, bool plate, int side) {
+    void add(Polynomial<T> path, bool at_zero, ActiveGuard bound, bool plate, int side,
+             Real known = 0) {
       if (at_zero) leave_zero(path.c);
       // A step that begins beyond the guard by rounding and moves away ends at once.
       const bool speed = bound == ActiveGuard::lower || bound == ActiveGuard::upper;
-      const bool beyond = speed && !at_zero && path.c[0] < 0 && path.c[1] < 0;
-      const T zero = beyond ? T(0) : first_zero(path);
-      list_[count_++] = {path, bound, plate, side, zero};
+      const bool beyond = speed && !at_zero && path.c[0] < -known && path.c[1] < 0;
+      const T zero = beyond ? T(0) : zero_beyond(path, known);
+      list_[count_++] = {path, bound, plate, side, known, zero};
     }
-    void add(const TermSum<T>& path, bool, ActiveGuard bound, bool plate, int side) {
-      list_[count_++] = {path, bound, plate, side};
+    void add(const TermSum<T>& path, bool, ActiveGuard bound, bool plate, int side,
+             Real known = 0) {
+      list_[count_++] = {path, bound, plate, side, known};
     }
     /// Makes exact the start that the selection of the mode implies: coefficients of the wrong sign
     /// are rounding, or the path turns back within the rounding of its start.
@@ -261,10 +268,12 @@ class SeriesMode {
     Path above = speed, below = T(-1) * speed;
     above += Line<T>{-range.from, T(0)};
     below += Line<T>{range.to, T(0)};
+    const Curve<T>& given = inputs_.plate_velocity;
+    const Real known = mode_.stuck() && !given.straight() ? given.rounding() : Real(0);
     if (!oblique || range.from > 0)  // otherwise the transverse velocity keeps the speed positive
-      found.add(above, at == ActiveGuard::lower, ActiveGuard::lower, is_plate, 0);
+      found.add(above, at == ActiveGuard::lower, ActiveGuard::lower, is_plate, 0, known);
     if (range.to < never)
-      found.add(below, at == ActiveGuard::upper, ActiveGuard::upper, is_plate, 0);
+      found.add(below, at == ActiveGuard::upper, ActiveGuard::upper, is_plate, 0, known);
   }
   template <class Along>
   void stops(Guards<typename Along::Path>& found, const Along& along, const Reached& at) const {
