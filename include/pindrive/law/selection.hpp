@@ -1,6 +1,7 @@
 /// Selection of the mode that follows an event (docs/theory.md, section 11).
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -205,11 +206,47 @@ class Selection {
         if (abs(margin.drift) <= rounding<T> * (scale + abs(limit.rate)) ||
             grazes(margin.drift, margin.curvature, pin_.state.force_error))
           margin.drift = T(0);
-        if ((margin.drift != 0 ? margin.drift : margin.curvature) < 0) return false;
+        const T first = margin.drift != 0       ? margin.drift
+                        : margin.curvature != 0 ? margin.curvature
+                                                : later_margin(on, other, T(side));
+        if (first < 0) return false;
       }
       selected_.guards.add_force(margin, pin_.plate.stuck(), side);
     }
     return true;
+  }
+
+  using Coefficients = std::array<T, beginning_orders>;
+  static Coefficients coefficients(const Curve<T>& of) {
+    return of.template coefficients<beginning_orders>();
+  }
+  /// True if the force of a contact follows from its load alone.
+  static bool follows_load(const ContactPoint& side) {
+    const Branch<T> range = side.branch();
+    const bool falls = range.falling.present() && range.falling.excess != 0;
+    return !side.elastic() && (!side.sliding() || (range.slope == 0 && !falls));
+  }
+  /// Force of a contact per load factor.
+  T per_load(const ContactPoint& side) const {
+    return side.load.value != 0 ? side.force(pin_.state) / side.load.value : T(0);
+  }
+  /// First coefficient from the third on of the margin of a stick force on a side, by its sign; 0 without one, and
+  /// where the force of the other contact does not follow from its load.
+  T later_margin(const ContactPoint& on, const ContactPoint& other, T side) const {
+    if (!follows_load(other)) return T(0);
+    const Coefficients surface = coefficients(on.surface), force = coefficients(pin_.force),
+                       plate = coefficients(pin_.plate.surface), own = coefficients(on.load),
+                       load = coefficients(other.load);
+    const T of_other = per_load(other);
+    Coefficients margin{};
+    for (std::size_t n = 3; n + 1 < beginning_orders; ++n) {
+      const T inertia = pin_.drive.mass * T(n + 1) * (plate[n + 1] - surface[n + 1]);
+      const T holding = stiffness() * surface[n - 1] / T(n) + damping() * surface[n] - force[n] -
+                        inertia - of_other * load[n];
+      const T beside = other.stuck() ? other.contact.static_limit * load[n] : T(0);
+      margin[n] = on.contact.static_limit * own[n] + beside - side * holding;
+    }
+    return third_or_later(margin);
   }
 
   /// Tests the mode in which no contact sticks. A relative acceleration that is zero within its
@@ -270,8 +307,9 @@ class Selection {
       const bool none = abs(jerk) <= rounding<T> * (scale + abs(own));
       const bool frictionless =
           side.powerless() && (side.start.friction == 0 || side.load.is_zero());
-      const T third = needed.curvature == 0 && frictionless ? relative_beginning(side.surface)
-                                                            : -needed.curvature;
+      const bool known = frictionless || (follows_load(pin_.plate) && follows_load(pin_.finger));
+      const T third =
+          needed.curvature == 0 && known ? relative_beginning(side.surface) : -needed.curvature;
       return side.is_admissible(pin_.state, T(0), none ? T(0) : jerk, third);
     };
     return is_admissible(pin_.plate, pin_.finger, at_plate) &&
@@ -304,19 +342,23 @@ class Selection {
   static T later(const Curve<T>& velocity) {
     return third_or_later(velocity.template coefficients<beginning_orders>());
   }
-  /// The first derivative from the third on in which a pin without friction leaves the velocity of a surface, by its
-  /// sign; 0 if it does not.
+  /// The first derivative from the third on in which a pin with the acceleration of a surface leaves its velocity, by
+  /// its sign; 0 if it does not. Of frictions that depend on the speed the part at this instant is used.
   T relative_beginning(const Curve<T>& surface) const {
-    const auto plate = pin_.plate.surface.template coefficients<beginning_orders>();
-    const auto force = pin_.force.template coefficients<beginning_orders>();
-    auto relative = surface.template coefficients<beginning_orders>();
+    const Coefficients plate = coefficients(pin_.plate.surface), force = coefficients(pin_.force),
+                       plate_load = coefficients(pin_.plate.load),
+                       finger_load = coefficients(pin_.finger.load);
+    Coefficients relative = coefficients(surface);
+    const T of_plate = pin_.plate.sliding() ? per_load(pin_.plate) : T(0);
+    const T of_finger = pin_.finger.sliding() ? per_load(pin_.finger) : T(0);
     const T skin = pin_.finger.elastic() ? pin_.drive.finger.stiffness : T(0);
-    T x = pin_.state.x, v = pin_.state.v;
-    T stretching = pin_.finger.elastic() ? pin_.finger.force(pin_.state) : T(0);
-    for (std::size_t n = 0; n + 1 < beginning_orders; ++n) {
-      const T inertia = pin_.drive.mass * T(n + 1);
-      const T pull = force[n] + stretching - damping() * v - stiffness() * x;
-      const T next = plate[n + 1] + pull / inertia;
+    T x = pin_.state.v, v = relative[1];
+    T stretching = -skin * pin_.state.v;
+    relative[0] = relative[1] = T(0);
+    for (std::size_t n = 1; n + 1 < beginning_orders; ++n) {
+      const T friction = of_plate * plate_load[n] + of_finger * finger_load[n];
+      const T pull = force[n] + friction + stretching - damping() * v - stiffness() * x;
+      const T next = plate[n + 1] + pull / (pin_.drive.mass * T(n + 1));
       stretching = -skin * v / T(n + 1);
       x = v / T(n + 1);
       v = next;

@@ -193,12 +193,10 @@ struct Curve {
     piece = &of;
     using std::abs;
     const Real known = detail::rounding<Real>, time = abs(plain(of.begin)) + abs(plain(after));
-    // A function that touches zero within the resolution of time touches it now.
-    if (abs(plain(value)) <= known * of.size(after) &&
-        abs(plain(rate)) <= known * time * abs(2 * plain(c[2]))) {
-      value -= plain(value);
-      rate -= plain(rate);
-    }
+    // An extremum within the resolution of time is now; so is a zero that the function only touches.
+    if (abs(plain(rate)) > known * time * abs(2 * plain(c[2]))) return;
+    rate -= plain(rate);
+    if (abs(plain(value)) <= known * of.size(after)) value -= plain(value);
   }
 
   /// Part of a piece at a time that is so long after its begin; its terms may have decayed.

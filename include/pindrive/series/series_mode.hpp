@@ -219,7 +219,12 @@ class SeriesMode {
         most += drive_.plate.static_limit * along.input(inputs_.plate_load);
       if (mode_.finger == ContactState::stick)
         most += drive_.finger.static_limit * along.input(inputs_.finger_load);
-      within(found, along.stick_force, most, at.limit, mode_.plate == ContactState::stick);
+      Real known{0};
+      if (mode_.plate == ContactState::stick)
+        known += plain(drive_.plate.static_limit) * given_rounding(inputs_.plate_load);
+      if (mode_.finger == ContactState::stick)
+        known += plain(drive_.finger.static_limit) * given_rounding(inputs_.finger_load);
+      within(found, along.stick_force, most, at.limit, mode_.plate == ContactState::stick, known);
     }
     if (is_slip(mode_.plate))
       between(found, along.speed, plate(), at.plate, true, inputs_.oblique());
@@ -262,14 +267,17 @@ class SeriesMode {
   }
   static int begins_with(const TermSum<T>& sum) { return sum.start() < 0 ? -1 : 1; }
 
+  /// Rounding of a function; lines do not touch zero.
+  static Real given_rounding(const Curve<T>& input) {
+    return input.straight() ? Real(0) : input.rounding();
+  }
   template <class Path>
   void between(Guards<Path>& found, const Path& speed, const Branch<T>& range, ActiveGuard at,
                bool is_plate, bool oblique) const {
     Path above = speed, below = T(-1) * speed;
     above += Line<T>{-range.from, T(0)};
     below += Line<T>{range.to, T(0)};
-    const Curve<T>& given = inputs_.plate_velocity;
-    const Real known = mode_.stuck() && !given.straight() ? given.rounding() : Real(0);
+    const Real known = mode_.stuck() ? given_rounding(inputs_.plate_velocity) : Real(0);
     if (!oblique || range.from > 0)  // otherwise the transverse velocity keeps the speed positive
       found.add(above, at == ActiveGuard::lower, ActiveGuard::lower, is_plate, 0, known);
     if (range.to < never)
@@ -301,12 +309,12 @@ class SeriesMode {
     found.add(push, at.push, ActiveGuard::push, false, end);
   }
   template <class Path>
-  void within(Guards<Path>& found, const Path& force, const Path& most, int at_limit,
-              bool is_plate) const {
+  void within(Guards<Path>& found, const Path& force, const Path& most, int at_limit, bool is_plate,
+              Real known = 0) const {
     for (const int side : {1, -1}) {
       Path left = T(-side) * force;
       left += most;
-      found.add(left, side == at_limit, ActiveGuard::none, is_plate, side);
+      found.add(left, side == at_limit, ActiveGuard::none, is_plate, side, known);
     }
   }
 
