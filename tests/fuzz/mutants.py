@@ -110,8 +110,14 @@ MUTANTS = (
     Mutant(
         "a guard at its zero is not asked by its derivatives",
         "law/selection.hpp",
-        "if ((margin.drift != 0 ? margin.drift : margin.curvature) < 0) return false;",
+        "if (first < 0) return false;",
         "",
+    ),
+    Mutant(
+        "a stick force leaves its limit by its second derivative at most",
+        "law/selection.hpp",
+        "third_or_later(margin)",
+        "T(0)",
     ),
     Mutant(
         "a tangential departure goes on although another force jumps",
