@@ -163,6 +163,12 @@ class Selection {
     return restoring_force_ - (selected_.applied_force - pin_.drive.mass * on.surface.rate) -
            of_other;
   }
+  /// Derivative of the force of a sliding rigid contact by the velocity of the pin, N s/m.
+  T force_by_speed(const ContactPoint& side) const {
+    if (!side.sliding() || side.elastic() || side.has_slider_state()) return T(0);
+    const T v = pin_.state.v;
+    return side.force_rate(v, T(1)).value - side.force_rate(v, T(0)).value;
+  }
   /// Stick force as a function of time; `scale` is the magnitude of the terms of its slope.
   Path<T> holding_force_from(T force, const ContactPoint& on, const ContactPoint& other,
                              T& scale) const {
@@ -175,7 +181,8 @@ class Selection {
     scale = abs(spring) + abs(damper) + rate.scale;
     const T drift = spring + damper - rate.value - applied;
     scale += abs(applied);
-    return {force, T(0), T(0), drift, stiffness() * a - rate.second + bend};
+    const T second = rate.second + force_by_speed(other) * on.surface.second();
+    return {force, T(0), T(0), drift, stiffness() * a - second + bend};
   }
 
   /// Tests the mode in which a contact, and `other` if it sticks too, keeps the pin on its surface.
@@ -230,19 +237,24 @@ class Selection {
   T per_load(const ContactPoint& side) const {
     return side.load.value != 0 ? side.force(pin_.state) / side.load.value : T(0);
   }
-  /// First coefficient from the third on of the margin of a stick force on a side, by its sign; 0 without one, and
-  /// where the force of the other contact does not follow from its load.
+  /// First coefficient from the third on of the margin of a stick force on a side, by its sign; 0 without one. Where
+  /// the force of the other contact depends on its speed, the third coefficient alone is known, and only while that
+  /// contact does not accelerate.
   T later_margin(const ContactPoint& on, const ContactPoint& other, T side) const {
-    if (!follows_load(other)) return T(0);
+    const bool any_order = follows_load(other);
+    const T relative = on.surface.rate - other.surface.rate;
+    if (!any_order && (other.elastic() || relative != 0 || !other.load.steady())) return T(0);
     const Coefficients surface = coefficients(on.surface), force = coefficients(pin_.force),
                        plate = coefficients(pin_.plate.surface), own = coefficients(on.load),
                        load = coefficients(other.load);
     const T of_other = per_load(other);
+    const Coefficients of_surface = coefficients(other.surface);
+    const T by_speed = any_order ? T(0) : force_by_speed(other);
     Coefficients margin{};
-    for (std::size_t n = 3; n + 1 < beginning_orders; ++n) {
+    for (std::size_t n = 3; n < (any_order ? beginning_orders - 1 : 4); ++n) {
       const T inertia = pin_.drive.mass * T(n + 1) * (plate[n + 1] - surface[n + 1]);
       const T holding = stiffness() * surface[n - 1] / T(n) + damping() * surface[n] - force[n] -
-                        inertia - of_other * load[n];
+                        inertia - of_other * load[n] - by_speed * (surface[n] - of_surface[n]);
       const T beside = other.stuck() ? other.contact.static_limit * load[n] : T(0);
       margin[n] = on.contact.static_limit * own[n] + beside - side * holding;
     }
@@ -305,11 +317,7 @@ class Selection {
       const T own = side.force_rate(pin_.state.v, selected_.acceleration).value,
               jerk = own - needed.drift;
       const bool none = abs(jerk) <= rounding<T> * (scale + abs(own));
-      const bool frictionless =
-          side.powerless() && (side.start.friction == 0 || side.load.is_zero());
-      const bool known = frictionless || (follows_load(pin_.plate) && follows_load(pin_.finger));
-      const T third =
-          needed.curvature == 0 && known ? relative_beginning(side.surface) : -needed.curvature;
+      const T third = needed.curvature == 0 ? relative_beginning(side.surface) : -needed.curvature;
       return side.is_admissible(pin_.state, T(0), none ? T(0) : jerk, third);
     };
     return is_admissible(pin_.plate, pin_.finger, at_plate) &&
