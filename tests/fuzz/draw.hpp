@@ -31,8 +31,9 @@ class Random {
 };
 
 /// Family of drives: an aligned or oblique hand, end stops, a compliant finger with a friction curve, inputs that are
-/// functions, friction that falls by a law, or strokes of a hand at an angle; any: one drive in ten has each.
-enum class Family { any, aligned, oblique, stops, skin, functions, laws, strokes };
+/// functions, friction that falls by a law, strokes of a hand at an angle, or round numbers under functions; any: one
+/// drive in ten has each but the last.
+enum class Family { any, aligned, oblique, stops, skin, functions, laws, strokes, round };
 
 class Draw {
  public:

@@ -194,11 +194,11 @@ int main(int argc, char** argv) {
   }
   Options options;
   if (!parse(words, options)) {
-    std::fprintf(
-        stderr,
-        "usage: fuzz COUNT SEED [--from NUMBER] [--threads N] [--log FILE]\n"
-        "                       [--family any|aligned|oblique|stops|skin|functions|laws|strokes]\n"
-        "       fuzz --replay FILE...\n");
+    std::fprintf(stderr,
+                 "usage: fuzz COUNT SEED [--from NUMBER] [--threads N] [--log FILE]\n"
+                 "                       [--family "
+                 "any|aligned|oblique|stops|skin|functions|laws|strokes|round]\n"
+                 "       fuzz --replay FILE...\n");
     return 2;
   }
   const auto interrupt = [](int signal) {

@@ -205,6 +205,89 @@ inline Case self_excited_drive(std::uint64_t seed, std::uint64_t number) {
   return c;
 }
 
+// ---- functions of time -----------------------------------------------------------------------------
+
+inline Function sinusoid(double mean, double amplitude, double frequency, double phase = 0) {
+  constexpr double turn = 6.283185307179586;  // rad
+  return {{0,
+           {mean},
+           {{amplitude * std::sin(phase), amplitude * std::cos(phase), 0, turn * frequency}}}};
+}
+inline Function decay(double start, double end, double time_constant) {
+  return {{0, {end}, {{start - end, 0, 1 / time_constant, 0}}}};
+}
+/// Strokes of minimum jerk, one after the other, of distances in turn forth and back.
+inline Function strokes(double distance, double lasts, int count) {
+  Function made;
+  for (int i = 0; i < count; ++i) {
+    const double second = (i % 2 ? -30 : 30) * distance / (lasts * lasts * lasts);
+    made.push_back(
+        {i * lasts, {0, 0, second, -2 * second / lasts, second / (lasts * lasts), 0}, {}});
+  }
+  made.push_back({count * lasts, {}, {}});
+  return made;
+}
+/// A velocity over time; half of the sinusoids touch rest.
+inline Function round_velocity(RoundNumbers& draw) {
+  const double speed = draw.between(1e-2, 1e-1), frequency = draw.between(1, 50);
+  if (draw.chance(0.3)) return sinusoid(speed, speed, frequency);
+  if (draw.chance(0.4))
+    return sinusoid(0, speed, frequency, draw.chance(0.5) ? 0 : 1.5707963267948966);
+  if (draw.chance(0.3)) {
+    const double constant = draw.between(1e-2, 1e-1);
+    return draw.chance(0.5) ? decay(speed, 0, constant) : decay(0, speed, constant);
+  }
+  return strokes(draw.between(1e-2, 5e-2), draw.between(1e-1, 5e-1), draw.chance(0.5) ? 1 : 2);
+}
+/// A factor of a load; half of the sinusoids touch zero.
+inline Function round_load(RoundNumbers& draw) {
+  const double frequency = draw.between(1, 50);
+  if (draw.chance(0.5)) return sinusoid(draw.chance(0.5) ? 1 : 2, 1, frequency);
+  const double constant = draw.between(5e-3, 5e-2);
+  return draw.chance(0.5) ? decay(5, 1, constant) : decay(1, 0, constant);
+}
+
+/// A law that falls.
+inline void add_law(Case& c, int contact, RoundNumbers& draw) {
+  const double kinetic = c.curve[contact].value[0];
+  if (kinetic == 0 || c.curve[contact].at.size() > 1) return;
+  c.law[contact] = {1 + static_cast<int>(3 * draw.between(1, 5) / 6),
+                    draw.chance(0.3) ? 0 : RoundNumbers::above(kinetic) - kinetic,
+                    draw.between(5e-3, 1e-1), draw.chance(0.2) ? draw.between(1e-2, 1e-1) : 0};
+  c.limit[contact] = kinetic + c.law[contact].excess;
+}
+
+/// A drive under a hand that is a function, with other features and functions.
+inline Case round_drive_under_functions(std::uint64_t seed, std::uint64_t number) {
+  Case c = round_drive(seed, number);
+  RoundNumbers draw(seed + 1, number);
+  c.mouse_velocity = {{0}, {0}};
+  c.functions[mouse_velocity] = round_velocity(draw);
+  if (draw.chance(0.5)) c.curve[1] = {{0}, {c.curve[0].value[0]}};  // balanced frictions
+  if (draw.chance(0.5)) set_static(c, 1, draw);
+  for (const int contact : {0, 1}) {
+    if (c.limit[contact] < c.curve[contact].value[0]) c.limit[contact] = c.curve[contact].value[0];
+    if (draw.chance(0.3)) add_law(c, contact, draw);
+  }
+  const auto follow = [&](Input input, Rows& rows, double value, const Function& function) {
+    rows = {{0}, {value}};
+    c.functions[input] = function;
+  };
+  if (draw.chance(0.3)) follow(plate_load, c.plate_load, 1, round_load(draw));
+  if (draw.chance(0.2) && std::isinf(c.skin))
+    follow(finger_load, c.finger_load, 1, round_load(draw));
+  if (draw.chance(0.2)) follow(across_velocity, c.across, 0, round_velocity(draw));
+  if (draw.chance(0.2))
+    follow(force, c.force, 0, sinusoid(0, draw.between(1e-3, 2e-2), draw.between(1, 50)));
+  if (!std::isinf(c.skin)) c.law[1] = {};
+  if (draw.chance(0.5)) c.displacement = 0;
+  const Piece& first = c.functions[mouse_velocity][0];
+  c.velocity = first.polynomial[0] + (first.terms.empty() ? 0 : first.terms[0].cosine);
+  if (draw.chance(0.5) || c.displacement == c.travel) c.velocity = 0;
+  c.duration = draw.between(1e-1, 1e0);
+  return c;
+}
+
 /// Drive in other units: its forces, lengths and times times these factors.
 inline Case in_units(Case c, double force, double length, double time) {
   const double speed = length / time;

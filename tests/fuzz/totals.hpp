@@ -12,6 +12,7 @@
 
 #include "draw.hpp"
 #include "judge.hpp"
+#include "round_numbers.hpp"
 
 namespace fuzz {
 
@@ -84,8 +85,8 @@ struct Totals {
   }
 };
 
-inline constexpr std::array<const char*, 8> families{"any",  "aligned",   "oblique", "stops",
-                                                     "skin", "functions", "laws",    "strokes"};
+inline constexpr std::array<const char*, 9> families{
+    "any", "aligned", "oblique", "stops", "skin", "functions", "laws", "strokes", "round"};
 
 /// The family of a name; false if there is none.
 inline bool read(const std::string& name, Family& family) {
@@ -100,8 +101,9 @@ struct Range {
   Family family{Family::any};
 
   Case at(long long number) const {
-    return Draw(static_cast<std::uint64_t>(seed), static_cast<std::uint64_t>(number), family)
-        .next();
+    const auto of = static_cast<std::uint64_t>(seed), which = static_cast<std::uint64_t>(number);
+    if (family == Family::round) return round_drive_under_functions(of, which);
+    return Draw(of, which, family).next();
   }
   friend bool operator==(const Range& a, const Range& b) {
     return a.seed == b.seed && a.from == b.from && a.family == b.family;

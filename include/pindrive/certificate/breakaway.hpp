@@ -48,7 +48,10 @@ T spare_stick_limit(const Drive<T>& drive, const Mode& mode, const Beginning<T>&
   const T of_plate =
       plate && finger ? side * drive.plate.kinetic * now.plate_load : now.plate_force;
   T spare{0};
-  if (plate && now.plate_began) spare = at_plate - abs(pull - of_finger);
+  // A plate that moves out does not take along a pin at a rigid stop.
+  const bool blocked = drive.stops.present() && drive.stops.rigid() &&
+                       abs(now.x) >= drive.stops.travel && now.x * parts > 0;
+  if (plate && now.plate_began && !blocked) spare = at_plate - abs(pull - of_finger);
   if (finger && now.finger_began)
     spare = std::max(spare, at_finger - abs(pull - inertia - of_plate));
   return std::max(spare, T(0));
