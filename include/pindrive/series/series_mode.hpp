@@ -152,8 +152,8 @@ class SeriesMode {
     ActiveGuard bound;
     bool plate;
     int side;
-    Real known{
-        0};  ///< rounding of a speed that is given: one that only touches zero within it has no zero
+    /// Rounding of a function in the path: a path that only touches zero within it has no zero.
+    Real known{0};
     T zero{never};  ///< time at which a polynomial becomes negative, s; infinite if never
   };
 
@@ -215,15 +215,13 @@ class SeriesMode {
       found.add(T(-end) * along.stick_force, at.push, ActiveGuard::push, false, end);
     } else if (mode_.stuck()) {
       Path most = along.input(Line<T>{T(0), T(0)});
-      if (mode_.plate == ContactState::stick)
-        most += drive_.plate.static_limit * along.input(inputs_.plate_load);
-      if (mode_.finger == ContactState::stick)
-        most += drive_.finger.static_limit * along.input(inputs_.finger_load);
       Real known{0};
-      if (mode_.plate == ContactState::stick)
-        known += plain(drive_.plate.static_limit) * given_rounding(inputs_.plate_load);
-      if (mode_.finger == ContactState::stick)
-        known += plain(drive_.finger.static_limit) * given_rounding(inputs_.finger_load);
+      const auto add_limit = [&](const Contact<T>& contact, const Curve<T>& load) {
+        most += contact.static_limit * along.input(load);
+        known += plain(contact.static_limit) * given_rounding(load);
+      };
+      if (mode_.plate == ContactState::stick) add_limit(drive_.plate, inputs_.plate_load);
+      if (mode_.finger == ContactState::stick) add_limit(drive_.finger, inputs_.finger_load);
       within(found, along.stick_force, most, at.limit, mode_.plate == ContactState::stick, known);
     }
     if (is_slip(mode_.plate))
