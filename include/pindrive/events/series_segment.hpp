@@ -212,7 +212,7 @@ class SeriesSegment {
     T zero = never;
     const auto* first = guards.end();
     for (const auto& guard : guards) {
-      const T own = zero_beyond<T>(guard.known, [&](T raise, auto&& visit) {
+      const T own = zero_beyond<T>(guard.known, [&](T raise, const auto& visit) {
         auto raised = guard.path;
         raised += Line<T>{raise, T(0)};
         sign_changes(raised, 1, clear, end, std::min(zero, end), visit);

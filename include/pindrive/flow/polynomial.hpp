@@ -290,18 +290,6 @@ T largest_size(const Polynomial<T>& p) {
   return most;
 }
 
-/// Earliest τ in (0, span] at which a guard becomes negative; infinity if none. The guard is
-/// positive just after τ = 0, by the choice of the mode.
-template <class T>
-T first_zero(const Polynomial<T>& guard) {
-  T first = std::numeric_limits<T>::infinity();
-  sign_changes(guard, 1, [&](T tau) {
-    first = tau;
-    return false;
-  });
-  return first;
-}
-
 /// Zero at which a quantity that begins positive becomes negative by more than its rounding; infinity if none.
 ///
 /// `changes(raise, visit)` calls visit(τ) at each sign change of the quantity plus `raise`, in order, until visit
@@ -310,26 +298,35 @@ template <class T, class Changes>
 T zero_beyond(Real<T> known, Changes&& changes) {
   constexpr T never{std::numeric_limits<Real<T>>::infinity()};
   T beyond = never, last = never;
-  changes(known, [&](const T& tau) {
-    beyond = tau;
-    return false;
-  });
-  if (known == 0 || !(beyond < never)) return beyond;
   bool falls = false;
-  changes(0, [&](const T& tau) {
+  const auto visit = [&](const T& tau) {
+    if (beyond == never) {
+      beyond = tau;
+      return false;
+    }
     falls = !falls;
     if (falls && (tau <= beyond || last == never)) last = tau;
     return tau < beyond;
-  });
+  };
+  changes(known, visit);
+  if (known == 0 || beyond == never) return beyond;
+  changes(0, visit);
   return last < never ? last : beyond;
 }
 template <class T>
 T zero_beyond(const Polynomial<T>& p, Real<T> known) {
-  return zero_beyond<T>(known, [&](Real<T> raise, auto&& visit) {
+  return zero_beyond<T>(known, [&](Real<T> raise, const auto& visit) {
     Polynomial<T> raised = p;
     raised.c[0] += raise;
     sign_changes(raised, 1, visit);
   });
+}
+
+/// Earliest τ in (0, span] at which a guard becomes negative; infinity if none. The guard is
+/// positive just after τ = 0, by the choice of the mode.
+template <class T>
+T first_zero(const Polynomial<T>& guard) {
+  return zero_beyond(guard, Real<T>(0));
 }
 
 }  // namespace pindrive::detail

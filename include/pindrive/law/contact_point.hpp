@@ -206,6 +206,12 @@ struct ContactPoint {
     const T slope_error = range.rounding * load.value * abs(relative);
     return {rate, abs(rate) + slope_error / rounding<T>, second};
   }
+  /// Derivative of the force of slip along the axis by the velocity of the pin, N s/m; 0 for a slider with a velocity of
+  /// its own.
+  T force_by_speed(T v) const {
+    if (!sliding() || oblique() || has_slider_state()) return T(0);
+    return -linear_branch(v).slope * load.value;
+  }
   /// Error of the force from rounding of the pin velocity, N; large if the plate hardly slides
   /// across.
   T force_error(T v) const {

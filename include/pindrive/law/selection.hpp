@@ -163,12 +163,6 @@ class Selection {
     return restoring_force_ - (selected_.applied_force - pin_.drive.mass * on.surface.rate) -
            of_other;
   }
-  /// Derivative of the force of a sliding rigid contact by the velocity of the pin, N s/m.
-  T force_by_speed(const ContactPoint& side) const {
-    if (!side.sliding() || side.elastic() || side.has_slider_state()) return T(0);
-    const T v = pin_.state.v;
-    return side.force_rate(v, T(1)).value - side.force_rate(v, T(0)).value;
-  }
   /// Stick force as a function of time; `scale` is the magnitude of the terms of its slope.
   Path<T> holding_force_from(T force, const ContactPoint& on, const ContactPoint& other,
                              T& scale) const {
@@ -181,7 +175,7 @@ class Selection {
     scale = abs(spring) + abs(damper) + rate.scale;
     const T drift = spring + damper - rate.value - applied;
     scale += abs(applied);
-    const T second = rate.second + force_by_speed(other) * on.surface.second();
+    const T second = rate.second + other.force_by_speed(pin_.state.v) * on.surface.second();
     return {force, T(0), T(0), drift, stiffness() * a - second + bend};
   }
 
@@ -231,7 +225,7 @@ class Selection {
   static bool follows_load(const ContactPoint& side) {
     const Branch<T> range = side.branch();
     const bool falls = range.falling.present() && range.falling.excess != 0;
-    return !side.elastic() && (!side.sliding() || (range.slope == 0 && !falls));
+    return !side.elastic() && !side.oblique() && (!side.sliding() || (range.slope == 0 && !falls));
   }
   /// Force of a contact per load factor.
   T per_load(const ContactPoint& side) const {
@@ -243,13 +237,14 @@ class Selection {
   T later_margin(const ContactPoint& on, const ContactPoint& other, T side) const {
     const bool any_order = follows_load(other);
     const T relative = on.surface.rate - other.surface.rate;
-    if (!any_order && (other.elastic() || relative != 0 || !other.load.steady())) return T(0);
+    if (!any_order && (other.elastic() || other.oblique() || relative != 0 || !other.load.steady()))
+      return T(0);
     const Coefficients surface = coefficients(on.surface), force = coefficients(pin_.force),
                        plate = coefficients(pin_.plate.surface), own = coefficients(on.load),
                        load = coefficients(other.load);
     const T of_other = per_load(other);
     const Coefficients of_surface = coefficients(other.surface);
-    const T by_speed = any_order ? T(0) : force_by_speed(other);
+    const T by_speed = any_order ? T(0) : other.force_by_speed(pin_.state.v);
     Coefficients margin{};
     for (std::size_t n = 3; n < (any_order ? beginning_orders - 1 : 4); ++n) {
       const T inertia = pin_.drive.mass * T(n + 1) * (plate[n + 1] - surface[n + 1]);
