@@ -175,4 +175,4 @@ def test_the_derivatives_of_a_motion_as_data_and_as_a_figure(motion: pd.Motion) 
     assert t[-1] == pytest.approx(1e3 * motion.duration)
     moved = 1e3 * motion.drive.mass * found.position(1e-3 * t)[0]
     np.testing.assert_allclose(np.asarray(curve.get_ydata()), moved, rtol=1e-9, equal_nan=True)
-    assert axes.get_xlabel() == "time after release (ms)" and "(mm)" in axes.get_ylabel()
+    assert axes.get_xlabel() == "time (ms)" and "(mm)" in axes.get_ylabel()
