@@ -185,7 +185,7 @@ struct Curve {
       : value(line.value), rate(line.rate) {}
   /// Part of a piece after a time from its begin.
   Curve(const InputPiece<T>& of, T after) : since(after) {
-    std::array<T, 4> c;  // as for the derivatives below
+    std::array<T, 4> c;
     of.expand(after, T(1), c, 2);
     value = c[0];
     rate = c[1];
