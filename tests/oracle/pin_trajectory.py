@@ -111,15 +111,15 @@ class Trajectory:
         """Return the first time at which continuous values exceed their lowest by `height`.
 
         Returns:
-            That time, NaN if they never are; and the time of that lowest value.
+            That time, NaN if they never are; and the last time of that lowest value.
         """
         t = self.within(begin, end)
         y = values(t)
         found = np.flatnonzero(y - np.minimum.accumulate(y) >= height)
         if not found.size:
-            return nan, float(t[int(np.argmin(y))])
+            return nan, float(t[last_lowest(y)])
         i = int(found[0])
-        dip = int(np.argmin(y[: i + 1]))
+        dip = last_lowest(y[: i + 1])
         base = float(y[dip])
         return root(lambda s: values(s) - base - height, t[i - 1], t[i]), float(t[dip])
 
@@ -151,6 +151,11 @@ class Trajectory:
     @cached_property
     def _ends(self) -> NDArray[np.float64]:
         return np.array([segment.end for segment in self.motion.segments])
+
+
+def last_lowest(values: NDArray[np.float64]) -> int:
+    """The index of the lowest value, the last one of several."""
+    return int(np.flatnonzero(values == values.min())[-1])
 
 
 def root(f: Callable[[Any], NDArray[np.float64]], low: float, high: float) -> float:

@@ -206,7 +206,7 @@ class MonotonePieces {
   }
 
   /// First time in [from, to] at which a signal without jumps exceeds its lowest value by a height, NaN
-  /// without one; and the time of that lowest value.
+  /// without one; and the time of that lowest value, the last one if it lies there for a while.
   struct Climb {
     double time, low_time;
     bool found() const { return !std::isnan(time); }
@@ -215,7 +215,7 @@ class MonotonePieces {
     Point low{from, at(of, from)};
     double found = nan;
     each(of, from, to, [&](Point a, Point b, std::size_t i) {
-      if (b.value < low.value) low = b;
+      if (b.value <= low.value) low = b;
       if (b.value - low.value >= height)
         found = change(of, i, a.time, b.time, [&](double y) { return y - low.value - height; });
       return std::isnan(found);
