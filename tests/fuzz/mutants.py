@@ -402,7 +402,7 @@ MUTANTS = (
     Mutant(
         "a climb is counted from the first value",
         "device/monotone_pieces.hpp",
-        "if (b.value < low.value) low = b;",
+        "if (b.value <= low.value) low = b;",
         "",
     ),
     Mutant(
