@@ -90,6 +90,29 @@ void values() {
   expect(missed < bound && bound < 1e4 * missed, "... which is not much larger");
 }
 
+/// A function close to the instant at which it only touches zero, where its terms cancel: within the rounding of time.
+void beside_a_touch() {
+  const double w = 4 * std::acos(-1.0), amplitude = 0.1, touches = 0.375;
+  const Function<double> harmonic({{0, {amplitude}, {{0, amplitude, 0, w}}}});
+  const Function<double> stroke({{0, {0, 0, 30, -60, 30}, {}}});  // of minimum jerk, velocity
+  double worst = 0, of_stroke = 0;
+  for (double part = 1e-9; part < 2e-3; part *= 1.9)
+    for (const double sign : {-1.0, 1.0}) {
+      const double time = touches + sign * part, off = time - touches, half = std::sin(w / 2 * off);
+      const pd::Curve<double> here = harmonic.profile().from(time);
+      const double value = 2 * amplitude * half * half, rate = amplitude * w * std::sin(w * off);
+      const double known = 4 * pd::detail::rounding<double> * touches / part;
+      worst = std::max({worst, std::abs(here.value / value - 1) / known,
+                        std::abs(here.rate / rate - 1) / known});
+      const double before = 1 - part, left = 1 - before;
+      const double end = 30 * before * before * left * left;
+      of_stroke = std::max(of_stroke, std::abs(stroke.profile().from(before).value / end - 1) *
+                                          part / (1024 * pd::detail::rounding<double>));
+    }
+  expect(worst < 1, "a sinusoid that touches zero is exact close to there");
+  expect(of_stroke < 1, "... and a stroke close to its end");
+}
+
 /// Drive and functions of a random case.
 template <class T>
 struct Case {
@@ -303,6 +326,7 @@ void derivatives() {
 
 int main(int argc, char** argv) {
   values();
+  beside_a_touch();
   by_certificate(argc > 1 ? static_cast<int>(std::strtol(argv[1], nullptr, 10)) : cases(500));
   smooth_start();
   beside_tables();

@@ -124,12 +124,16 @@ class Breakaways {
     const T still = segment.segment.begin > 0 ? T(still_velocity) * segment.scales.v : T(0);
     const bool with_plate = abs(s.v - plate_velocity.value) <= still;
     // With both sliding velocities zero, the direction of the plate's friction is that in which the plate begins to
-    // slide.
-    Curve<T> across = segment.across;
-    if (segment.oblique() && with_plate && abs(across.value) <= still) {
-      across.value = T(0);
-      s.plate_force = -segment.load.value * kinetic_friction(drive.plate, T(0)) *
-                      ObliqueSlip<T>(T(0), -plate_velocity.rate, plate_velocity, across).along();
+    // slide; within the resolution of time it is unknown.
+    const Curve<T>& across = segment.across;
+    if (segment.oblique() && with_plate) {
+      const T slow =
+          least_across<T> * segment.segment.begin * (abs(across.rate) + abs(plate_velocity.rate));
+      if (across.value == 0)
+        s.plate_force = -segment.load.value * kinetic_friction(drive.plate, T(0)) *
+                        ObliqueSlip<T>(T(0), -plate_velocity.rate, plate_velocity, across).along();
+      else if (abs(across.value) + abs(s.v - plate_velocity.value) <= slow)
+        return T(0);
     }
     // A rigid stop keeps the pin from going with the plate.
     const int end = s.x < 0 ? -1 : 1;

@@ -79,8 +79,15 @@ class SeriesSegment {
     }
     const T turns = abs(equation.across.rate) + abs(equation.plate_velocity.rate);
     const T left = abs(equation.across.at(span)) + abs(equation.plate_velocity.at(span));
+    // A function has the rounding of its terms.
+    const auto rounding_at = [&](T tau) {
+      T sum{0};
+      for (const Curve<T>* input : {&equation.plate_velocity, &equation.across})
+        if (!input->straight()) sum += input->rounding(tau);
+      return sum;
+    };
     stops_ = equation.held && equation.side == 0 &&
-             left <= difference_error<T> * (segment.begin + span) * turns;
+             left <= difference_error<T> * (segment.begin + span) * turns + rounding_at(span);
     first_ = guards.earliest_known(end);
     // An immediate end may be deferred to the end of the step, as to a breakpoint.
     const bool ends_early = end < (1 - rounding<T>)*span;
@@ -89,12 +96,8 @@ class SeriesSegment {
       if (!last) return T(0);
       return abs((on_plate ? last->speed : has_slider_state ? last->skin : last->velocity).c[0]);
     };
-    // A function has the rounding of its terms; a pin that creeps, or that the plate takes along, has it in its
-    // velocity.
-    const auto unsure = [&](const Curve<T>& input) {
-      return input.straight() ? T(0) : T(input.rounding(end));
-    };
-    const T of_plate_velocity = unsure(equation.plate_velocity) + unsure(equation.across);
+    // A pin that creeps, or that the plate takes along, has the rounding of the plate in its velocity.
+    const T of_plate_velocity = rounding_at(end);
     const bool follows = plate.stuck() || segment.eliminated == EliminatedPart::of_friction;
     first_ = guards.defer_grazing(first_, breakpoint, [&](const Guard<T>& guard, T tau) {
       const Polynomial<T>& path = paths.begin()[&guard - guards.begin()].path;

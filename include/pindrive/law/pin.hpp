@@ -53,7 +53,7 @@ struct Pin {
     if (!stop.no_push() || !stop.rigid()) return stop.no_push();
     const auto alike = [&](const ContactPoint<T>& side) {
       const bool rested = side.before == ContactState::stick || side.before == ContactState::absent;
-      return side.is_continuous(0) || (rested && side.force(state) == 0);
+      return side.is_continuous(0) || (rested && abs(side.force(state)) <= state.force_error);
     };
     return alike(plate) && alike(finger);
   }

@@ -53,15 +53,17 @@ struct InputCurves {
     if (held && along.rate != 0 && along.straight() && line.straight() &&
         abs(line.at(rest)) + abs(along.at(rest)) <= detail::difference_error<T> * changes)
       return {-line.rate * rest, line.rate};
-    // Two functions may come to zero together: neither is then zero before the other.
+    // Functions may come to zero together: neither is then zero before the other.
     const T there = abs(along.value * line.rate - along.rate * line.value);
-    const bool together = !line.straight() && !along.straight() &&
-                          there <= detail::least_across<T> * changes * abs(line.rate);
+    const bool functions = !line.straight() && !along.straight();
+    const bool together =
+        (functions || held) && there <= detail::least_across<T> * changes * abs(line.rate);
     const T beside = together ? T(0) : changes;
     if (abs(line.value) <= detail::least_across<T> * (beside + abs(along.value))) line.value = T(0);
     if (line.straight() || along.value != 0) return line;
-    if (passes_zero(line, time)) line.value = T(0);
-    if (along.rate == 0 && touches_zero(line)) line.value = line.rate = T(0);
+    const bool touches = touches_zero(line, time);
+    if (touches || passes_zero(line, time)) line.value = T(0);
+    if (touches && along.rate == 0) line.rate = T(0);
     return line;
   }
   /// Makes exact that a plate turns back, or comes to rest, on a path: both its velocities are zero within rounding,
@@ -71,7 +73,7 @@ struct InputCurves {
     using std::abs;
     const T known = detail::difference_error<T> * time * (abs(along.rate) + abs(across.rate));
     if (abs(along.value) + abs(across.value) <= known) along.value = across.value = T(0);
-    if (touches_zero(along) && touches_zero(across))
+    if (touches_zero(along, time) && touches_zero(across, time))
       along.value = across.value = along.rate = across.rate = T(0);
   }
 
@@ -80,11 +82,11 @@ struct InputCurves {
     using std::abs;
     return abs(input.value) <= detail::difference_error<T> * time * abs(input.rate);
   }
-  static bool touches_zero(const Curve<T>& input) {
+  static bool touches_zero(const Curve<T>& input, T time) {
     using std::abs;
     if (input.straight()) return input.is_zero();
-    const T known = input.rounding();
-    return abs(input.value) <= known && abs(input.rate) <= known * input.piece->fastest();
+    const T known = input.rounding(), turns = detail::least_across<T> * time * abs(input.second());
+    return abs(input.value) <= known && abs(input.rate) <= known * input.piece->fastest() + turns;
   }
 };
 

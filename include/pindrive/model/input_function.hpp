@@ -170,10 +170,18 @@ struct OwnedPiece {
   }
 };
 
+namespace detail {
+
+/// Orders of a motion by which it is decided how it begins.
+inline constexpr std::size_t beginning_orders = 9;
+
+}  // namespace detail
+
 /// Input from an instant on, until the next breakpoint: a line, or a part of a piece.
 template <class T>
 struct Curve {
   using Real = detail::Real<T>;
+  static constexpr Real near_zero{1e-4};  ///< of the size of a function
 
   T value{0}, rate{0};
   const InputPiece<T>* piece{nullptr};  ///< null for a line
@@ -192,11 +200,14 @@ struct Curve {
     if (of.straight()) return;
     piece = &of;
     using std::abs;
-    const Real known = detail::rounding<Real>, time = abs(plain(of.begin)) + abs(plain(after));
-    // An extremum within the resolution of time is now; so is a zero that the function only touches.
+    const Real known = detail::rounding<Real>, fastest = of.fastest(), size = of.size(after);
+    const Real time =
+        abs(plain(of.begin)) + abs(plain(after)) + (fastest > 0 ? 1 / fastest : Real(0));
+    if (abs(plain(value)) < near_zero * size) refine_beside_touch(known * size);
+    // An extremum within the resolution of time and phase is now; so is a zero that the function only touches.
     if (abs(plain(rate)) > known * time * abs(2 * plain(c[2]))) return;
     rate -= plain(rate);
-    if (abs(plain(value)) <= known * of.size(after)) value -= plain(value);
+    if (abs(plain(value)) <= known * size) value -= plain(value);
   }
 
   /// Part of a piece at a time that is so long after its begin; its terms may have decayed.
@@ -250,6 +261,27 @@ struct Curve {
   }
 
  private:
+  /// Corrects the value close to an extremum at which the function only touches zero, as its terms cancel there: the
+  /// value follows from its derivatives. `known`: the rounding of the value.
+  [[gnu::noinline]] void refine_beside_touch(Real known) {
+    using std::abs;
+    auto c = coefficients<detail::beginning_orders>();
+    c[0] = T(0);
+    Real until{0}, change{0};  // time until the extremum, by Newton; the value there less this one
+    for (int round = 0; round < 4; ++round) {
+      Real slope{0}, bend{0};
+      change = 0;
+      for (std::size_t n = c.size(); n-- > 0;) {
+        bend = bend * until + slope;
+        slope = slope * until + change;
+        change = change * until + plain(c[n]);
+      }
+      until -= slope / (2 * bend);
+    }
+    const bool close = abs(plain(c[3]) * until) <= near_zero * abs(plain(c[2]));
+    const Real error = plain(value) + change;
+    if (close && abs(error) <= known) value -= error;
+  }
   [[gnu::noinline]] std::array<T, 4> derivatives(T tau) const {
     std::array<T, 4> c;
     piece->expand(since + tau, T(1), c, 3);
@@ -260,9 +292,6 @@ struct Curve {
 };
 
 namespace detail {
-
-/// Orders of a motion by which it is decided how it begins.
-inline constexpr std::size_t beginning_orders = 9;
 
 /// The first coefficient of order 3 or more that is not zero; 0 without one.
 template <class T>
