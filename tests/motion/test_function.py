@@ -220,3 +220,20 @@ def test_rows_converge_to_a_stroke_at_an_angle(stiffness: float | None) -> None:
     assert np.max(np.abs(coarse - exact)) < 1e-7
     extrapolated = fine + (fine - coarse) / 3
     assert extrapolated == pytest.approx(exact, abs=3e-3 * np.max(np.abs(coarse - exact)))
+
+
+@pytest.mark.parametrize("frequency", [50.0, 200.0, 1000.0])
+def test_a_pin_that_the_plate_takes_along_has_no_period(frequency: float) -> None:
+    """The plate carries the pin for many periods of a load that exerts no force."""
+    drive = pd.Drive(
+        mass=0.02,
+        stiffness=100.0,
+        damping=0.05,
+        plate=pd.Contact(static=0.1, kinetic=0.05),
+        finger=pd.Contact(static=0.0, kinetic=0.0),
+    )
+    release = pd.Release(mouse_velocity=0.02, finger_load=pd.harmonic(1.0, 0.01, frequency))
+    motion = pd.simulate(drive, release, duration=2.0)
+    times = np.linspace(0.0, 2.0, 20001)
+    assert np.abs(np.diff(motion.position(times))).max() < 1e-4 * 0.2
+    assert sum(event.kind == "slip" for event in motion.events_between(0.0, 2.0)) > 15

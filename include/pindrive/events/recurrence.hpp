@@ -122,7 +122,7 @@ class CycleDetector {
   /// different modes, or if the motion in between is within the rounding of its position.
   T separation(const Visit& earlier, const Event& now) const {
     if (!same_mode(earlier.mode, now.mode) || !(now.time > earlier.time)) return never;
-    const T length = earlier.extent.length();
+    const T length = std::max(earlier.extent.length(), abs(now.state.x - earlier.state.x));
     const bool moves = length > T(rest_tolerance) * abs(now.state.x);
     if (!moves && driven_ && now.mode.stuck()) return T(0);  // periodic inputs that move no pin
     if (!moves) return never;
