@@ -53,11 +53,11 @@ struct InputCurves {
     if (held && along.rate != 0 && along.straight() && line.straight() &&
         abs(line.at(rest)) + abs(along.at(rest)) <= detail::difference_error<T> * changes)
       return {-line.rate * rest, line.rate};
-    // Functions may come to zero together: neither is then zero before the other.
+    // Functions may come to zero together, or a function and a line: neither is then zero before the other.
     const T there = abs(along.value * line.rate - along.rate * line.value);
-    const bool functions = !line.straight() && !along.straight();
+    const int lines = int(line.straight()) + int(along.straight());
     const bool together =
-        (functions || held) && there <= detail::least_across<T> * changes * abs(line.rate);
+        lines < (held ? 2 : 1) && there <= detail::least_across<T> * changes * abs(line.rate);
     const T beside = together ? T(0) : changes;
     if (abs(line.value) <= detail::least_across<T> * (beside + abs(along.value))) line.value = T(0);
     if (line.straight() || along.value != 0) return line;

@@ -129,7 +129,8 @@ class SeriesFlow : public SeriesExpansion<T> {
     const Real turns = abs(plain(e.plate_velocity.rate)) + abs(plain(e.across.rate));
     if (starts_to_slide(e, s)) {
       if (e.held) return linear_rate(e);
-      if (turns == 0) return abs(plain(e.across.second())) * m / abs(abs(pull) - friction);
+      if (turns == 0)
+        return abs(plain(e.across.second())) / abs(plain(s.acceleration - e.plate_velocity.rate));
       return ((abs(pull) + friction) / m + turns) / turns * linear_rate(e);
     }
     const Real along = u / speed, across = w / speed;
