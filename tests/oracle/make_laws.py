@@ -1,6 +1,6 @@
 """Draw random drives under laws and functions, answered with thirty digits: INPUTS COUNT SEED OUT.
 
-    cd tests && python -m oracle.make_laws rows 1123 47 oracle/law_cases.json.gz
+    cd tests && python -m oracle.make_laws rows 1200 47 oracle/law_cases.json.gz
     cd tests && python -m oracle.make_laws functions 1200 48 oracle/function_cases.json.gz
 
 A draw that takes longer than `PATIENCE` is left out; gmpy2 beside mpmath halves the time.

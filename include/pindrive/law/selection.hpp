@@ -221,15 +221,20 @@ class Selection {
   static Coefficients coefficients(const Curve<T>& of) {
     return of.template coefficients<beginning_orders>();
   }
-  /// True if the force of a contact follows from its load alone.
+  /// True if the force of a contact follows from its load, or from the place of the pin, alone.
   static bool follows_load(const ContactPoint& side) {
     const Branch<T> range = side.branch();
     const bool falls = range.falling.present() && range.falling.excess != 0;
-    return !side.elastic() && !side.oblique() && (!side.sliding() || (range.slope == 0 && !falls));
+    return !side.oblique() && (!side.sliding() || (range.slope == 0 && !falls));
   }
-  /// Force of a contact per load factor.
-  T per_load(const ContactPoint& side) const {
-    return side.load.value != 0 ? side.force(pin_.state) / side.load.value : T(0);
+  /// Friction of a contact that slides per load factor, N.
+  T friction_per_load(const ContactPoint& side) const {
+    const bool rubs = side.sliding() && side.load.value != 0;
+    return rubs ? side.force(pin_.state) / side.load.value : T(0);
+  }
+  /// Stiffness of the spring and of a skin that grips the pin, N/m.
+  T stiffness_with_skin() const {
+    return stiffness() + (pin_.finger.elastic() ? pin_.drive.finger.stiffness : T(0));
   }
   /// First coefficient from the third on of the margin of a stick force on a side, by its sign; 0 without one. Where
   /// the force of the other contact depends on its speed, the third coefficient alone is known, and only while that
@@ -237,19 +242,19 @@ class Selection {
   T later_margin(const ContactPoint& on, const ContactPoint& other, T side) const {
     const bool any_order = follows_load(other);
     const T relative = on.surface.rate - other.surface.rate;
-    if (!any_order && (other.elastic() || other.oblique() || relative != 0 || !other.load.steady()))
-      return T(0);
+    if (!any_order && (other.oblique() || relative != 0 || !other.load.steady())) return T(0);
     const Coefficients surface = coefficients(on.surface), force = coefficients(pin_.force),
                        plate = coefficients(pin_.plate.surface), own = coefficients(on.load),
                        load = coefficients(other.load);
-    const T of_other = per_load(other);
+    const T of_other = friction_per_load(other);
     const Coefficients of_surface = coefficients(other.surface);
     const T by_speed = any_order ? T(0) : other.force_by_speed(pin_.state.v);
     Coefficients margin{};
     for (std::size_t n = 3; n < (any_order ? beginning_orders - 1 : 4); ++n) {
       const T inertia = pin_.drive.mass * T(n + 1) * (plate[n + 1] - surface[n + 1]);
-      const T holding = stiffness() * surface[n - 1] / T(n) + damping() * surface[n] - force[n] -
-                        inertia - of_other * load[n] - by_speed * (surface[n] - of_surface[n]);
+      const T holding = stiffness_with_skin() * surface[n - 1] / T(n) + damping() * surface[n] -
+                        force[n] - inertia - of_other * load[n] -
+                        by_speed * (surface[n] - of_surface[n]);
       const T beside = other.stuck() ? other.contact.static_limit * load[n] : T(0);
       margin[n] = on.contact.static_limit * own[n] + beside - side * holding;
     }
@@ -352,17 +357,13 @@ class Selection {
                        plate_load = coefficients(pin_.plate.load),
                        finger_load = coefficients(pin_.finger.load);
     Coefficients relative = coefficients(surface);
-    const T of_plate = pin_.plate.sliding() ? per_load(pin_.plate) : T(0);
-    const T of_finger = pin_.finger.sliding() ? per_load(pin_.finger) : T(0);
-    const T skin = pin_.finger.elastic() ? pin_.drive.finger.stiffness : T(0);
+    const T of_plate = friction_per_load(pin_.plate), of_finger = friction_per_load(pin_.finger);
     T x = pin_.state.v, v = relative[1];
-    T stretching = -skin * pin_.state.v;
     relative[0] = relative[1] = T(0);
     for (std::size_t n = 1; n + 1 < beginning_orders; ++n) {
       const T friction = of_plate * plate_load[n] + of_finger * finger_load[n];
-      const T pull = force[n] + friction + stretching - damping() * v - stiffness() * x;
+      const T pull = force[n] + friction - damping() * v - stiffness_with_skin() * x;
       const T next = plate[n + 1] + pull / (pin_.drive.mass * T(n + 1));
-      stretching = -skin * v / T(n + 1);
       x = v / T(n + 1);
       v = next;
       relative[n + 1] = v - relative[n + 1];
