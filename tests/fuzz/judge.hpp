@@ -66,7 +66,10 @@ inline Verdict judge(const Case& c, bool thoroughly, std::vector<pd::Segment<dou
   certificate = pd::Certifier<double>(motion, std::min(c.duration, outcome.until)).certify();
   if (!thoroughly || verdict.beyond_limit()) return verdict;
   const auto ledger = pd::energy_ledger(motion, c.duration);
-  double rest = std::abs(ledger.residual());
+  // A cycle that is approached repeats with a step from its end to its begin (`approach_step`).
+  const double repeats =
+      outcome.cycles() ? std::max(1.0, (c.duration - outcome.until) / outcome.period) : 1;
+  double rest = std::abs(ledger.residual()) / repeats;
   if (rest >
       largest_residual * ledger.scale()) {  // but for the rounding of what a position is a sum of
     const double sum = terms(motion, c.duration)[0];

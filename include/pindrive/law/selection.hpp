@@ -267,9 +267,9 @@ class Selection {
     selected_.tangential = false;
     selected_.guards.clear();
     const T finger = pin_.finger.force(pin_.state);
-    // On a plate that begins to slide across, all forces may balance within rounding.
+    // On a plate that begins to slide across, friction may balance all other forces within rounding.
     const bool starts = pin_.plate.oblique() && pin_.plate.across.value == 0 &&
-                        pin_.state.v == pin_.plate.surface.value;
+                        pin_.plate.start.friction > 0 && pin_.state.v == pin_.plate.surface.value;
     const T departure = starts
                             ? oblique_departure(pin_.drive.mass, pin_.plate,
                                                 selected_.applied_force - restoring_force_ + finger,

@@ -148,8 +148,10 @@ class DrivenMotion {
       position.add({y, (rate + half * y) / root, half, root});
     } else {
       const T quick = half + root, slow = k / m / quick;
-      position.add({(quick * y + rate) / (quick - slow), T(0), slow, T(0)});
-      position.add({-(slow * y + rate) / (quick - slow), T(0), quick, T(0)});
+      // Near critical damping both parts are large; their sum is y.
+      const T part = (slow * y + rate) / (quick - slow);
+      position.add({y + part, T(0), slow, T(0)});
+      position.add({-part, T(0), quick, T(0)});
     }
   }
 
