@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 
 from drives import Case, cases
-from pindrive import Contact, Drive, Motion, Profile, Release, simulate
+from pindrive import Contact, Drive, Motion, Profile, Release, harmonic, simulate
 
 SAMPLES = 20_001
 
@@ -218,6 +218,18 @@ def test_chaotic_motion_is_irregular_and_ends() -> None:
     longer = simulate(drive, release, duration=1.5 * motion.duration)
     assert longer.ending.kind == "irregular"
     assert longer.segments[-1].end == longer.duration
+
+
+@pytest.mark.parametrize("turns", [0.5, 0.61803])
+def test_response_that_never_repeats_is_irregular(turns: float) -> None:
+    """Stick-slip on a belt under a vibrating load."""
+    drive = drive_of(0.01, 100.0, 0.1, Contact(kinetic=0.02, static=0.15), Contact(0.0))
+    vibrating = harmonic(1.0, 0.5, turns * 100.0 / (2.0 * pi))
+    motion = simulate(drive, Release(0.05, plate_load=vibrating))
+    assert motion.ending.kind == "irregular"
+    assert len(motion.segments) < 100_000
+    assert 0.0 < motion.ending.least_amplitude < motion.ending.amplitude
+    assert motion.certificate().worst < 1e-9
 
 
 @pytest.mark.parametrize("finger", [Contact(0.005), Contact(0.0), Contact(0.005, stiffness=500.0)])

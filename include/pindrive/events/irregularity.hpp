@@ -25,6 +25,11 @@ class Extent {
     amplitude_ = std::max(amplitude_, std::min(abs(ended.flow.position.value), reach));
     speed_ = std::max({speed_, abs(v), abs(velocity.value)});
   }
+  /// Includes a position.
+  void add(T x) {
+    lowest_ = std::min(lowest_, x);
+    highest_ = std::max(highest_, x);
+  }
   T length() const { return std::max(highest_ - lowest_, amplitude_); }  ///< m
   T speed() const { return speed_; }                                     ///< m/s
 
@@ -38,6 +43,9 @@ class Extent {
 /// The durations of windows of equally many events increase or decrease without exception in a motion that
 /// grows or decays, or the ranges of the position in blocks of windows do. A motion with many windows, of which
 /// many turn from longer to shorter or back, and with a block that contradicts growth and decay, is irregular.
+///
+/// Under periodic inputs the events are the begins of periods, which last equally long. The sums of the positions
+/// there are compared instead of durations.
 template <class T>
 class IrregularityDetector {
  public:
@@ -45,20 +53,29 @@ class IrregularityDetector {
   /// outcome if the motion is irregular.
   void visit(const Segment<T>& ended, T time, const State<T>& state, Outcome<T>& outcome) {
     block_.add(ended, state.x, state.v);
-    if (++in_window_ == irregular_window) end_window(time, outcome);
+    if (++in_window_ == irregular_window) end_window(time, time - window_begin_, outcome);
+  }
+  /// Counts the begin of a period of the inputs.
+  void visit_period(T time, const State<T>& state, Outcome<T>& outcome) {
+    block_.add(state.x);
+    // Between windows that follow each other at once a response turns by the same angle, which may be none.
+    const int pause = windows_ * 37 % irregular_periods;
+    if (in_window_++ >= pause) sum_ += state.x;
+    if (in_window_ == pause + irregular_periods) end_window(time, sum_, outcome);
   }
 
  private:
   static constexpr int windows_in_block = irregular_windows / 8;
 
-  /// Compares the durations of a window of events and of the window before.
-  void end_window(T time, Outcome<T>& outcome) {
-    const T lasts = time - window_begin_, longer = lasts - lasted_;
-    if (abs(longer) > T(repeat_tolerance) * lasts) {
+  /// Compares the sum of the durations, or of the positions, in a window with that in the window before.
+  void end_window(T time, T sum, Outcome<T>& outcome) {
+    const T longer = sum - before_;
+    if (abs(longer) > T(repeat_tolerance) * abs(sum)) {
       if (windows_ > 1 && (longer > 0) != grew_) ++turns_;
       grew_ = longer > 0;
     }
-    lasted_ = lasts;
+    before_ = sum;
+    sum_ = T(0);
     window_begin_ = time;
     in_window_ = 0;
     if (++windows_ == irregular_windows / 2) half_time_ = time;
@@ -87,9 +104,10 @@ class IrregularityDetector {
   bool grew_{false};
   bool grows_{true}, decays_{true};  ///< in each block of windows
   Extent<T> block_;
-  T length_{0};                    ///< range in the block before, m
-  T window_begin_{0}, lasted_{0};  ///< begin of the window; duration of the window before, s
-  T half_time_{0};                 ///< time after half of the windows, s
+  T length_{0};           ///< range in the block before, m
+  T window_begin_{0};     ///< s
+  T sum_{0}, before_{0};  ///< sum of positions in the window; sum compared in the window before
+  T half_time_{0};        ///< time after half of the windows, s
 };
 
 }  // namespace pindrive::detail

@@ -75,7 +75,10 @@ class CycleDetector {
       if (!driven && count_ > memory && returns_to(recent_, ended, now, outcome)) return;
       if (period_ > 0 && approaches(ended, now, outcome)) return;
     }
-    if (count_ >= irregular_window) irregularity_.visit(ended, time, state, outcome);
+    if (driven && count_ >= irregular_periods)
+      irregularity_.visit_period(time, state, outcome);
+    else if (count_ >= irregular_window)
+      irregularity_.visit(ended, time, state, outcome);
     if (count_ % memory == 0) keep(recent_, now);
     if (count_ == next_) {
       keep(kept_, now);

@@ -98,6 +98,9 @@ inline constexpr double repeat_tolerance = 1e-8;
 /// of events per period divide the window, so that the windows of a decaying motion are alike.
 /// Without it: irregularity_test fails.
 inline constexpr int irregular_window = 240, irregular_windows = 64;
+/// Periods of the inputs in a window: with the pauses between windows, 5700 periods in all. Without it:
+/// irregularity_test fails.
+inline constexpr int irregular_periods = 60;
 
 /// Speed below which a pin is at rest, as a fraction of |x| ω0: below the remaining digits of the
 /// position in a decay (MODEL, section 10). Without it: endings fails.

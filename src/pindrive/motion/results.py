@@ -281,7 +281,8 @@ class Ending:
 
         `resting`: at rest forever; `steady`: an oscillation that lasts; `decaying`: a free damped
         oscillation or creep towards `position` without another event; `irregular`: chaotic or
-        quasi-periodic, without a return within 15 360 events; `moving`: not known yet.
+        quasi-periodic, without a return within 15 360 events or 5700 periods of the inputs;
+        `moving`: not known yet.
         """
         return _KIND.get(self.end, "steady")
 
