@@ -41,6 +41,8 @@ class Certifier {
       if (segment.begin > duration_ || !go_on_()) break;
       const Numbers last = motion_.along(segment, [&](const auto& along) -> Numbers {
         const auto evaluated = evaluate(segment, along);
+        // Within the resolution of time nothing moves, and forces may turn.
+        if (evaluated.span <= detail::rounding<T> * segment.begin) return evaluated.at(T(0));
         worst(result_.transitions, breakaways_.spare(evaluated), scales_.force);
         return walk(evaluated);
       });

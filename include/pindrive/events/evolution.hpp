@@ -290,9 +290,10 @@ class Evolution {
       pin.plate.load = inputs_.plate_load.from(pin.time);
       pin.finger.load = inputs_.finger_load.from(pin.time);
       pin.force = inputs_.force.from(pin.time);
+      InputCurves<T>::stop_at_rest(pin.plate.surface, inputs_.across_velocity.from(pin.time),
+                                   pin.time);
       pin.plate.across =
           InputCurves<T>::across_from(inputs_, pin.time, pin.plate.surface, pin.held());
-      InputCurves<T>::stop_at_rest(pin.plate.surface, pin.plate.across, pin.time);
       next_breakpoint = std::min(inputs_.next_breakpoint(pin.time), next_period());
       if (next_breakpoint - pin.time > rounding<T> * pin.time) return;
     }

@@ -60,27 +60,25 @@ struct InputCurves {
         lines < (held ? 2 : 1) && there <= detail::least_across<T> * changes * abs(line.rate);
     const T beside = together ? T(0) : changes;
     if (abs(line.value) <= detail::least_across<T> * (beside + abs(along.value))) line.value = T(0);
-    if (line.straight() || along.value != 0) return line;
-    const bool touches = touches_zero(line, time);
-    if (touches || passes_zero(line, time)) line.value = T(0);
-    if (touches && along.rate == 0) line.rate = T(0);
+    if (line.straight()) return line;
+    if (touches_zero(line, time)) line.value = line.rate = T(0);
+    if (along.value == 0 && passes_zero(along, line, time)) line.value = T(0);
     return line;
   }
   /// Makes exact that a plate turns back, or comes to rest, on a path: both its velocities are zero within rounding,
   /// of which no direction follows.
-  static void stop_at_rest(Curve<T>& along, Curve<T>& across, T time) {
+  static void stop_at_rest(Curve<T>& along, const Curve<T>& across, T time) {
     if (across.straight()) return;
-    using std::abs;
-    const T known = detail::difference_error<T> * time * (abs(along.rate) + abs(across.rate));
-    if (abs(along.value) + abs(across.value) <= known) along.value = across.value = T(0);
-    if (touches_zero(along, time) && touches_zero(across, time))
-      along.value = across.value = along.rate = across.rate = T(0);
+    if (passes_zero(along, across, time)) along.value = T(0);
+    if (touches_zero(along, time) && touches_zero(across, time)) along.value = along.rate = T(0);
   }
 
  private:
-  static bool passes_zero(const Curve<T>& input, T time) {
+  /// True if both velocities are zero within the resolution of time.
+  static bool passes_zero(const Curve<T>& along, const Curve<T>& across, T time) {
     using std::abs;
-    return abs(input.value) <= detail::difference_error<T> * time * abs(input.rate);
+    return abs(along.value) + abs(across.value) <=
+           detail::difference_error<T> * time * (abs(along.rate) + abs(across.rate));
   }
   static bool touches_zero(const Curve<T>& input, T time) {
     using std::abs;

@@ -68,11 +68,11 @@ struct InputPiece {
     }
   }
 
-  /// Time after which its terms have decayed to 1e-16 of their amplitudes, s; infinite if a term lasts,
-  /// zero without terms.
+  /// Time after which its terms have decayed to the rounding of their amplitudes, s; infinite if a term lasts, zero
+  /// without terms.
   T decayed() const {
     T time{0};
-    for (std::size_t j = 0; j < count; ++j) time = std::max(time, 37 / terms[j].decay);
+    for (std::size_t j = 0; j < count; ++j) time = std::max(time, T(34.7) / terms[j].decay);
     return time;
   }
   /// The polynomial alone.
