@@ -74,11 +74,12 @@ struct InputCurves {
   }
 
  private:
-  /// True if both velocities are zero within the resolution of time.
+  /// True if both velocities are zero within the resolution of time and their rounding.
   static bool passes_zero(const Curve<T>& along, const Curve<T>& across, T time) {
     using std::abs;
-    return abs(along.value) + abs(across.value) <=
-           detail::difference_error<T> * time * (abs(along.rate) + abs(across.rate));
+    const T known = detail::difference_error<T> * time * (abs(along.rate) + abs(across.rate));
+    return abs(along.value) <= known + along.rounding() &&
+           abs(across.value) <= known + across.rounding();
   }
   static bool touches_zero(const Curve<T>& input, T time) {
     using std::abs;
