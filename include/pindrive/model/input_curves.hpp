@@ -74,12 +74,17 @@ struct InputCurves {
   }
 
  private:
-  /// True if both velocities are zero within the resolution of time and their rounding.
+  /// Time of which an input has the rounding, s: sinusoids have that of their phase.
+  [[gnu::noinline]] static T resolved(const Curve<T>& input, T time) {
+    const auto fastest = input.straight() ? T(0) : T(input.piece->fastest());
+    return fastest > 0 ? time + 1 / fastest : time;
+  }
+  /// True if both velocities are zero within the resolution of time.
   static bool passes_zero(const Curve<T>& along, const Curve<T>& across, T time) {
     using std::abs;
-    const T known = detail::difference_error<T> * time * (abs(along.rate) + abs(across.rate));
-    return abs(along.value) <= known + along.rounding() &&
-           abs(across.value) <= known + across.rounding();
+    return abs(along.value) + abs(across.value) <=
+           detail::difference_error<T> * (abs(along.rate) + abs(across.rate)) *
+               std::max(resolved(along, time), resolved(across, time));
   }
   static bool touches_zero(const Curve<T>& input, T time) {
     using std::abs;
