@@ -267,15 +267,16 @@ class Selection {
     selected_.tangential = false;
     selected_.guards.clear();
     const T finger = pin_.finger.force(pin_.state);
-    // On a plate that begins to slide across, friction may balance all other forces within rounding.
+    // On a plate that begins to slide across, all forces may balance within rounding.
     const bool starts = pin_.plate.oblique() && pin_.plate.across.value == 0 &&
-                        pin_.plate.start.friction > 0 && pin_.state.v == pin_.plate.surface.value;
+                        pin_.state.v == pin_.plate.surface.value;
     const T departure = starts
                             ? oblique_departure(pin_.drive.mass, pin_.plate,
                                                 selected_.applied_force - restoring_force_ + finger,
                                                 pin_.force_error())
                             : T(0);
-    follows_ = starts && departure == 0 && pin_.plate.across.rate == 0;
+    follows_ =
+        starts && departure == 0 && pin_.plate.across.rate == 0 && pin_.plate.start.friction > 0;
     const T plate = pin_.plate.force(pin_.state);
     selected_.acceleration =
         starts ? pin_.plate.surface.rate + departure
@@ -397,7 +398,7 @@ class Selection {
     const T d = pin_.plate.direction, ratio = d / sqrt(1 - d * d);
     for (std::size_t n = 0; n < beginning_orders; ++n) velocity[n] += ratio * abs(across[n]);
     // A pull that begins at zero turns the direction from zero.
-    if (d == 0 && pin_.plate.start.friction > 0) {
+    if (d == 0) {
       const auto [turn, order] = beginning_of_pull();
       for (std::size_t n = 0; n + order < beginning_orders; ++n)
         velocity[n + order] +=
