@@ -37,7 +37,8 @@ void periods() {
   expect(!pd::period_of(under(six, ramp)).repeats() && !pd::period_of(under(ramp, six)).constant,
          "nor do inputs that grow");
   const auto later = pd::period_of(under(six, dying));
-  expect(later.since == 37 / 3.0 && later.repeats() && pd::period_of(under(still, dying)).constant,
+  expect(later.since == pd::detail::term_duration / 3.0 && later.repeats() &&
+             pd::period_of(under(still, dying)).constant,
          "an exponential that has decayed is constant");
   expect(pd::period_of(under(still, still)).constant && !pd::period_of(under(six, still)).constant,
          "constant inputs are known");

@@ -1,6 +1,8 @@
 // The limits that are not physics: each is where its reason puts it, and those that end a motion do.
 #include "pindrive/numbers/limits.hpp"
 
+#include <cmath>
+
 #include "check.hpp"
 #include "pindrive/events/simulate.hpp"
 
@@ -15,6 +17,9 @@ int main() {
              limits::return_tolerance < limits::approach_tolerance &&
              limits::approach_tolerance < limits::repeat_tolerance,
          "a cycle is closed more closely than it has to repeat, and less than rounding allows");
+  const double left = std::exp(-limits::term_duration) / limits::rounding<double>;
+  expect(0.9 < left && left < 1,
+         "a term of an input lasts until rounding of its amplitude remains");
   expect(limits::standstill_limit > 3, "physics has up to three events at an instant");
 
   // Without damping and with next to no friction it would swing more than 10^7 times.

@@ -9,6 +9,7 @@
 
 #include "pindrive/flow/flow.hpp"
 #include "pindrive/numbers/functions.hpp"
+#include "pindrive/numbers/limits.hpp"
 
 namespace pindrive {
 
@@ -68,11 +69,12 @@ struct InputPiece {
     }
   }
 
-  /// Time after which its terms have decayed to the rounding of their amplitudes, s; infinite if a term lasts, zero
-  /// without terms.
+  /// Time after which its terms have decayed to the rounding of their amplitudes, s; infinite if a
+  /// term lasts, zero without terms.
   T decayed() const {
     T time{0};
-    for (std::size_t j = 0; j < count; ++j) time = std::max(time, T(34.7) / terms[j].decay);
+    for (std::size_t j = 0; j < count; ++j)
+      time = std::max(time, T(detail::term_duration) / terms[j].decay);
     return time;
   }
   /// The polynomial alone.

@@ -157,6 +157,9 @@ inline constexpr double longest_step = 8;
 /// Longest step in units of the fastest time constant of the inputs: terms beyond order 24 are then
 /// below 2e-17 of theirs.
 inline constexpr double longest_input = 2;
+/// Time constants after which a term of an input is over: rounding of its amplitude remains, and
+/// decides where nothing else moves a plate. Without it: fuzz --replay fails.
+inline constexpr double term_duration = 34.7;
 /// Size of the parts of a motion in closed form under functions over that of the motion, and its shortest duration
 /// in steps of a series. Beyond, or below, the motion is expanded in series. Without it: driven_motion_test fails.
 inline constexpr double most_cancelled = 32;
