@@ -113,6 +113,24 @@ void beside_a_touch() {
   expect(of_stroke < 1, "... and a stroke close to its end");
 }
 
+/// A function that begins at zero, as its terms cancel there: to its last digits from the first instant on.
+void from_a_begin() {
+  const double a = 0.01, decay = 50, w = 80;
+  const Function<double> approach({{0, {a}, {{-a, 0, decay, 0}}}});
+  const Function<double> ringing({{0, {a, 0.2}, {{-a, 0, decay, w}}}});
+  double worst = 0, of_ringing = 0;
+  for (double time = 1e-15; time < 0.5; time *= 1.7) {
+    const double value = -a * std::expm1(-decay * time), half = std::sin(w / 2 * time);
+    const double turn = -std::expm1(-decay * time) * std::cos(w * time) + 2 * half * half;
+    worst = std::max(worst, std::abs(approach.profile().from(time).value / value - 1));
+    of_ringing = std::max(
+        of_ringing, std::abs(ringing.profile().from(time).value / (a * turn + 0.2 * time) - 1));
+  }
+  expect(worst < pd::detail::rounding<double>,
+         "a velocity that approaches its limit begins at zero");
+  expect(of_ringing < pd::detail::rounding<double>, "... and one that swings about it");
+}
+
 /// Drive and functions of a random case.
 template <class T>
 struct Case {
@@ -327,6 +345,7 @@ void derivatives() {
 int main(int argc, char** argv) {
   values();
   beside_a_touch();
+  from_a_begin();
   by_certificate(argc > 1 ? static_cast<int>(std::strtol(argv[1], nullptr, 10)) : cases(500));
   smooth_start();
   beside_tables();

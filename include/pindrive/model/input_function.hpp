@@ -46,27 +46,7 @@ struct InputPiece {
   /// Computes the Taylor coefficients at τ up to an order, in the time σ = (t − τ)/step.
   template <std::size_t size>
   void expand(T tau, T step, std::array<T, size>& c, int order) const {
-    using detail::cos, detail::exp, detail::sin;
-    std::array<T, degree + 1> p = polynomial;  // shifted to τ by repeated synthetic division
-    for (int k = 0; k < degree; ++k)
-      for (int i = degree - 1; i >= k; --i) p[i] += tau * p[i + 1];
-    T power{1};
-    for (int n = 0; n <= order; ++n, power *= step) c[n] = n <= degree ? p[n] * power : T(0);
-    for (std::size_t j = 0; j < count; ++j) {
-      const InputTerm<T>& term = terms[j];
-      const T phase = term.frequency * tau, part = exp(-term.decay * tau);
-      const T cosine = cos(phase) * part, sine = sin(phase) * part;
-      // Real part of (cosine − i·sine) e^((iΩ − δ)τ), whose n-th coefficient follows from the last.
-      T real = term.cosine * cosine + term.sine * sine;
-      T imaginary = term.cosine * sine - term.sine * cosine;
-      for (int n = 0; n <= order; ++n) {
-        c[n] += real;
-        const T next = step / T(n + 1);
-        const T turned = -(term.decay * real + term.frequency * imaginary) * next;
-        imaginary = (term.frequency * real - term.decay * imaginary) * next;
-        real = turned;
-      }
-    }
+    expand_to(c.data(), tau, step, order);
   }
 
   /// Time after which its terms have decayed to the rounding of their amplitudes, s; infinite if a
@@ -80,15 +60,18 @@ struct InputPiece {
   /// The polynomial alone.
   InputPiece without_terms() const { return {begin, polynomial, nullptr, 0}; }
 
-  /// Sum of the sizes of the terms at τ, of which rounding is a part.
+  /// Sum of the sizes of what the value at τ is a sum of; rounding is a part of it.
   Real size(T tau) const {
     using std::abs;
-    Real sum{0}, power{1};
-    for (int n = 0; n <= degree; ++n, power *= abs(plain(tau)))
-      sum += abs(plain(polynomial[n])) * power;
-    for (std::size_t j = 0; j < count; ++j)
-      sum += abs(plain(terms[j].cosine)) + abs(plain(terms[j].sine));
-    return sum;
+    Real sum{0}, power{1}, start = plain(polynomial[0]);
+    for (int n = 1; n <= degree; ++n) sum += abs(plain(polynomial[n])) * (power *= abs(plain(tau)));
+    for (std::size_t j = 0; j < count; ++j) {
+      const Real turned = turned_by(terms[j], tau);
+      if (turned < begun) start += plain(terms[j].cosine);
+      sum += (abs(plain(terms[j].cosine)) + abs(plain(terms[j].sine))) *
+             (turned < begun ? turned : Real(1));
+    }
+    return sum + abs(start);
   }
 
   /// Largest rate of the terms, 1/s.
@@ -143,6 +126,46 @@ struct InputPiece {
   }
   static Real rate_of(const InputTerm<T>& term) {
     return detail::hypot(plain(term.decay), plain(term.frequency));
+  }
+  /// Change of a term until τ over its amplitude, at most; below `begun` the term is expanded from its
+  /// value at the begin: values that cancel there, as those of a(1 − e^(−δτ)), then do so exactly.
+  static Real turned_by(const InputTerm<T>& term, T tau) {
+    return plain((term.decay + term.frequency) * tau);
+  }
+  static constexpr Real begun{0.5};
+
+  [[gnu::noinline]] void expand_to(T* c, T tau, T step, int order) const {
+    using detail::cos, detail::exp, detail::expm1, detail::sin;
+    std::array<T, degree + 1> p = polynomial;  // shifted to τ by repeated synthetic division
+    T start = p[0], power{1};                  // value at the begin, from which c[0] counts
+    p[0] = T(0);
+    for (int k = 0; k < degree; ++k)
+      for (int i = degree - 1; i >= k; --i) p[i] += tau * p[i + 1];
+    for (int n = 0; n <= order; ++n, power *= step) c[n] = n <= degree ? p[n] * power : T(0);
+    for (std::size_t j = 0; j < count; ++j) {
+      const InputTerm<T>& term = terms[j];
+      const T phase = term.frequency * tau, part = exp(-term.decay * tau);
+      const T plain_cosine = cos(phase), plain_sine = sin(phase);
+      const T cosine = plain_cosine * part, sine = plain_sine * part;
+      // Real part of (cosine − i·sine) e^((iΩ − δ)τ), whose n-th coefficient follows from the last.
+      T real = term.cosine * cosine + term.sine * sine;
+      T imaginary = term.cosine * sine - term.sine * cosine;
+      T value = real;
+      if (turned_by(term, tau) < begun) {
+        const T turn = plain_sine * plain_sine / (1 + plain_cosine);  // 1 − cos Ωτ
+        value = term.cosine * (expm1(-term.decay * tau) * plain_cosine - turn) + term.sine * sine;
+        start += term.cosine;
+      }
+      c[0] += value;
+      for (int n = 1; n <= order; ++n) {
+        const T next = step / T(n);
+        const T turned = -(term.decay * real + term.frequency * imaginary) * next;
+        imaginary = (term.frequency * real - term.decay * imaginary) * next;
+        real = turned;
+        c[n] += real;
+      }
+    }
+    c[0] += start;
   }
 };
 
