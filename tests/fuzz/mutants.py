@@ -108,6 +108,18 @@ MUTANTS = (
         "if (relative != 0) return side.stuck() || side",
     ),
     Mutant(
+        "the skin does not pull on a pin at its stick limit",
+        "law/selection.hpp",
+        "const T holding = stiffness_with_skin() * surface",
+        "const T holding = stiffness() * surface",
+    ),
+    Mutant(
+        "the terms of a function cancel where it begins",
+        "model/input_function.hpp",
+        "      if (turned_by(term, tau) < begun) {",
+        "      if (turned_by(term, tau) < 0) {",
+    ),
+    Mutant(
         "a guard at its zero is not asked by its derivatives",
         "law/selection.hpp",
         "if (first < 0) return false;",
