@@ -58,7 +58,9 @@ class Selection {
     T scale =
         pin_.drive.stiffness * pin_.state.position_scale + pin_.drive.damping * abs(pin_.state.v);
     selected_.applied_force += pin_.force.value;
-    scale += abs(pin_.force.rate) * pin_.time;  // error from the time resolution
+    // Error from the time resolution.
+    scale +=
+        (abs(pin_.force.rate) + pin_.drive.mass * abs(pin_.plate.surface.second())) * pin_.time;
     pin_.stop.enumerate_candidates(pin_.state);
     scale += pin_.stop.force_scale(pin_.state);
     pin_.state.force_error = rounding<T> * (scale + 2 * abs(selected_.applied_force) +
