@@ -341,13 +341,16 @@ class Certifier {
       contact(drive_.plate, mode.plate, s.v - evaluated.plate_velocity.at(s.tau), s.plate_force,
               evaluated.load.at(s.tau), T(0));
     const T pressed = evaluated.finger_load.at(s.tau);
-    const T slope =
-        drive_.finger.branches > 0
-            ? abs(drive_.finger
-                      .branch(std::clamp(mode.finger_branch, 0, drive_.finger.branches - 1))
-                      .slope)
-            : T(0);
-    contact(drive_.finger, mode.finger, evaluated.on_finger(s), s.finger_force, pressed,
+    T u = evaluated.on_finger(s), slope{0};
+    if (drive_.finger.branches > 0) {
+      const int last = drive_.finger.branches - 1;
+      const auto branch = drive_.finger.branch(std::clamp(mode.finger_branch, 0, last));
+      slope = abs(branch.slope);
+      // A speed is beyond the end of its branch by its error, and the next branch may be steep.
+      const T within = std::clamp(abs(u), branch.from, branch.to);
+      if (abs(within - abs(u)) <= evaluated.slider_unsure) u = u < 0 ? -within : within;
+    }
+    contact(drive_.finger, mode.finger, u, s.finger_force, pressed,
             mode.finger == ContactState::absent ? evaluated.lifted_unsure()
                                                 : pressed * slope * evaluated.slider_unsure);
   }
@@ -411,8 +414,7 @@ class Certifier {
     if (!drive_.finger.compliant()) return;
     const T asked = abs(left.finger_force), drop = asked - abs(right.finger_force);
     if (event.finger != Transition::slip) {
-      const Curve<T> load = motion_.inputs().finger_load.from(before.begin);
-      const T known = detail::skin_unsure(drive_, load, before.end, left);
+      const T known = detail::skin_unsure(drive_, before.end, left);
       const T jump = abs(left.finger_force - right.finger_force);
       worst(result_.continuity, std::max(jump - known, T(0)), scales_.force);
       return;

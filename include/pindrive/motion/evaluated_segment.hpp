@@ -36,10 +36,10 @@ T kinetic_friction(const Contact<T>& contact, T speed) {
   return force;
 }
 
-/// Error of the skin tension, N: its change, as that of the load, within the time resolution.
+/// Error of the skin tension, N: its change within the time resolution.
 template <class T>
-T skin_unsure(const Drive<T>& drive, const Curve<T>& load, T time, const PinState<T>& s) {
-  return !drive.finger.rigid() && load.rate != 0 ? rounding<T> * time * abs(s.finger_rate) : T(0);
+T skin_unsure(const Drive<T>& drive, T time, const PinState<T>& s) {
+  return drive.finger.rigid() ? T(0) : rounding<T> * time * abs(s.finger_rate);
 }
 
 template <class T, class Trajectory>
@@ -122,7 +122,8 @@ class EvaluatedSegment {
   /// Error of the forces, N.
   T unsure(const PinState<T>& s) const {
     const T time = segment.begin + s.tau;
-    const T of_skin = is_slip(mode().finger) ? skin_unsure(drive, finger_load, time, s) : T(0);
+    const bool changes = is_slip(mode().finger) && finger_load.rate != 0;
+    const T of_skin = changes ? skin_unsure(drive, time, s) : T(0);
     return of_skin + turning_unsure(s, time);
   }
   /// Largest skin tension near a load of zero, where the skin is not simulated: its momentum is
