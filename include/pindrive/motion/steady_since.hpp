@@ -52,8 +52,10 @@ class FirstRepeat {
       const T before_too =
           motion_.outcome().cycles() ? continued->begin - periods * period_ : last_breakpoint_;
       const T next = std::max({before, before_too, last_breakpoint_});
-      for (const T part : {T(0), T(0.25), T(0.5), T(0.75)})
-        if (next < since && !agrees(next + part * (since - next), tolerance)) return since;
+      const int parts = comparisons(since - next);
+      for (int i = 0; i < parts; ++i)
+        if (next < since && !agrees(next + T(i) / T(parts) * (since - next), tolerance))
+          return since;
       since = std::min(since, next);
       if (before >= next && own != motion_.begin()) --own;
       if (!(before_too >= next)) continue;
@@ -64,6 +66,12 @@ class FirstRepeat {
   }
 
  private:
+  /// Comparisons between two events: four in a natural period, but at least four.
+  int comparisons(T length) const {
+    const Drive<T>& drive = motion_.drive();
+    const auto quarters = plain(length * sqrt(drive.stiffness / drive.mass)) / 1.5707963267948966;
+    return quarters > 4 ? static_cast<int>(std::min(quarters, decltype(quarters)(64))) : 4;
+  }
   /// True if motion and continuation have equal positions at a time; for an oscillation without
   /// events, which begins in finite time, also equal modes.
   bool agrees(T time, T tolerance) const {
