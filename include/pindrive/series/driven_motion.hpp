@@ -36,6 +36,7 @@ class DrivenMotion {
   }
 
   using Path = TermSum<T>;
+  static constexpr bool creeps() { return false; }
 
   TermSum<T> position, velocity;
   TermSum<T> skin;         ///< tension of skin in elastic stick, N; else 0

@@ -224,14 +224,15 @@ class SeriesMode {
       if (mode_.finger == ContactState::stick) add_limit(drive_.finger, inputs_.finger_load);
       within(found, along.stick_force, most, at.limit, mode_.plate == ContactState::stick, known);
     }
+    const Real followed = rounding_followed(along);
     if (is_slip(mode_.plate))
-      between(found, along.speed, plate(), at.plate, true, inputs_.oblique());
+      between(found, along.speed, plate(), at.plate, true, inputs_.oblique(), followed);
     if (is_slip(mode_.finger)) {
       Path speed =
           pindrive::along(mode_.finger, T(1)) * (has_slider_state() ? along.skin : along.velocity);
       if (!has_slider_state() && !drive_.finger.rigid())
         speed += Line<T>{-follows(finger().force), T(0)};
-      between(found, speed, finger(), at.finger, false, false);
+      between(found, speed, finger(), at.finger, false, false, followed);
     }
     if (mode_.finger == ContactState::elastic_stick) {
       const int limit = at.finger == ActiveGuard::none ? 0 : begins_with(along.skin);
@@ -269,13 +270,21 @@ class SeriesMode {
   static Real given_rounding(const Curve<T>& input) {
     return input.straight() ? Real(0) : input.rounding();
   }
+  /// Rounding that a velocity has from that of the plate: of a pin that sticks, or creeps on an oblique plate.
+  template <class Along>
+  Real rounding_followed(const Along& along) const {
+    const Curve<T>&plate = inputs_.plate_velocity, &across = inputs_.across_velocity;
+    if (mode_.stuck()) return given_rounding(plate);
+    if (!along.creeps() || across.value == 0) return Real(0);
+    const Real ratio = abs(plain((along.velocity.start() - plate.value) / across.value));
+    return given_rounding(plate) + ratio * given_rounding(across);
+  }
   template <class Path>
   void between(Guards<Path>& found, const Path& speed, const Branch<T>& range, ActiveGuard at,
-               bool is_plate, bool oblique) const {
+               bool is_plate, bool oblique, Real known) const {
     Path above = speed, below = T(-1) * speed;
     above += Line<T>{-range.from, T(0)};
     below += Line<T>{range.to, T(0)};
-    const Real known = mode_.stuck() ? given_rounding(inputs_.plate_velocity) : Real(0);
     if (!oblique || range.from > 0)  // otherwise the transverse velocity keeps the speed positive
       found.add(above, at == ActiveGuard::lower, ActiveGuard::lower, is_plate, 0, known);
     if (range.to < never)

@@ -26,6 +26,8 @@ class SeriesStep {
   EliminatedPart eliminated{EliminatedPart::none};  ///< eliminated fast transient
 
   Real span() const { return velocity.span; }
+  /// True in creep on an oblique plate.
+  bool creeps() const { return eliminated == EliminatedPart::of_friction; }
   SeriesState<T> at(T tau) const { return {position.at(tau), velocity.at(tau), skin.at(tau)}; }
   Polynomial<T> input(const Curve<T>& curve) const { return polynomial_of(curve, span()); }
 };
