@@ -212,15 +212,17 @@ class MonotonePieces {
     bool found() const { return !std::isnan(time); }
   };
   Climb climb(const Signal& of, double height, double from, double to) const {
-    Point low{from, at(of, from)};
+    Point low{from, infinity}, last{to, infinity};
     double found = nan;
     each(of, from, to, [&](Point a, Point b, std::size_t i) {
-      if (b.value <= low.value) low = b;
+      // A segment ends within rounding of where the next begins, which is exact.
+      if (a.value <= low.value) low = a;
       if (b.value - low.value >= height)
         found = change(of, i, a.time, b.time, [&](double y) { return y - low.value - height; });
+      last = b;
       return std::isnan(found);
     });
-    return {found, low.time};
+    return {found, last.value <= low.value ? last.time : low.time};
   }
 
   /// Rises of a signal without jumps in [from, to], in order.
