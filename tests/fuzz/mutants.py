@@ -414,8 +414,8 @@ MUTANTS = (
     Mutant(
         "a climb is counted from the first value",
         "device/monotone_pieces.hpp",
-        "if (b.value <= low.value) low = b;",
-        "",
+        "if (a.value <= low.value) low = a;",
+        "if (low.value == infinity) low = a;",
     ),
     Mutant(
         "the first instant beyond a band for the last",
