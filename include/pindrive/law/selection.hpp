@@ -193,8 +193,11 @@ class Selection {
                         own_limit * on.load.rate + other_limit * other.load.rate};
     const T force = holding_force(on, other.force(pin_.state));
     const int at_limit = pin_.stays_at_limit() ? pin_.stick_limit_side : 0;
-    if (limit.value - abs(force) < -pin_.force_error() && (force < 0 ? -1 : 1) != at_limit)
-      return false;
+    // The friction of an oblique plate turns within the time resolution.
+    const T turns =
+        other.oblique() ? abs(other.force_rate(pin_.state.v, on.surface.rate).value) : T(0);
+    const T error = pin_.force_error() + rounding<T> * pin_.time * turns;
+    if (limit.value - abs(force) < -error && (force < 0 ? -1 : 1) != at_limit) return false;
     Path<T> most = limit;
     most.curvature = own_limit * on.load.second() + other_limit * other.load.second();
     const bool powerless = on.powerless() && (!other.stuck() || other.powerless());
@@ -204,7 +207,7 @@ class Selection {
     selected_.guards.clear();
     for (const int side : {1, -1}) {
       Path<T> margin = most + T(-side) * selected_.stick_force;
-      if (!(margin.start > pin_.force_error()) || side == at_limit) {
+      if (!(margin.start > error) || side == at_limit) {
         margin.start = T(0);
         if (abs(margin.drift) <= rounding<T> * (scale + abs(limit.rate)) ||
             grazes(margin.drift, margin.curvature, pin_.state.force_error))
