@@ -61,7 +61,7 @@ MUTANTS = (
     Mutant(
         "always sticks at a surface velocity",
         "law/selection.hpp",
-        "if (limit.value - abs(force) < -pin_.force_error() && (force",
+        "if (limit.value - abs(force) < -error && (force",
         "if (limit.value > 1e99 && (force",
     ),
     Mutant(

@@ -207,7 +207,7 @@ class Selection {
     selected_.guards.clear();
     for (const int side : {1, -1}) {
       Path<T> margin = most + T(-side) * selected_.stick_force;
-      if (!(margin.start > error) || side == at_limit) {
+      if (!(margin.start > pin_.force_error()) || side == at_limit) {
         margin.start = T(0);
         if (abs(margin.drift) <= rounding<T> * (scale + abs(limit.rate)) ||
             grazes(margin.drift, margin.curvature, pin_.state.force_error))
