@@ -17,12 +17,6 @@
 #include "pindrive/model/model.hpp"
 #include "pindrive/numbers/limits.hpp"
 
-#ifdef __OPTIMIZE_SIZE__
-#define PINDRIVE_FLAT
-#else
-#define PINDRIVE_FLAT [[gnu::flatten]]
-#endif
-
 namespace pindrive::detail {
 
 /// Pin between two events, and the operations that lead from one event to the next: select a mode,
@@ -49,10 +43,7 @@ class Evolution {
   Evolution& operator=(const Evolution&) = delete;
 
   /// Selects the mode that follows; false if no mode is consistent.
-  ///
-  /// Flattened: calls would add a tenth to the time of a standard release; not flattened where size
-  /// is optimised.
-  PINDRIVE_FLAT bool select() {
+  bool select() {
     next_breakpoint = defer_first_grip(pin.finger, pin.state.v, pin.time, next_breakpoint);
     const bool consistent = Selection<T>(pin, selected).select();
     pin.finger.apply_jump(pin.state);
@@ -60,7 +51,7 @@ class Evolution {
   }
 
   /// Begins the segment of the selected mode, with its guards.
-  PINDRIVE_FLAT void begin(Segment<T>& segment) {
+  void begin(Segment<T>& segment) {
     if (pin.plate.oblique())
       pin.plate.across =
           InputCurves<T>::across_from(inputs_, pin.time, pin.plate.surface, pin.held());
@@ -318,5 +309,3 @@ class Evolution {
 };
 
 }  // namespace pindrive::detail
-
-#undef PINDRIVE_FLAT

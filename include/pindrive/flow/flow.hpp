@@ -14,6 +14,7 @@
 
 #include "pindrive/flow/oscillator.hpp"
 #include "pindrive/numbers/functions.hpp"
+#include "pindrive/numbers/inlining.hpp"
 
 namespace pindrive {
 
@@ -131,7 +132,7 @@ struct Force {
   T drag{0}, stiffness{0};
   T rounding{0};  ///< error of the drag, N s/m
 
-  Path<T> along(const Flow<T>& flow) const {
+  PINDRIVE_INLINE Path<T> along(const Flow<T>& flow) const {
     using detail::vanishes;
     Path<T> path = constant;
     if (!vanishes(drag)) path = path + (-drag) * flow.velocity;

@@ -29,19 +29,23 @@ Powers<Real> powers_of(Real part) {
 }
 
 /// Terms p_i q_(n−i) of the product of two series, from i = first to last; two partial sums are added at once.
-template <class P, class Q>
-auto sum_of_products(const P& p, const Q& q, int n, int first, int last) {
-  using T = std::decay_t<decltype(p[0] * q[0])>;
+template <class T>
+T sum_of_products(const T* p, const T* q, int n, int first, int last) {
   T even{0}, odd{0};
   if (last < first) return even;
-  const auto *one = &p[first], *other = &q[n - first];
-  const auto* const end = &p[last];
+  const T *one = p + first, *other = q + (n - first);
+  const T* const end = p + last;
   for (; one < end; one += 2, other -= 2) {
     even += one[0] * other[0];
     odd += one[1] * other[-1];
   }
   if (one == end) even += *one * *other;
   return even + odd;
+}
+template <class T, std::size_t P, std::size_t Q>
+T sum_of_products(const std::array<T, P>& p, const std::array<T, Q>& q, int n, int first,
+                  int last) {
+  return sum_of_products(p.data(), q.data(), n, first, last);
 }
 /// Order n of the square of a series without the terms of order 0.
 template <class P>

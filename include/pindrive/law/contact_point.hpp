@@ -9,6 +9,7 @@
 #include "pindrive/law/skin.hpp"
 #include "pindrive/law/state.hpp"
 #include "pindrive/model/model.hpp"
+#include "pindrive/numbers/inlining.hpp"
 #include "pindrive/numbers/limits.hpp"
 
 namespace pindrive::detail {
@@ -38,9 +39,9 @@ struct ContactPoint {
   bool stuck() const { return mode.state == ContactState::stick; }
   bool elastic() const { return mode.state == ContactState::elastic_stick; }
   bool oblique() const { return mode.state == ContactState::slip_oblique; }
-  Branch<T> branch() const { return contact.branch(mode.branch); }
+  PINDRIVE_INLINE Branch<T> branch() const { return contact.branch(mode.branch); }
   /// Friction near the sliding speed of a rigid contact, linear.
-  Branch<T> linear_branch(T v) const {
+  PINDRIVE_INLINE Branch<T> linear_branch(T v) const {
     const Branch<T> range = branch();
     return range.linear() ? range : range.tangent(sliding_speed(v));
   }
@@ -69,7 +70,9 @@ struct ContactPoint {
   }
 
   /// True if the slider velocity is a state of its own, beside that of the pin.
-  bool has_slider_state() const { return contact.may_lag() && sliding() && branch().slope != 0; }
+  PINDRIVE_INLINE bool has_slider_state() const {
+    return contact.may_lag() && sliding() && branch().slope != 0;
+  }
   /// Pin speed minus slider speed and stretch rate, m/s; zero within its error.
   T relative_speed(T v) const {
     if (start.keeps_speed) return T(0);
@@ -143,9 +146,10 @@ struct ContactPoint {
     reached_guard = ActiveGuard::none;
     candidates.clear();
     const T u = s.v - surface.value;
-    const bool across_too = enumerate_oblique_candidates(*this, u, guard);
+    const bool slides_across =
+        (oblique() || !across.is_zero()) && enumerate_oblique_candidates(*this, u, guard);
     slip_sign = mode.slip_sign;
-    if (across_too) return;
+    if (slides_across) return;
     if (!contact.rigid()) return SliderCandidates<T, ContactPoint>(*this, s, u, guard).enumerate();
     if (sliding()) {
       const Branch<T> range = branch();
@@ -261,16 +265,7 @@ struct ContactPoint {
   /// a slip is not.
   bool is_admissible(const State<T>& s, T first, T second = T(0), T third = T(0)) const {
     if (mode.guard == ActiveGuard::none) return true;
-    if (oblique()) {
-      const ObliqueSlip<T> speed = oblique_slip(s.v, surface.rate + first);
-      const T closing = speed.closing(), known = speed.rounding_of(surface.value);
-      const T parting = speed.parting(second, across.second());
-      const bool turns = closing == 0 || grazes(closing, parting, known);
-      T faster = closing;
-      if (turns) faster = parting != 0 ? parting : speed.velocity() * third;
-      if (faster == 0) faster = second * second;  // the pin starts to turn
-      return (mode.guard == ActiveGuard::lower ? faster : -faster) >= 0;
-    }
+    if (oblique()) return is_admissible_obliquely(s, first, second, third);
     const T decides = first != 0 ? first : second != 0 ? second : third;
     if (!elastic()) {
       const T faster = has_slider_state() ? relative_speed(s.v) : T(0);
@@ -290,6 +285,18 @@ struct ContactPoint {
   }
 
  private:
+  /// `is_admissible` of an oblique slip.
+  [[gnu::noinline]] bool is_admissible_obliquely(const State<T>& s, T first, T second,
+                                                 T third) const {
+    const ObliqueSlip<T> speed = oblique_slip(s.v, surface.rate + first);
+    const T closing = speed.closing(), known = speed.rounding_of(surface.value);
+    const T parting = speed.parting(second, across.second());
+    const bool turns = closing == 0 || grazes(closing, parting, known);
+    T faster = closing;
+    if (turns) faster = parting != 0 ? parting : speed.velocity() * third;
+    if (faster == 0) faster = second * second;  // the pin starts to turn
+    return (mode.guard == ActiveGuard::lower ? faster : -faster) >= 0;
+  }
   /// Sliding speed of a rigid contact, m/s.
   T sliding_speed(T v) const {
     const T u = v - surface.value;

@@ -133,7 +133,7 @@ class ObliqueSlip {
 /// `guard` is the active guard: the end of the branch that the sliding speed has just reached, or
 /// none.
 template <class Point, class T>
-bool enumerate_oblique_candidates(Point& side, T u, ActiveGuard& guard) {
+[[gnu::noinline]] bool enumerate_oblique_candidates(Point& side, T u, ActiveGuard& guard) {
   const auto& contact = side.contact;
   if (!slides_obliquely(side.load, side.across)) {
     if (!side.oblique()) return false;

@@ -354,7 +354,7 @@ class Selection {
   }
 
   static T later(const Curve<T>& velocity) {
-    return third_or_later(velocity.template coefficients<beginning_orders>());
+    return velocity.straight() ? T(0) : third_or_later(coefficients(velocity));
   }
   /// The first derivative from the third on in which a pin with the acceleration of a surface leaves its velocity, by
   /// its sign; 0 if it does not. Of frictions that depend on the speed the part at this instant is used.

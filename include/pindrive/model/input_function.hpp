@@ -9,6 +9,7 @@
 
 #include "pindrive/flow/flow.hpp"
 #include "pindrive/numbers/functions.hpp"
+#include "pindrive/numbers/inlining.hpp"
 #include "pindrive/numbers/limits.hpp"
 
 namespace pindrive {
@@ -249,7 +250,7 @@ struct Curve {
   bool is_zero() const { return steady() && value == 0; }
   /// Tangent at the instant.
   Line<T> line() const { return {value, rate}; }
-  T at(T tau) const {
+  PINDRIVE_INLINE T at(T tau) const {
     if (straight()) return value + rate * tau;
     return value + (piece->at(since + tau) - piece->at(since));
   }

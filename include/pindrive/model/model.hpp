@@ -8,6 +8,7 @@
 
 #include "pindrive/flow/flow.hpp"
 #include "pindrive/model/input_function.hpp"
+#include "pindrive/numbers/inlining.hpp"
 #include "pindrive/numbers/limits.hpp"
 
 namespace pindrive {
@@ -140,7 +141,7 @@ struct Contact {
   bool compliant() const { return present() && !rigid(); }
   /// True if the slider may have a velocity of its own: compliant skin with a friction curve.
   bool may_lag() const { return branches > 0 && !rigid(); }
-  Branch<T> branch(int index) const {
+  PINDRIVE_INLINE Branch<T> branch(int index) const {
     if (branches == 0) return {T(0), std::numeric_limits<T>::infinity(), kinetic, T(0), T(0)};
     return curve[index];
   }
@@ -225,7 +226,7 @@ class Profile {
       : held_(pieces[0].at(T(0))), constant_(false), pieces_(pieces), count_(count) {}
 
   /// Input from time t on, until the next breakpoint.
-  Curve<T> from(T t) const {
+  PINDRIVE_INLINE Curve<T> from(T t) const {
     if (count_ == 0) return held_.from(t);
     const std::size_t i = breakpoints_until(t);
     if (pieces_ != nullptr) return part_of_function(i, t);

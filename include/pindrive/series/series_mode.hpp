@@ -9,6 +9,7 @@
 #include "pindrive/law/contact_point.hpp"
 #include "pindrive/model/input_curves.hpp"
 #include "pindrive/model/model.hpp"
+#include "pindrive/numbers/inlining.hpp"
 #include "pindrive/series/creep.hpp"
 #include "pindrive/series/term_sum.hpp"
 
@@ -26,7 +27,8 @@ class SeriesMode {
 
   /// True if flow.hpp has a mode in closed form, so that no series is needed.
   /// Under a held pin a plate of constant velocity slides across with a friction that only the load changes.
-  static bool closed_form(const Drive<T>& drive, const Mode& mode, const InputCurves<T>& inputs) {
+  PINDRIVE_INLINE static bool closed_form(const Drive<T>& drive, const Mode& mode,
+                                          const InputCurves<T>& inputs) {
     const auto bilinear = [](ContactState state, const Contact<T>& contact, int branch,
                              const Curve<T>& load) {
       return is_slip(state) && !load.steady() && contact.branch(branch).slope != 0;
