@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "pindrive/engine.hpp"
 #include "pindrive/motion/batch.hpp"
 
 namespace {

@@ -167,7 +167,7 @@ class Batch {
     if (attended.stopped()) return;
     const auto view = motion.view();
     pd::Summary<double> summary{{}, motion.outcome(), pd::duration_of(view, band_), 0};
-    summary.transient = pd::Measurement<double>(view, summary.duration).transient(band_);
+    summary.transient = pd::transient_of(view, summary.duration, band_);
     for (const auto& segment : motion.segments()) summary.events += pd::events_at_end(segment);
     const pd::batch::Summary found = pd::batch::with_end(summary, view);
     for (std::size_t k = 0; k < rows_.size(); ++k)

@@ -116,30 +116,4 @@ pd::Numbers numbers_of(const pindrive_drive& drive, const pindrive_release& rele
 /// Velocity of the plate at the release at a time, s, with its derivative.
 void start(pd::Numbers& at, pd::Numbers& along, double begin = 0);
 
-/// A quantity at an instant of a trajectory; friction() tells the friction there.
-template <class T, class Trajectory, class Share>
-double value_along(const Trajectory& along, const T& tau, const pd::Drive<T>& drive,
-                   Share&& friction, pindrive_quantity quantity) {
-  const T& skin = drive.finger.stiffness;
-  const auto at = [&](const auto& path) { return along.at(path, tau); };
-  switch (quantity) {
-    case PINDRIVE_POSITION:
-      return pd::result(drive.stops.within(at(along.position())));
-    case PINDRIVE_VELOCITY:
-      return pd::result(at(along.velocity()));
-    case PINDRIVE_ACCELERATION:
-      return pd::result(at(along.acceleration()));
-    case PINDRIVE_PLATE_FORCE:
-      return pd::result(friction().plate);
-    case PINDRIVE_FINGER_FORCE:
-      return pd::result(friction().finger);
-    case PINDRIVE_SKIN_STRETCH:
-      return pd::result(-at(along.finger_force()) / skin);
-    case PINDRIVE_SKIN_STRETCH_RATE:
-      return pd::result(-at(along.derivative(along.finger_force())) / skin);
-    default:
-      return none;
-  }
-}
-
 }  // namespace pindrive_c

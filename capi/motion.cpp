@@ -8,11 +8,7 @@
 #include "interface.hpp"
 #include "owned_motion.hpp"
 #include "pindrive.h"
-#include "pindrive/certificate/certify.hpp"
-#include "pindrive/motion/crossings.hpp"
-#include "pindrive/motion/duration.hpp"
-#include "pindrive/motion/energy.hpp"
-#include "pindrive/motion/transient.hpp"
+#include "pindrive/engine.hpp"
 
 namespace pd = pindrive;
 
@@ -41,16 +37,6 @@ pindrive_error simulated(std::unique_ptr<pd::OwnedMotion<T>>& motion, pd::Number
   motion = std::make_unique<pd::OwnedMotion<T>>(at, along, [&] { return attended.go_on(); });
   if (!attended.stopped()) return PINDRIVE_OK;
   return stopped();
-}
-
-template <class T>
-double value_at(const pd::Motion<T>& motion, const pd::Segment<T>& segment, T tau,
-                pindrive_quantity quantity) {
-  if (quantity == PINDRIVE_STOP_FORCE) return pd::result(motion.stop_force(segment, tau));
-  const auto friction = [&] { return motion.friction(segment, tau); };
-  return motion.along(segment, [&](const auto& along) {
-    return value_along(along, tau, motion.drive(), friction, quantity);
-  });
 }
 
 /// Checks what is asked of a motion alone, over [0, until].
@@ -200,11 +186,9 @@ pindrive_error pindrive_evaluate(const pindrive_motion* motion, pindrive_quantit
   }
   const auto limit = side == PINDRIVE_LEFT ? pd::Side::left : pd::Side::right;
   motion->ask([&](const auto& of) {
-    const auto view = of.view();
-    for (std::size_t i = 0; i < count; ++i) {
-      const auto [segment, tau] = view.locate(times[i], limit);
-      values[i] = value_at(view, *segment, tau, quantity);
-    }
+    const auto asked = static_cast<pd::Sampled>(quantity);
+    pd::sample(of.view(), times, count, limit, &asked, 1,
+               [&](std::size_t i, const auto* found) { values[i] = pd::result(*found); });
   });
   return PINDRIVE_OK;
 }
@@ -222,8 +206,7 @@ pindrive_error pindrive_segment_of(const pindrive_motion* motion, size_t index,
                 pd::result(s.end),
                 pd::result(s.flow.position.start),
                 pd::result(s.flow.velocity.start),
-                pd::result(of.view().along(
-                    s, [](const auto& along) { return along.start(along.acceleration()); })),
+                pd::result(pd::start_acceleration(of.view(), s)),
                 motion->values ? pd::acceleration_bound(motion->values->view(),
                                                         motion->values->segments()[index])
                                : none,
@@ -253,8 +236,8 @@ pindrive_error pindrive_events(const pindrive_motion* motion, double from, doubl
       const bool at_stop = s.event.stop != pd::Transition::none;
       const auto [segment, tau] = view.locate(s.end, at_stop ? pd::Side::right : pd::Side::left);
       events[i] = {time,
-                   value_at(view, *segment, tau, PINDRIVE_POSITION),
-                   value_at(view, *segment, tau, PINDRIVE_VELOCITY),
+                   pd::sampled_in(view, *segment, tau, pd::Sampled::position),
+                   pd::sampled_in(view, *segment, tau, pd::Sampled::velocity),
                    static_cast<pindrive_transition>(s.event.plate),
                    static_cast<pindrive_transition>(s.event.finger),
                    static_cast<pindrive_transition>(s.event.stop)};
@@ -310,8 +293,7 @@ pindrive_error pindrive_numbers(const pindrive_motion* motion, double duration,
     if (const auto error = duration_in(of, settling_band, duration)) return error;
     const auto view = of.view();
     using T = decltype(view.known_until());
-    write(pd::transient_numbers<T>, pd::Measurement(view, T(duration)).transient(settling_band),
-          values);
+    write(pd::transient_numbers<T>, pd::transient_of(view, T(duration), T(settling_band)), values);
     return PINDRIVE_OK;
   });
 }
@@ -356,7 +338,7 @@ pindrive_error pindrive_certificate(const pindrive_motion* motion, double durati
   if (const pindrive_error error = duration_in(*motion->values, pd::settling_band, duration))
     return error;
   const auto view = motion->values->view();
-  write(pd::certificate_numbers<double>, pd::Certifier<double>(view, duration).certify(), values);
+  write(pd::certificate_numbers<double>, pd::certify(view, duration), values);
   return PINDRIVE_OK;
 }
 

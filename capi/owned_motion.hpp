@@ -9,9 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "pindrive/events/simulate.hpp"
-#include "pindrive/motion/motion.hpp"
-#include "pindrive/numbers/dual.hpp"
+#include "pindrive/engine.hpp"
 
 namespace pindrive {
 
@@ -269,8 +267,7 @@ class StoredMotion {
 
  protected:
   /// Simulates; go_on() says, after each segment, whether to continue.
-  template <class GoOn>
-  StoredMotion(const Drive<T>& drive, const Inputs<T>& inputs, GoOn&& go_on)
+  StoredMotion(const Drive<T>& drive, const Inputs<T>& inputs, GoOn go_on)
       : drive_(drive),
         inputs_(inputs),
         outcome_(simulate(drive_, inputs_, [&](const Segment<T>& segment) {
@@ -290,20 +287,9 @@ class StoredMotion {
 template <class T>
 class OwnedMotion : private OwnedInputs<T>, public StoredMotion<T> {
  public:
-  template <class GoOn>
   OwnedMotion(const Numbers& at, const Numbers& along, GoOn go_on)
       : OwnedInputs<T>(at, along),
         StoredMotion<T>(OwnedInputs<T>::core_drive, OwnedInputs<T>::core_inputs, go_on) {}
 };
-
-/// Returns the bound of the acceleration of a segment under functions or by series; NaN for a closed form.
-inline double acceleration_bound(const Motion<double>& motion, const Segment<double>& segment) {
-  return motion.along(segment, [](const auto& along) {
-    if constexpr (std::is_same_v<std::decay_t<decltype(along)>, detail::ClosedForm<double>>)
-      return std::numeric_limits<double>::quiet_NaN();
-    else
-      return along.largest_size(along.acceleration());
-  });
-}
 
 }  // namespace pindrive

@@ -100,7 +100,7 @@ double value_of(const pindrive_scan& scan, std::size_t i, pindrive_quantity quan
     case PINDRIVE_LUMINANCE:
       return scan.page->raster().at(stream.hand().path().position(now) + stream.device().spots[i]);
     default:
-      return pindrive_c::value_of(pin.stepper(), quantity);
+      return pindrive::sampled_now(pin.stepper(), static_cast<pindrive::Sampled>(quantity));
   }
 }
 

@@ -10,6 +10,7 @@
 #include "owned_motion.hpp"
 #include "pindrive.h"
 #include "pindrive/events/stepper.hpp"
+#include "pindrive/motion/sampling.hpp"
 
 namespace pindrive_c {
 
@@ -39,24 +40,6 @@ pindrive_instant instant_of(const pd::Stepper<T>& stepper, double begin = 0) {
                           static_cast<pindrive_transition>(stepper.event().finger),
                           static_cast<int>(stepper.mode().stop),
                           static_cast<pindrive_transition>(stepper.event().stop)};
-}
-
-/// A quantity of a stepper now.
-template <class T>
-double value_of(const pd::Stepper<T>& stepper, pindrive_quantity quantity) {
-  const auto tau = stepper.tau();
-  const auto lines = stepper.lines();
-  return pd::visit_trajectory(
-      stepper.drive(), stepper.segment(), lines, stepper.series_step(), [&](const auto& along) {
-        const auto friction = [&] {
-          return pd::friction_along(
-              along, stepper.drive(), stepper.segment(), [&] { return lines; }, tau);
-        };
-        if (quantity == PINDRIVE_STOP_FORCE)
-          return pd::result(
-              pd::stop_force_along(along, stepper.drive(), stepper.segment(), lines.force, tau));
-        return value_along(along, tau, stepper.drive(), friction, quantity);
-      });
 }
 
 /// Stepper of one pin, with or without derivatives. A library that never constructs the second kind links a single
@@ -140,7 +123,7 @@ class Followed final : public Following {
   pd::Status status() const override { return stepper_.status(); }
   pindrive_instant now() const override { return instant_of(stepper_); }
   double evaluate(pindrive_quantity quantity) const override {
-    return value_of(stepper_, quantity);
+    return pd::result(pd::sampled_now(stepper_, static_cast<pd::Sampled>(quantity)));
   }
   bool step(double until, bool stop_at_event, Attended& attended) override {
     return stepper_.step(until, stop_at_event, [&] { return attended.go_on(); });

@@ -11,12 +11,13 @@
 ///     const auto [segment, tau] = motion.locate(0.02, pindrive::Side::right);
 ///     const double x = segment->flow.position.at(segment->flow.oscillator, tau);  // x(0.02 s)
 ///
-/// `summarise` gives all numbers of a motion at once, `Certifier` proves one against the laws of
+/// `summarise` gives all numbers of a motion at once, `certify` proves one against the laws of
 /// motion, `Dual` makes everything its own derivative, `Stepper` goes on from time to time under inputs that
 /// are set on the way. Names in `pindrive::detail` are internal.
 #pragma once
 
 #include "pindrive/certificate/certify.hpp"  // IWYU pragma: export
+#include "pindrive/engine.hpp"               // IWYU pragma: export
 #include "pindrive/events/simulate.hpp"      // IWYU pragma: export
 #include "pindrive/events/stepper.hpp"       // IWYU pragma: export
 #include "pindrive/model/model.hpp"          // IWYU pragma: export
@@ -24,5 +25,6 @@
 #include "pindrive/motion/crossings.hpp"     // IWYU pragma: export
 #include "pindrive/motion/energy.hpp"        // IWYU pragma: export
 #include "pindrive/motion/motion.hpp"        // IWYU pragma: export
+#include "pindrive/motion/sampling.hpp"      // IWYU pragma: export
 #include "pindrive/motion/transient.hpp"     // IWYU pragma: export
 #include "pindrive/numbers/dual.hpp"         // IWYU pragma: export

@@ -20,14 +20,14 @@ ACTIONLINT = "github.com/rhysd/actionlint/cmd/actionlint@v1.7.12"
 
 def cpp_files() -> list[Path]:
     """The C++ of the project."""
-    folders = ("include", "src/pindrive", "capi", "fmu", "tests", "benchmarks")
+    folders = ("include", "engine", "src/pindrive", "capi", "fmu", "tests", "benchmarks")
     found = (p for folder in folders for p in (ROOT / folder).rglob("*.[ch]pp"))
     return sorted(p.relative_to(ROOT) for p in found)
 
 
 def clang_tidy() -> int:
     """Check the core's headers as the programs that use them instantiate them, on all cores."""
-    folders = ("capi", "fmu", "tests")
+    folders = ("engine", "capi", "fmu", "tests")
     programs = [p for p in cpp_files() if p.suffix == ".cpp" and p.parts[0] in folders]
     headers = ("-Iinclude", "-Isrc/pindrive", "-Icapi", "-isystemfmu/fmi2", "-isystemfmu/fmi3")
 

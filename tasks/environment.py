@@ -17,7 +17,7 @@ ROOT = Path(__file__).resolve().parents[1]
 VENV = ROOT / ".venv"
 BIN = VENV / ("Scripts" if os.name == "nt" else "bin")
 STAMP = VENV / "pindrive.json"
-SOURCES = ("pyproject.toml", "CMakeLists.txt", "include", "capi", "fmu", "src")
+SOURCES = ("pyproject.toml", "CMakeLists.txt", "include", "engine", "capi", "fmu", "src")
 
 
 def requirements(extras: set[str]) -> list[str]:

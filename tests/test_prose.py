@@ -91,7 +91,7 @@ PYTHON = sorted(
 )
 CPP = [
     path
-    for folder in ("include", "capi", "fmu", "src", "tests")
+    for folder in ("include", "engine", "capi", "fmu", "src", "tests")
     for path in sorted((ROOT / folder).rglob("*.[ch]pp"))
 ]
 SOURCES = {

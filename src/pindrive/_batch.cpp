@@ -28,8 +28,8 @@
 #include "_kernel.hpp"
 #include "batch_numbers.hpp"
 #include "interrupt.hpp"
+#include "pindrive/engine.hpp"
 #include "pindrive/motion/batch.hpp"
-#include "pindrive/motion/energy.hpp"
 
 namespace nb = nanobind;
 namespace pd = pindrive;

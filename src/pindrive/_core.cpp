@@ -30,13 +30,9 @@
 #include "function_sum.hpp"
 #include "interrupt.hpp"
 #include "owned_motion.hpp"
-#include "pindrive/certificate/certify.hpp"
+#include "pindrive/engine.hpp"
 #include "pindrive/model/input_period.hpp"
 #include "pindrive/model/named_function.hpp"
-#include "pindrive/motion/crossings.hpp"
-#include "pindrive/motion/duration.hpp"
-#include "pindrive/motion/energy.hpp"
-#include "pindrive/motion/transient.hpp"
 #include "pindrive/series/input_range.hpp"
 
 namespace nb = nanobind;
@@ -161,115 +157,63 @@ std::unique_ptr<CoreMotion<Dual>> differentiate(Numbers at, Numbers along) {
 
 // ---- what Python asks for ------------------------------------------------------------------------
 
-/// Calls visit(i, quantities of its segment, segment, τ) at each time; times in a row that lie in one
-/// segment share its quantities.
-template <class T, class GoOn, class Visitor>
-void each_time(const CoreMotion<T>& motion, const Times& times, bool right, GoOn go_on,
-               Visitor&& visit) {
-  const auto view = motion.view();
-  const auto side = right ? pd::Side::right : pd::Side::left;
-  const auto place = [&](std::size_t i) { return view.locate(times.data()[i], side); };
-  const std::size_t count = times.size();
-  if (!count) return;
-  auto here = place(0);
-  for (std::size_t i = 0; i < count;) {
-    const auto& segment = *here.segment;
-    const bool more = view.along(segment, [&](const auto& quantities) {
-      do {
-        visit(i, quantities, segment, here.tau);
-        if (!go_on()) return false;
-        if (++i < count) here = place(i);
-      } while (i < count && here.segment == &segment);
-      return true;
-    });
-    if (!more) return;
-  }
-}
+struct NamedQuantity {
+  const char* name;
+  pd::Sampled quantity;
 
-/// f(view, quantities of its segment, segment, τ) at each time.
-template <class T, class Function>
-Array<double> at_times(const CoreMotion<T>& motion, const Times& times, bool right, Function&& f) {
+  bool of_skin() const {
+    return quantity == pd::Sampled::stretch || quantity == pd::Sampled::stretch_rate;
+  }
+};
+/// In the order of the columns of a table.
+constexpr NamedQuantity quantities[] = {{"position", pd::Sampled::position},
+                                        {"velocity", pd::Sampled::velocity},
+                                        {"acceleration", pd::Sampled::acceleration},
+                                        {"plate_force", pd::Sampled::plate_force},
+                                        {"finger_force", pd::Sampled::finger_force},
+                                        {"stop_force", pd::Sampled::stop_force},
+                                        {"stretch", pd::Sampled::stretch},
+                                        {"stretch_rate", pd::Sampled::stretch_rate}};
+
+pd::Side side_of(bool right) { return right ? pd::Side::right : pd::Side::left; }
+
+/// A quantity at each time.
+template <class T>
+Array<double> evaluate(const CoreMotion<T>& motion, pd::Sampled quantity, const Times& times,
+                       bool right) {
   return to_array(interruptible([&](auto go_on) {
     std::vector<double> values(times.size());
-    const auto view = motion.view();
-    each_time(motion, times, right, go_on,
-              [&](std::size_t i, const auto&... at) { values[i] = result(f(view, at...)); });
+    pd::sample(motion.view(), times.data(), times.size(), side_of(right), &quantity, 1,
+               [&](std::size_t i, const T* found) {
+                 values[i] = result(*found);
+                 return go_on();
+               });
     return values;
   }));
 }
 
-/// The position, velocity or acceleration.
-template <class T, pd::Quantity quantity>
-Array<double> evaluate(const CoreMotion<T>& motion, const Times& times, bool right) {
-  return at_times(motion, times, right,
-                  [](const auto& view, const auto& along, const auto&, T tau) {
-                    return view.value_of(along, tau, quantity);
-                  });
-}
-
-template <class T, T pd::Friction<T>::* contact>
-Array<double> force(const CoreMotion<T>& motion, const Times& times, bool right) {
-  return at_times(motion, times, right,
-                  [](const auto& view, const auto& along, const auto& segment, T tau) {
-                    return view.friction_of(along, segment, tau).*contact;
-                  });
-}
-
-/// Force of the end stops on the pin.
-template <class T>
-Array<double> stop_force(const CoreMotion<T>& motion, const Times& times, bool right) {
-  return at_times(motion, times, right,
-                  [](const auto& view, const auto& along, const auto& segment, T tau) {
-                    return view.stop_force_of(along, segment, tau);
-                  });
-}
-
-/// Stretch of a compliant finger's skin, or how fast it grows.
-template <bool rate, class T, class Trajectory>
-T stretch_of(const pd::Motion<T>& view, const Trajectory& along, T tau) {
-  const auto& force = along.finger_force();
-  const T stiffness = view.drive().finger.stiffness;
-  return -(rate ? along.at(along.derivative(force), tau) : along.at(force, tau)) / stiffness;
-}
-
-template <class T, bool rate>
-Array<double> stretch(const CoreMotion<T>& motion, const Times& times, bool right) {
-  return at_times(motion, times, right,
-                  [](const auto& view, const auto& along, const auto&, T tau) {
-                    return stretch_of<rate>(view, along, tau);
-                  });
-}
-
 /// Quantities at each time, by name, without quantities that the drive does not have.
 nb::dict columns(const CoreMotion<double>& motion, const Times& times, bool right) {
-  enum { position, velocity, acceleration, plate, finger, stop, skin, skin_rate, count };
-  const char* const names[count] = {"position",     "velocity",   "acceleration", "plate_force",
-                                    "finger_force", "stop_force", "stretch",      "stretch_rate"};
-  const auto view = motion.view();
-  const bool compliant = !view.drive().finger.rigid(), stops = view.drive().stops.present();
-  const auto has = [&](int i) { return i < stop || (i == stop ? stops : compliant); };
+  const pd::Drive<double>& drive = motion.drive();
+  std::vector<pd::Sampled> asked;
+  std::vector<const char*> names;
+  for (const NamedQuantity& each : quantities) {
+    if (each.of_skin() && drive.finger.rigid()) continue;
+    if (each.quantity == pd::Sampled::stop_force && !drive.stops.present()) continue;
+    asked.push_back(each.quantity);
+    names.push_back(each.name);
+  }
   auto found = interruptible([&](auto go_on) {
-    std::array<std::vector<double>, count> values;
-    for (int i = 0; i < count; ++i)
-      if (has(i)) values[i].resize(times.size());
-    each_time(motion, times, right, go_on,
-              [&](std::size_t i, const auto& along, const auto& segment, double tau) {
-                const auto friction = view.friction_of(along, segment, tau);
-                values[position][i] = view.value_of(along, tau, pd::Quantity::position);
-                values[velocity][i] = view.value_of(along, tau, pd::Quantity::velocity);
-                values[acceleration][i] = view.value_of(along, tau, pd::Quantity::acceleration);
-                values[plate][i] = friction.plate;
-                values[finger][i] = friction.finger;
-                if (stops) values[stop][i] = view.stop_force_of(along, segment, tau);
-                if (!compliant) return;
-                values[skin][i] = stretch_of<false>(view, along, tau);
-                values[skin_rate][i] = stretch_of<true>(view, along, tau);
-              });
+    std::vector<std::vector<double>> values(asked.size(), std::vector<double>(times.size()));
+    pd::sample(motion.view(), times.data(), times.size(), side_of(right), asked.data(),
+               asked.size(), [&](std::size_t i, const double* at) {
+                 for (std::size_t k = 0; k < asked.size(); ++k) values[k][i] = at[k];
+                 return go_on();
+               });
     return values;
   });
   nb::dict table;
-  for (int i = 0; i < count; ++i)
-    if (has(i)) table[names[i]] = to_array(std::move(found[i]));
+  for (std::size_t k = 0; k < asked.size(); ++k) table[names[k]] = to_array(std::move(found[k]));
   return table;
 }
 
@@ -293,8 +237,7 @@ nb::dict segments(const CoreMotion<T>& motion) {
   table["velocity"] =
       column<double>(motion, [](const Segment& s) { return result(s.flow.velocity.start); });
   table["acceleration"] = column<double>(motion, [view = motion.view()](const Segment& s) {
-    return result(
-        view.along(s, [](const auto& along) { return along.start(along.acceleration()); }));
+    return result(pd::start_acceleration(view, s));
   });
   table["plate"] = column<std::int8_t>(motion, [](const Segment& s) { return s.mode.plate; });
   table["finger"] = column<std::int8_t>(motion, [](const Segment& s) { return s.mode.finger; });
@@ -330,7 +273,7 @@ template <class T>
 nb::dict transient(const CoreMotion<T>& motion, double duration, double band) {
   const auto view = motion.view();
   return named(pd::transient_numbers<T>, interruptible([&](auto go_on) {
-                 return pd::Measurement<T, decltype(go_on)>(view, duration, go_on).transient(band);
+                 return pd::transient_of(view, T(duration), T(band), go_on);
                }));
 }
 
@@ -388,25 +331,22 @@ double duration(const CoreMotion<double>& motion, double band) {
 
 nb::dict certificate(const CoreMotion<double>& motion, double duration) {
   const auto view = motion.view();
-  return named(pd::certificate_numbers<double>, interruptible([&](auto go_on) {
-                 return pd::Certifier<double, decltype(go_on)>(view, duration, go_on).certify();
-               }));
+  return named(pd::certificate_numbers<double>,
+               interruptible([&](auto go_on) { return pd::certify(view, duration, go_on); }));
 }
 
 /// Common part of a motion and its derivatives.
 template <class T>
 nb::class_<CoreMotion<T>> bind(nb::module_& m, const char* name, const char* meaning) {
-  using Friction = pd::Friction<T>;
-  return nb::class_<CoreMotion<T>>(m, name, meaning)
-      .def("position", &evaluate<T, pd::Quantity::position>, "times"_a, "right"_a)
-      .def("velocity", &evaluate<T, pd::Quantity::velocity>, "times"_a, "right"_a)
-      .def("acceleration", &evaluate<T, pd::Quantity::acceleration>, "times"_a, "right"_a)
-      .def("plate_force", &force<T, &Friction::plate>, "times"_a, "right"_a)
-      .def("finger_force", &force<T, &Friction::finger>, "times"_a, "right"_a)
-      .def("stop_force", &stop_force<T>, "times"_a, "right"_a)
-      .def("stretch", &stretch<T, false>, "times"_a, "right"_a)
-      .def("stretch_rate", &stretch<T, true>, "times"_a, "right"_a)
-      .def("segments", &segments<T>, "Columns, one row a segment.")
+  nb::class_<CoreMotion<T>> bound(m, name, meaning);
+  for (const auto& [called, quantity] : quantities)
+    bound.def(
+        called,
+        [quantity = quantity](const CoreMotion<T>& motion, const Times& times, bool right) {
+          return evaluate(motion, quantity, times, right);
+        },
+        "times"_a, "right"_a);
+  return bound.def("segments", &segments<T>, "Columns, one row a segment.")
       .def("transient", &transient<T>, "duration"_a, "band"_a)
       .def("ledger", &ledger<T>, "duration"_a);
 }

@@ -22,6 +22,7 @@
 #include "pindrive/device/scan_evaluation.hpp"
 #include "pindrive/device/speed_limit.hpp"
 #include "pindrive/device/two_lines.hpp"
+#include "pindrive/engine.hpp"
 
 namespace nb = nanobind;
 namespace device = pindrive::device;

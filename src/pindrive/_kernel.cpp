@@ -8,7 +8,7 @@
 
 namespace pindrive_extension {
 
-extern const KernelFunctions kernel_1, kernel_2;
+extern const KernelFunctions kernel_2;
 #ifdef PINDRIVE_X86
 extern const KernelFunctions kernel_4, kernel_8;
 #endif
@@ -37,10 +37,9 @@ bool runs_8() {
 #endif
 
 struct Known {
-  KernelFunctions functions[5];
+  KernelFunctions functions[4];
   Known() : functions{} {
     KernelFunctions* next = functions;
-    *next++ = kernel_1;
     *next++ = kernel_2;
 #ifdef PINDRIVE_X86
     if (runs_4()) *next++ = kernel_4;

@@ -7,15 +7,7 @@ namespace pindrive_extension {
 
 namespace {
 
-template <int N>
-struct OfWidth {
-  using type = pk::Pack<N>;
-};
-template <>
-struct OfWidth<1> {
-  using type = double;
-};
-using V = OfWidth<PINDRIVE_WIDTH>::type;
+using V = pk::Pack<PINDRIVE_WIDTH>;
 
 /// The inputs of a block that bounds refer to, in their order.
 enum : int { mass, stiffness, damping, plate_kinetic, plate_static, finger_kinetic, finger_static };

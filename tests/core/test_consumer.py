@@ -19,7 +19,7 @@ from cases import EXPLORES
 ROOT = Path(__file__).resolve().parents[2]
 COMPILES = pytest.mark.timeout(1800)
 CONSUMER = ROOT / "tests" / "consumer"
-HEADERS = sorted(ROOT.glob("include/pindrive/**/*.hpp"))
+HEADERS = sorted(ROOT.glob("include/pindrive/*/*.hpp"))
 LAYERS = (
     "numbers",
     "flow",
@@ -70,13 +70,14 @@ PUBLIC = {
         "energy",
         "instant",
         "motion",
+        "sampling",
         "steady_numbers",
         "steady_since",
         "trajectory",
         "transient",
         "transient_numbers",
     },
-    "numbers": {"dual", "functions", "limits", "named_number"},
+    "numbers": {"callback", "dual", "functions", "limits", "named_number"},
     "series": {"input_range"},
 }
 """Headers with names for users of the core; all further headers are in `pindrive::detail`."""
@@ -174,7 +175,7 @@ def test_the_certificate_includes_nothing_that_selects_modes_or_finds_events() -
 
 
 def test_each_header_has_a_test_file() -> None:
-    headers = {path.stem for path in HEADERS}
+    headers = {path.stem for path in HEADERS if "namespace" in path.read_text("utf-8")}
     tested = {path.stem.removesuffix("_test") for path in ROOT.glob("tests/cpp/*_test.cpp")}
     assert headers <= tested, sorted(headers - tested)
 

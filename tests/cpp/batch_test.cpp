@@ -40,7 +40,7 @@ void summary() {
     events += pd::events_at_end(segment);
   });
   const pd::Motion<double> motion(drive, inputs, kept.data(), kept.size(), outcome);
-  const double duration = pd::duration_of(motion, pd::settling_band, pd::Unattended{});
+  const double duration = pd::duration_of(motion, pd::settling_band);
   const auto numbers = pd::Measurement<double>(motion, duration).transient(pd::settling_band);
 
   Segments lent(7);

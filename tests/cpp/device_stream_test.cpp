@@ -49,10 +49,10 @@ std::vector<Segments> streamed(const device::Device& device, const scanned::Page
     const double end = rows[i].time;
     until = pauses ? std::uniform_real_distribution<double>(until, end)(*pauses) : end;
     if (pauses && (*pauses)() % 3 == 0) until = end;
-    stream->advance(raster, until, pd::Unattended{}, sink);
+    stream->advance(raster, until, {}, sink);
     if (kept) stream = std::make_unique<device::DeviceStream>(device, raster, stream->state());
   }
-  stream->advance(raster, rows.back().time, pd::Unattended{}, sink);
+  stream->advance(raster, rows.back().time, {}, sink);
   for (std::size_t i = 0; i < found.size(); ++i)
     found[i].push_back(stream->pin(i).stepper().segment_until_now());
   return found;

@@ -89,7 +89,7 @@ Segments follow(const Setting& s, Random* pauses, bool kept) {
     if (pauses && (*pauses)() % 4 == 0)  // at a row or at a sample
       until = std::max(until, std::min(end, std::round(1000 * until) / 1000));
     pin->sample(s.inputs, 0, until);
-    pin->advance(s.inputs, until, pd::Unattended{}, sink);
+    pin->advance(s.inputs, until, {}, sink);
     if (kept) pin = std::make_unique<device::PinFollower>(s.inputs, pin->state());
   }
   found.push_back(pin->stepper().segment_until_now());

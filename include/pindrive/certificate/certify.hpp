@@ -26,7 +26,7 @@
 
 namespace pindrive {
 
-template <class T, class GoOn = Unattended>
+template <class T>
 class Certifier {
  public:
   Certifier(const Motion<T>& motion, T duration, GoOn go_on = {})
@@ -469,5 +469,11 @@ class Certifier {
   detail::Breakaways<T> breakaways_{};
   Certificate<T> result_{};
 };
+
+/// Returns the certificate of a motion over [0, duration], s.
+template <class T>
+Certificate<T> certify(const Motion<T>& motion, T duration, GoOn go_on = {}) {
+  return Certifier<T>(motion, duration, go_on).certify();
+}
 
 }  // namespace pindrive

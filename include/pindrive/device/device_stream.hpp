@@ -27,6 +27,9 @@ struct DeviceState {
 /// bit. The device is referenced; the raster may change between calls.
 class DeviceStream {
  public:
+  /// Receives the number of a pin, each segment of the pin that ends, and the state of the pin after.
+  using Sink = Callback<std::size_t, const Segment<double>&, const detail::State<double>&>;
+
   /// Pins at their states, one each, under a hand at rest or moving at a place.
   DeviceStream(const Device& device, const LiveHand::Row& first, Place place,
                std::vector<PinState> begins)
@@ -63,8 +66,7 @@ class DeviceStream {
   /// Advances all pins to a time (s) from least() to hand().end(). `sink(pin, segment, after)` is called with each
   /// segment that ends and the state of the pin after, and `go_on` after each event and row. False if the advance is
   /// incomplete: status() is not ok, or go_on() returned false; the next call continues from there.
-  template <class GoOn = Unattended, class Sink = Unattended>
-  bool advance(const Raster& raster, double until, GoOn go_on = {}, Sink&& sink = {}) {
+  bool advance(const Raster& raster, double until, GoOn go_on = {}, Sink sink = {}) {
     const ScanInputs given = inputs(raster);
     least_ = until;
     for (std::size_t i = 0; i < pins_.size(); ++i) {

@@ -20,6 +20,8 @@ namespace pindrive::device {
 /// change a bit.
 class PinFollower {
  public:
+  using Sink = Stepper<double>::Sink;
+
   /// Complete state: a follower constructed from this state gives identical bits.
   struct State {
     StepperState<double> motion;
@@ -39,7 +41,7 @@ class PinFollower {
         pending_(from.pending),
         stepper_(from.motion ? Stepper<double>(device_->drive, *from.motion)
                              : Stepper<double>(device_->drive, release(scan, from))) {
-    pass(scan, 0, Unattended{});
+    pass(scan, 0, {});
   }
   PinFollower(const ScanInputs& scan, const State& state)
       : device_(&scan.device),
@@ -72,8 +74,7 @@ class PinFollower {
 
   /// Advances the pin to a time until which it is sampled, s; false as for `Stepper::step`. Rows and
   /// switchings at that time itself wait for the next call. `go_on` is called after each event and row.
-  template <class GoOn = Unattended, class Sink = Unattended>
-  bool advance(const ScanInputs& scan, double until, GoOn go_on = {}, Sink&& sink = {}) {
+  bool advance(const ScanInputs& scan, double until, GoOn go_on = {}, Sink sink = {}) {
     const double end = until - begin_;
     for (double row = next(scan); row < end; row = next(scan)) {
       const double time = std::max(row, stepper_.now());
@@ -140,8 +141,7 @@ class PinFollower {
 
   /// Sets the inputs from their rows until a time, s since the begin. A change of the coil comes after a command
   /// at the same time.
-  template <class Sink>
-  void pass(const ScanInputs& scan, double time, Sink&& sink) {
+  void pass(const ScanInputs& scan, double time, Sink sink) {
     InputCurves<double> lines = stepper_.inputs();
     bool pulls = passed_ == -infinity;  // a piece of another scan may have ended
     for (double at; (at = std::min(command(), coil_.next())) - begin_ <= time; pulls = true) {

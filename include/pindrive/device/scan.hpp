@@ -93,8 +93,7 @@ struct PinRun {
   }
 
   /// Simulates the motion; go_on() is called after each event and row.
-  template <class GoOn>
-  void simulate(const ScanInputs& scan, PinState from, GoOn&& go_on) {
+  void simulate(const ScanInputs& scan, PinState from, GoOn go_on) {
     segments.clear();
     from.pending = switchings;
     PinFollower follower(scan, from);

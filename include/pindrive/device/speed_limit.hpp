@@ -38,8 +38,7 @@ class SpeedLimitSearch {
       : lines_(lines), direction_(direction), search_(search) {}
 
   /// Searches; go_on() is called after each event, and report(trials) after each trial.
-  template <class GoOn, class Report>
-  SpeedLimit found(GoOn&& go_on, Report&& report) {
+  SpeedLimit found(GoOn go_on, Callback<int> report) {
     SpeedLimit limit;
     const auto trial = [&](double speed) -> Record& {
       const auto at = std::lower_bound(records_.begin(), records_.end(), speed, is_slower);

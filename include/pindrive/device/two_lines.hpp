@@ -66,8 +66,7 @@ class TwoLines {
         frequency_(std::sqrt(device.drive.stiffness / device.drive.mass)) {}
 
   /// Trial at a speed, m/s; go_on() is called after each event and row.
-  template <class GoOn>
-  LineTrial at(double speed, GoOn&& go_on) {
+  LineTrial at(double speed, GoOn go_on) {
     LineTrial trial{speed, infinity, infinity, true, {}, phases(speed)};
     const Found found = pass(2, speed, clear() + 4 * pi / frequency_, trial.ahead, go_on);
     trial.status = found.status;
@@ -94,8 +93,7 @@ class TwoLines {
   };
 
   /// Goes over the first line alone, as in a trial of both.
-  template <class GoOn>
-  Settling settling(const LineTrial& trial, GoOn&& go_on) {
+  Settling settling(const LineTrial& trial, GoOn go_on) {
     const Found alone = pass(1, trial.speed, clear() + followed(), trial.ahead, go_on);
     bool in_time = alone.status == Status::ok;
     for (std::size_t i = 0; in_time && i < trial.until.size(); ++i)
@@ -187,9 +185,7 @@ class TwoLines {
   };
 
   /// Goes evenly over the first lines, once for each phase, and for some time more, s.
-  template <class GoOn>
-  Found pass(int lines, double speed, double after, const std::vector<double>& ahead,
-             GoOn&& go_on) {
+  Found pass(int lines, double speed, double after, const std::vector<double>& ahead, GoOn go_on) {
     const double from = begin(speed), to = (lines - 1) * pitch_ + width_ + speed * after;
     const double lasts = (to - from) / speed;
     const Raster page = draw(lines, from - pixel_, to + speed * interval() + pixel_);

@@ -24,8 +24,7 @@ class Simulation {
     select();
   }
 
-  template <class Sink>
-  Outcome<T> run(Sink&& sink) {
+  Outcome<T> run(SegmentSink<T> sink) {
     Pin<T>& pin = evolution_.pin;
     int standing = 0;
     Segment<T> segment;
@@ -56,7 +55,7 @@ class Simulation {
       }
       outcome_.until = segment.end;
       standing = segment.end > segment.begin ? 0 : standing + 1;
-      if (!goes_on(sink, segment))
+      if (!sink(segment))
         outcome_.status = Status::stopped;
       else if (finished || outcome_.cycles() ||
                (outcome_.end == End::irregular && !(inputs_.duration < never)))

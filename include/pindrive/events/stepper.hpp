@@ -28,6 +28,8 @@ class Stepper {
 
  public:
   using State = StepperState<T>;
+  /// Receives each segment that ends, and the state of the pin after.
+  using Sink = Callback<const Segment<T>&, const detail::State<T>&>;
 
   /// Release at the time `begin`, s. The duration of the inputs is ignored. The friction curves of
   /// the drive, and the rows and pieces of inputs, are referenced, not copied.
@@ -41,7 +43,7 @@ class Stepper {
       load_by(OwnedPiece<T>(*piece));
       evolution_.pin.plate.load = inputs_.plate_load.from(begin);
     }
-    select(false, Unattended{});
+    select(false, {});
   }
   /// From a state of a stepper. Of `begun`, the inputs of that stepper's release, those that change by
   /// themselves are read.
@@ -53,7 +55,7 @@ class Stepper {
         horizon_(state.horizon) {
     if (!state.load_piece.piece.straight()) load_by(state.load_piece);
     restore(state);
-    select(false, Unattended{});
+    select(false, {});
     event_ = state.event;
   }
   Stepper(const Stepper&) = delete;
@@ -80,8 +82,7 @@ class Stepper {
   ///
   /// Returns false if the step is incomplete: `status` is not ok, or go_on() returned false, and
   /// now() is the time of the last event; the next step continues from there.
-  template <class GoOn = Unattended, class Sink = Unattended>
-  bool step(T until, bool stop_at_event = false, GoOn go_on = {}, Sink&& sink = {}) {
+  bool step(T until, bool stop_at_event = false, GoOn go_on = {}, Sink sink = {}) {
     int standing = 0;
     bool stopped = false;
     while (status() == Status::ok && !stopped && !(next() > until) && next() < horizon_) {
@@ -113,8 +114,7 @@ class Stepper {
   ///
   /// `horizon` is the time (s) at which the inputs are set next at the latest: events are not sought
   /// beyond it, as if the inputs had a breakpoint there. `sink` is called as in a step.
-  template <class Sink = Unattended>
-  void set(const InputCurves<T>& given, T horizon = never, Sink&& sink = {}) {
+  void set(const InputCurves<T>& given, T horizon = never, Sink sink = {}) {
     Held<T>&velocity = inputs_.mouse_velocity.held(), &load = inputs_.plate_load.held();
     Held<T>&across = inputs_.across_velocity.held(), &force = inputs_.force.held();
     Held<T>& touch = inputs_.finger_load.held();
@@ -294,8 +294,7 @@ class Stepper {
   }
 
   /// Begins the next segment; the present one `ends`. Returns the transitions.
-  template <class Sink>
-  Event select(bool ends, Sink&& sink) {
+  Event select(bool ends, Sink sink) {
     last_ = kept();
     const auto &plate = evolution_.pin.plate, &finger = evolution_.pin.finger;
     // Linear quantities are evaluated over a finite time.
@@ -307,12 +306,12 @@ class Stepper {
     const Event event = evolution_.transitions(before_);
     if (ends) {
       segment_.event = event;
-      goes_on(sink, segment_, evolution_.pin.state);
+      sink(segment_, evolution_.pin.state);
     } else if (!same_mode(segment_.mode, evolution_.pin.mode())) {
       // Inputs set once more in one instant: the mode that was selected in between ends at once.
       segment_.event = evolution_.transitions(segment_.mode);
       segment_.end = evolution_.pin.time;
-      goes_on(sink, segment_, evolution_.pin.state);
+      sink(segment_, evolution_.pin.state);
     }
     evolution_.begin(segment_);
     tau_ = evolution_.earliest(segment_.flow);

@@ -290,7 +290,7 @@ template <class T>
 T largest_size(const Polynomial<T>& p) {
   const auto b = bernstein(p.c, p.degree);
   T most{0};
-  for (int n = 0; n <= p.degree; ++n) most = std::max(most, std::abs(b[n]));
+  for (int n = 0; n <= p.degree; ++n) most = std::max(most, abs(b[n]));
   return most;
 }
 

@@ -8,6 +8,7 @@
 
 #include "pindrive/flow/flow.hpp"
 #include "pindrive/model/input_function.hpp"
+#include "pindrive/numbers/callback.hpp"
 #include "pindrive/numbers/inlining.hpp"
 #include "pindrive/numbers/limits.hpp"
 
@@ -438,6 +439,10 @@ struct Segment {
   Propagator<T> after(T tau) const { return tau == end - begin ? moved : flow.after(tau); }
 };
 
+/// Receives the segments of a motion in order of time; may return false to stop.
+template <class T>
+using SegmentSink = Callback<const Segment<T>&>;
+
 /// Ending of a motion.
 enum class End : signed char {
   moving,       ///< unknown within the duration
@@ -469,26 +474,5 @@ struct Outcome {
     return end == End::stick_slip || end == End::limit_cycle || end == End::driven;
   }
 };
-
-/// Progress function that never interrupts. A progress function is called during long computations;
-/// if it returns false, the computation ends early and its result is meaningless. Also a sink that ignores
-/// all it is given.
-struct Unattended {
-  template <class... Arguments>
-  constexpr bool operator()(const Arguments&...) const {
-    return true;
-  }
-};
-
-/// Calls a function that may return false to request no further calls; true to continue.
-template <class Function, class... Arguments>
-bool goes_on(Function& function, const Arguments&... arguments) {
-  if constexpr (std::is_void_v<std::invoke_result_t<Function&, const Arguments&...>>) {
-    function(arguments...);
-    return true;
-  } else {
-    return function(arguments...);
-  }
-}
 
 }  // namespace pindrive

@@ -30,7 +30,7 @@ int events_at_end(const Segment<T>& segment) {
 
 /// Simulates one pin and measures its motion. `segments` is a container lent by the caller: its
 /// content is overwritten, and once it is large enough nothing is allocated.
-template <class T, class Segments, class GoOn = Unattended>
+template <class T, class Segments>
 Summary<T> summarise(const Drive<T>& drive, const Inputs<T>& inputs, T band, Segments& segments,
                      GoOn go_on = {}) {
   Summary<T> summary;
@@ -42,7 +42,7 @@ Summary<T> summarise(const Drive<T>& drive, const Inputs<T>& inputs, T band, Seg
   });
   const Motion<T> motion(drive, inputs, segments.data(), segments.size(), summary.outcome);
   summary.duration = duration_of(motion, band, go_on);
-  summary.transient = Measurement<T, GoOn>(motion, summary.duration, go_on).transient(band);
+  summary.transient = transient_of(motion, summary.duration, band, go_on);
   return summary;
 }
 

@@ -36,7 +36,7 @@ struct ContactsUse {
 namespace detail {
 
 /// Measures the use of the contacts of a motion, which outlives the measurement.
-template <class T, class GoOn = Unattended>
+template <class T>
 class ContactMeasurement {
  public:
   explicit ContactMeasurement(const Motion<T>& motion, GoOn go_on = {})

@@ -66,14 +66,15 @@ class SignChanges {
 
 /// Calls visit(time, sign after) where a quantity crosses a level in [0, until], s, until visit
 /// returns false. A tangency is no crossing.
-template <class T, class Visitor>
-void crossings(const Motion<T>& motion, Quantity quantity, T level, T until, Visitor&& visit) {
+template <class T>
+void crossings(const Motion<T>& motion, Quantity quantity, T level, T until,
+               detail::Given<Callback<T, int>> visit) {
   detail::SignChanges<T> changes;
   motion.expanded(T(0), until, [&](const Segment<T>& segment, T begin, T span) {
     return motion.along(segment, [&](const auto& along) {
       const auto path = along.above(quantity_of(along, quantity), level);
       return changes.follow(along, path, path, begin, span,
-                            [&](T time, T, int side) { return goes_on(visit, time, side); });
+                            [&](T time, T, int side) { return visit(time, side); });
     });
   });
 }
@@ -81,8 +82,9 @@ void crossings(const Motion<T>& motion, Quantity quantity, T level, T until, Vis
 /// Calls visit(time, value) at the extrema of a quantity in [0, until], s, in order, until visit
 /// returns false: at begin and end, at turning points, and on both sides of a jump. Between two
 /// neighbours the quantity is continuous and monotone.
-template <class T, class Visitor>
-void extrema(const Motion<T>& motion, Quantity quantity, T until, Visitor&& visit) {
+template <class T>
+void extrema(const Motion<T>& motion, Quantity quantity, T until,
+             detail::Given<Callback<T, T>> visit) {
   using std::abs;
   const Drive<T>& drive = motion.drive();
   detail::SignChanges<T> changes;
@@ -91,7 +93,7 @@ void extrema(const Motion<T>& motion, Quantity quantity, T until, Visitor&& visi
   const auto add = [&](T at, T value) {
     time = at;
     if (quantity == Quantity::position) value = drive.stops.within(value);
-    return more = goes_on(visit, at, value);
+    return more = visit(at, value);
   };
   const auto jumps = [&](const Flow<T>& flow, T value) {
     if (quantity == Quantity::velocity) return struck && value != end;
@@ -125,11 +127,12 @@ void extrema(const Motion<T>& motion, Quantity quantity, T until, Visitor&& visi
 
 /// Calls visit(time, segment) at the events in [from, to], s, with the segment that each event
 /// ends, until visit returns false.
-template <class T, class Visitor>
-void events(const Motion<T>& motion, T from, T to, Visitor&& visit) {
+template <class T>
+void events(const Motion<T>& motion, T from, T to,
+            detail::Given<Callback<T, const Segment<T>&>> visit) {
   motion.expanded(from, to, [&](const Segment<T>& segment, T begin, T) {
     const T time = segment.end + (begin - segment.begin);
-    return !segment.event.any() || !(time >= from && time <= to) || goes_on(visit, time, segment);
+    return !segment.event.any() || !(time >= from && time <= to) || visit(time, segment);
   });
 }
 

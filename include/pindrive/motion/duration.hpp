@@ -12,7 +12,7 @@ namespace pindrive {
 
 /// Requested duration or, without one, long enough to see the ending: a decay to a thousandth and
 /// settled within the band or the default band, or a few periods of a steady motion.
-template <class T, class GoOn = Unattended>
+template <class T>
 T duration_of(const Motion<T>& motion, T band, GoOn go_on = {}) {
   using std::isfinite;
   using std::sqrt;
@@ -25,7 +25,7 @@ T duration_of(const Motion<T>& motion, T band, GoOn go_on = {}) {
     case End::resting:
       return std::max(last_begin * T(1.25), period);
     case End::decaying: {
-      const Measurement<T, GoOn> measured(motion, never, go_on);
+      const Measurement<T> measured(motion, never, go_on);
       const T settled = measured.settling_time(std::min(band, T(settling_band)));
       const T decayed = measured.decayed() + period;  // infinite where there is nothing to decay
       if (!(decayed < never)) return last_begin + period;

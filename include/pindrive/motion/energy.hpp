@@ -83,7 +83,7 @@ T lost_at_stop(const Motion<T>& motion, const Trajectory& along, const Segment<T
 }  // namespace detail
 
 /// Computes the energy ledger of a motion over [0, duration].
-template <class T, class GoOn = Unattended>
+template <class T>
 Ledger<T> energy_ledger(const Motion<T>& motion, T duration, GoOn go_on = {}) {
   using std::abs;
   using std::sqrt;
@@ -132,8 +132,7 @@ Ledger<T> energy_ledger(const Motion<T>& motion, T duration, GoOn go_on = {}) {
     });
     return go_on();
   });
-  const ContactsUse<T> used =
-      detail::ContactMeasurement<T, GoOn>(motion, go_on).measure(T(0), duration);
+  const ContactsUse<T> used = detail::ContactMeasurement<T>(motion, go_on).measure(T(0), duration);
   ledger.plate_work += used.across_dissipated;
   ledger.plate_dissipated = used.plate.dissipated;
   ledger.finger_dissipated = used.finger.dissipated;

@@ -143,11 +143,6 @@ class Motion {
   Friction<T> friction(const Segment<T>& segment, T tau) const {
     return along(segment, [&](const auto& t) { return friction_of(t, segment, tau); });
   }
-  /// Force of the end stops on the pin, N.
-  T stop_force(const Segment<T>& segment, T tau) const {
-    if (!in_contact(segment.mode.stop)) return T(0);
-    return along(segment, [&](const auto& t) { return stop_force_of(t, segment, tau); });
-  }
 
   /// Position, velocity or acceleration along a trajectory from `along`.
   template <class Trajectory>
@@ -159,10 +154,6 @@ class Motion {
   Friction<T> friction_of(const Trajectory& t, const Segment<T>& segment, T tau) const {
     const auto lines = [&] { return InputCurves<T>::of(drive_, inputs_, segment); };
     return friction_along(t, drive_, segment, lines, tau);
-  }
-  template <class Trajectory>
-  T stop_force_of(const Trajectory& t, const Segment<T>& segment, T tau) const {
-    return stop_force_along(t, drive_, segment, inputs_.force.from(segment.begin), tau);
   }
   /// Energy stored in elastic stops, J; also while they return behind a pin.
   T stop_energy(T x) const {

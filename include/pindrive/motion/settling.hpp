@@ -19,7 +19,7 @@ bool may_turn(const Segment<T>& segment) {
 }
 
 /// Settling of a motion over [0, duration]; the motion outlives the measurement.
-template <class T, class GoOn = Unattended>
+template <class T>
 class Settling {
  public:
   Settling(const Motion<T>& motion, T duration, GoOn go_on = {})

@@ -42,7 +42,7 @@ struct Range {
 };
 
 /// Measures the stretch of a motion, which outlives it, from `cycle_begin` to its end.
-template <class T, class GoOn = Unattended>
+template <class T>
 class SteadyMeasurement {
  public:
   SteadyMeasurement(const Motion<T>& motion, GoOn go_on = {}) : motion_(motion), go_on_(go_on) {}
@@ -133,11 +133,11 @@ class SteadyMeasurement {
 }  // namespace detail
 
 /// Numbers of the motion in which a motion ends; NaN where it is at rest, decays or is not known.
-template <class T, class GoOn = Unattended>
+template <class T>
 SteadyNumbers<T> steady_numbers(const Motion<T>& motion, GoOn go_on = {}) {
   const Outcome<T>& outcome = motion.outcome();
   if (outcome.cycles() || outcome.end == End::irregular)
-    return detail::SteadyMeasurement<T, GoOn>(motion, go_on).measure();
+    return detail::SteadyMeasurement<T>(motion, go_on).measure();
   SteadyNumbers<T> found;
   if (!outcome.steady()) return found;
   const Flow<T>& last = std::prev(motion.end())->flow;

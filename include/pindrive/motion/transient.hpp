@@ -20,7 +20,7 @@ namespace pindrive {
 
 /// Measures a motion over [0, duration]; the motion outlives the measurement. Numbers of later
 /// events, or of none, are NaN.
-template <class T, class GoOn = Unattended>
+template <class T>
 class Measurement {
  public:
   Measurement(const Motion<T>& motion, T duration, GoOn go_on = {})
@@ -74,7 +74,7 @@ class Measurement {
       result.settling_time = settling().within(result.end_position, band);
   }
 
-  detail::Settling<T, GoOn> settling() const { return {motion_, duration_, go_on_}; }
+  detail::Settling<T> settling() const { return {motion_, duration_, go_on_}; }
 
   T length(const Segment<T>& segment) const {
     return std::min(segment.end, duration_) - segment.begin;
@@ -214,7 +214,7 @@ class Measurement {
     if (outcome.end == End::decaying) end = result.last_event_time;
     if (outcome.steady()) end = result.steady_since;
     result.end_time = std::min({end, duration_, motion_.known_until()});
-    const detail::ContactMeasurement<T, GoOn> measurement(motion_, go_on_);
+    const detail::ContactMeasurement<T> measurement(motion_, go_on_);
     const ContactsUse<T> used = measurement.measure(T(0), result.end_time);
     result.plate = used.plate;
     result.finger = used.finger;
@@ -236,7 +236,7 @@ class Measurement {
     const Drive<T>& drive = motion_.drive();
     const Segment<T>& last = *std::prev(motion_.end());
     if (outcome.steady()) {
-      const detail::ContactMeasurement<T, GoOn> measurement(motion_, go_on_);
+      const detail::ContactMeasurement<T> measurement(motion_, go_on_);
       const T begin = outcome.cycles() ? outcome.cycle_begin : last.begin;
       const ContactsUse<T> period = measurement.measure(begin, begin + outcome.period);
       result.plate_afterwards.add(period.plate, outcome.period);
@@ -282,5 +282,12 @@ class Measurement {
   T duration_;
   GoOn go_on_;
 };
+
+/// Returns the numbers of a motion over [0, duration], s; `band` is the settling band, a fraction of
+/// |x(0) − x_end|.
+template <class T>
+Transient<T> transient_of(const Motion<T>& motion, T duration, T band, GoOn go_on = {}) {
+  return Measurement<T>(motion, duration, go_on).transient(band);
+}
 
 }  // namespace pindrive

@@ -80,6 +80,11 @@ class Model:
             for r in range(len(recordings))
         ]
 
+    def thinned(self, samples: int) -> Model:
+        """Return the model with evenly spaced samples of each recording, at least `samples` or all."""
+        strides = [max(1, len(recording.time) // samples) for recording in self.recordings]
+        return Model(self.parameters, self.drive, self.releases, self.recordings, strides)
+
     def _latest(self, r: int) -> float:
         """Until when a recording is simulated, s."""
         own = [p.lower for p in self.parameters if p.key == "time_offset" and p.recording == r]

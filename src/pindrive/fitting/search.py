@@ -104,12 +104,7 @@ def _root(covariance: Array) -> Array:
 
 def search(model: Model, weights: Array, seed: int) -> tuple[Optimum, Array]:
     """Return the best optimum of the best of many candidates, and all candidates, shape (n, k)."""
-    counts = [len(recording.time) for recording in model.recordings]
-    strides = [max(1, n // ROUGH) for n in counts]
-    strides = [max(1, n // COARSE) for n in counts]
-    args = model.parameters, model.drive, model.releases, model.recordings
-    coarse = Model(*args, strides)
-    rough = Model(*args, strides)
+    coarse, rough = model.thinned(COARSE), model.thinned(ROUGH)
     thin, few = _thinned(model, rough, weights), _thinned(model, coarse, weights)
     problem = Problem(rough, thin)
     tried = _candidates(coarse, few, seed)
