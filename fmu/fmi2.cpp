@@ -4,9 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "fmi2Functions.h"
-#include "instance.hpp"
-#include "interface.hpp"
+#include "entry.hpp"
+#include "fmi.hpp"
 
 namespace {
 
@@ -30,20 +29,13 @@ struct Component {
 };
 Component& at(fmi2Component c) { return *static_cast<Component*>(c); }
 
-/// Runs what may be refused; the importer is told why.
 template <class Function>
 fmi2Status attempt(fmi2Component c, Function&& function) {
-  return at(c).told(function(at(c).instance));
+  return pindrive_fmu::attempt<Component>(c, function);
 }
-
-/// Applies a function to several numbers.
 template <class Function>
 fmi2Status each(fmi2Component c, size_t count, Function&& function) {
-  return attempt(c, [&](Instance& i) {
-    pindrive_error error = PINDRIVE_OK;
-    for (size_t k = 0; k < count && !error; ++k) error = function(i, k);
-    return error;
-  });
+  return pindrive_fmu::each<Component>(c, count, function);
 }
 
 Text text(const char* from) { return Text(from, from + std::strlen(from) + 1); }
@@ -76,16 +68,17 @@ Text folder_of(const char* uri) {
 
 }  // namespace
 
-extern "C" {
-
-const char* fmi2GetTypesPlatform(void) { return fmi2TypesPlatform; }
-const char* fmi2GetVersion(void) { return fmi2Version; }
-fmi2Status fmi2SetDebugLogging(fmi2Component, fmi2Boolean, size_t, const fmi2String[]) {
+PINDRIVE_FMI const char* fmi2GetTypesPlatform(void) { return "default"; }
+PINDRIVE_FMI const char* fmi2GetVersion(void) { return "2.0"; }
+PINDRIVE_FMI fmi2Status fmi2SetDebugLogging(fmi2Component, fmi2Boolean, size_t,
+                                            const fmi2String[]) {
   return fmi2OK;
 }
 
-fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources,
-                              const fmi2CallbackFunctions* functions, fmi2Boolean, fmi2Boolean) {
+PINDRIVE_FMI fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid,
+                                           fmi2String resources,
+                                           const fmi2CallbackFunctions* functions, fmi2Boolean,
+                                           fmi2Boolean) {
   auto made = std::make_unique<Component>();
   made->name = text(name ? name : "");
   made->log = functions ? functions->logger : nullptr;
@@ -96,35 +89,36 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
           : fail(PINDRIVE_UNSUPPORTED, "a drive is for co-simulation: it solves its own equations");
   return made->told(error) == fmi2OK ? made.release() : nullptr;
 }
-void fmi2FreeInstance(fmi2Component c) { delete static_cast<Component*>(c); }
+PINDRIVE_FMI void fmi2FreeInstance(fmi2Component c) { delete static_cast<Component*>(c); }
 
-fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean, fmi2Real, fmi2Real start, fmi2Boolean,
-                               fmi2Real) {
+PINDRIVE_FMI fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean, fmi2Real, fmi2Real start,
+                                            fmi2Boolean, fmi2Real) {
   return attempt(c, [&](Instance& i) { return i.set_start_time(start); });
 }
-fmi2Status fmi2EnterInitializationMode(fmi2Component) { return fmi2OK; }
-fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
+PINDRIVE_FMI fmi2Status fmi2EnterInitializationMode(fmi2Component) { return fmi2OK; }
+PINDRIVE_FMI fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
   return attempt(c, [](Instance& i) { return i.initialise(); });
 }
-fmi2Status fmi2Terminate(fmi2Component) { return fmi2OK; }
-fmi2Status fmi2Reset(fmi2Component c) {
+PINDRIVE_FMI fmi2Status fmi2Terminate(fmi2Component) { return fmi2OK; }
+PINDRIVE_FMI fmi2Status fmi2Reset(fmi2Component c) {
   at(c).instance.reset();
   return fmi2OK;
 }
 
-fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t n, fmi2Real value[]) {
+PINDRIVE_FMI fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t n,
+                                    fmi2Real value[]) {
   return each(c, n, [&](Instance& i, size_t k) { return i.number(vr[k], value[k]); });
 }
-fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t n,
-                          fmi2Integer value[]) {
+PINDRIVE_FMI fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t n,
+                                       fmi2Integer value[]) {
   return each(c, n, [&](Instance& i, size_t k) { return i.whole(vr[k], value[k]); });
 }
-fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t n,
-                       const fmi2Real value[]) {
+PINDRIVE_FMI fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t n,
+                                    const fmi2Real value[]) {
   return each(c, n, [&](Instance& i, size_t k) { return i.set(vr[k], value[k]); });
 }
-fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t n,
-                          fmi2Boolean value[]) {
+PINDRIVE_FMI fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t n,
+                                       fmi2Boolean value[]) {
   return each(c, n, [&](Instance& i, size_t k) {
     bool flag = false;
     const pindrive_error error = i.flag(vr[k], flag);
@@ -132,109 +126,90 @@ fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t
     return error;
   });
 }
-fmi2Status fmi2GetString(fmi2Component, const fmi2ValueReference[], size_t n, fmi2String[]) {
+PINDRIVE_FMI fmi2Status fmi2GetString(fmi2Component, const fmi2ValueReference[], size_t n,
+                                      fmi2String[]) {
   return n == 0 ? fmi2OK : fmi2Error;
 }
-fmi2Status fmi2SetInteger(fmi2Component, const fmi2ValueReference[], size_t n,
-                          const fmi2Integer[]) {
+PINDRIVE_FMI fmi2Status fmi2SetInteger(fmi2Component, const fmi2ValueReference[], size_t n,
+                                       const fmi2Integer[]) {
   return n == 0 ? fmi2OK : fmi2Error;
 }
-fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t n,
-                          const fmi2Boolean value[]) {
+PINDRIVE_FMI fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t n,
+                                       const fmi2Boolean value[]) {
   return each(c, n,
               [&](Instance& i, size_t k) { return i.set_flag(vr[k], value[k] != fmi2False); });
 }
-fmi2Status fmi2SetString(fmi2Component, const fmi2ValueReference[], size_t n, const fmi2String[]) {
+PINDRIVE_FMI fmi2Status fmi2SetString(fmi2Component, const fmi2ValueReference[], size_t n,
+                                      const fmi2String[]) {
   return n == 0 ? fmi2OK : fmi2Error;
 }
 
-fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* state) {
-  return attempt(c, [&](Instance& i) {
-    std::unique_ptr<Instance::State> kept;
-    const pindrive_error error = i.keep(kept);
-    if (!error) delete static_cast<Instance::State*>(std::exchange(*state, kept.release()));
-    return error;
-  });
+PINDRIVE_FMI fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* state) {
+  return pindrive_fmu::keep_state<Component>(c, state);
 }
-fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
-  return attempt(c, [&](Instance& i) { return i.go_back(*static_cast<Instance::State*>(state)); });
+PINDRIVE_FMI fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
+  return pindrive_fmu::restore_state<Component>(c, state);
 }
-fmi2Status fmi2FreeFMUstate(fmi2Component, fmi2FMUstate* state) {
-  delete static_cast<Instance::State*>(*state);
-  *state = nullptr;
+PINDRIVE_FMI fmi2Status fmi2FreeFMUstate(fmi2Component, fmi2FMUstate* state) {
+  pindrive_fmu::free_state(state);
   return fmi2OK;
 }
-fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t* size) {
-  return attempt(c, [&](Instance&) {
-    std::vector<unsigned char> all;
-    const pindrive_error error = Instance::write(*static_cast<Instance::State*>(state), all);
-    *size = all.size();
-    return error;
-  });
+PINDRIVE_FMI fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state,
+                                                   size_t* size) {
+  return pindrive_fmu::serialized_size<Component>(c, state, size);
 }
-fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[],
-                                 size_t size) {
-  return attempt(c, [&](Instance&) -> pindrive_error {
-    std::vector<unsigned char> all;
-    const pindrive_error error = Instance::write(*static_cast<Instance::State*>(state), all);
-    if (error) return error;
-    if (size != all.size())
-      return fail(PINDRIVE_BAD_VALUE, "the size must be that of the state, %zu, not %zu",
-                  all.size(), size);
-    std::memcpy(bytes, all.data(), size);
-    return PINDRIVE_OK;
-  });
+PINDRIVE_FMI fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[],
+                                              size_t size) {
+  return pindrive_fmu::serialize<Component>(c, state, bytes, size);
 }
-fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size,
-                                   fmi2FMUstate* state) {
-  return attempt(c, [&](Instance& i) {
-    std::unique_ptr<Instance::State> found;
-    const pindrive_error error = i.read(reinterpret_cast<const unsigned char*>(bytes), size, found);
-    if (!error) delete static_cast<Instance::State*>(std::exchange(*state, found.release()));
-    return error;
-  });
+PINDRIVE_FMI fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[],
+                                                size_t size, fmi2FMUstate* state) {
+  return pindrive_fmu::deserialize<Component>(c, bytes, size, state);
 }
 
-fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknown[],
-                                        size_t unknowns, const fmi2ValueReference known[],
-                                        size_t knowns, const fmi2Real seed[], fmi2Real found[]) {
+PINDRIVE_FMI fmi2Status fmi2GetDirectionalDerivative(
+    fmi2Component c, const fmi2ValueReference unknown[], size_t unknowns,
+    const fmi2ValueReference known[], size_t knowns, const fmi2Real seed[], fmi2Real found[]) {
   return each(c, unknowns, [&](Instance& i, size_t k) {
     return i.derivative(unknown[k], known, seed, knowns, found[k]);
   });
 }
 
-fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t n,
-                                       const fmi2Integer order[], const fmi2Real value[]) {
+PINDRIVE_FMI fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[],
+                                                    size_t n, const fmi2Integer order[],
+                                                    const fmi2Real value[]) {
   return each(c, n, [&](Instance& i, size_t k) {
     if (order[k] == 1) return i.set_rate(vr[k], value[k]);
     return fail(PINDRIVE_BAD_VALUE, "an input has a first derivative, and none of order %d",
                 order[k]);
   });
 }
-fmi2Status fmi2GetRealOutputDerivatives(fmi2Component, const fmi2ValueReference[], size_t n,
-                                        const fmi2Integer[], fmi2Real[]) {
+PINDRIVE_FMI fmi2Status fmi2GetRealOutputDerivatives(fmi2Component, const fmi2ValueReference[],
+                                                     size_t n, const fmi2Integer[], fmi2Real[]) {
   return n == 0 ? fmi2OK : fmi2Error;
 }
-fmi2Status fmi2DoStep(fmi2Component c, fmi2Real from, fmi2Real size, fmi2Boolean) {
+PINDRIVE_FMI fmi2Status fmi2DoStep(fmi2Component c, fmi2Real from, fmi2Real size, fmi2Boolean) {
   bool happens = false;
   return attempt(c, [&](Instance& i) { return i.step(from, size, false, happens); });
 }
-fmi2Status fmi2CancelStep(fmi2Component) { return fmi2Error; }
-fmi2Status fmi2GetStatus(fmi2Component, const fmi2StatusKind, fmi2Status*) { return fmi2Discard; }
-fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Real* value) {
+PINDRIVE_FMI fmi2Status fmi2CancelStep(fmi2Component) { return fmi2Error; }
+PINDRIVE_FMI fmi2Status fmi2GetStatus(fmi2Component, const fmi2StatusKind, fmi2Status*) {
+  return fmi2Discard;
+}
+PINDRIVE_FMI fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind,
+                                          fmi2Real* value) {
   if (kind != fmi2LastSuccessfulTime) return fmi2Discard;
   return attempt(c, [&](Instance& i) { return i.now(*value); });
 }
-fmi2Status fmi2GetIntegerStatus(fmi2Component, const fmi2StatusKind, fmi2Integer*) {
+PINDRIVE_FMI fmi2Status fmi2GetIntegerStatus(fmi2Component, const fmi2StatusKind, fmi2Integer*) {
   return fmi2Discard;
 }
-fmi2Status fmi2GetBooleanStatus(fmi2Component, const fmi2StatusKind kind, fmi2Boolean* value) {
+PINDRIVE_FMI fmi2Status fmi2GetBooleanStatus(fmi2Component, const fmi2StatusKind kind,
+                                             fmi2Boolean* value) {
   if (kind != fmi2Terminated) return fmi2Discard;
   *value = fmi2False;
   return fmi2OK;
 }
-fmi2Status fmi2GetStringStatus(fmi2Component, const fmi2StatusKind, fmi2String*) {
+PINDRIVE_FMI fmi2Status fmi2GetStringStatus(fmi2Component, const fmi2StatusKind, fmi2String*) {
   return fmi2Discard;
 }
-
-}  // extern "C"

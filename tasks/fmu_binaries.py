@@ -10,7 +10,7 @@ from pathlib import Path
 from tasks.environment import BIN, ROOT, STAMP, install, quietly, write_stamp
 from tasks.machine import stop
 
-FMU_OF_CAPI = ("drive.cpp", "stepper.cpp")
+FMU_OF_CAPI = ("contradictions.cpp", "device_parameters.cpp", "drive.cpp", "stepper.cpp")
 
 # What FMI 3 calls a platform, what the compiler does, and how its libraries end.
 FMU_PLATFORMS = {
@@ -67,9 +67,7 @@ def fmu_binary(name: str) -> Path:
     """The library that an FMU carries for a platform, compiled here."""
     target, suffix = FMU_PLATFORMS[name]
     sources = [*sorted((ROOT / "fmu").glob("*.cpp")), *(ROOT / "capi" / n for n in FMU_OF_CAPI)]
-    headers = [
-        f"-I{ROOT / folder}" for folder in ("include", "capi", "fmu", "fmu/fmi2", "fmu/fmi3")
-    ]
+    headers = [f"-I{ROOT / folder}" for folder in ("include", "capi", "fmu")]
     library = ROOT / "build" / "fmu" / name / f"pindrive.{suffix}"
     library.parent.mkdir(parents=True, exist_ok=True)
     zig = [str(BIN / "python"), "-m", "ziglang"]

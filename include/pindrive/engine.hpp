@@ -21,6 +21,8 @@
 // Each list takes a number type, and `extern` to declare its instances or nothing to define them.
 
 #define PINDRIVE_ENGINE_SIMULATION(T, declared)      \
+  declared template struct InputPiece<T>;            \
+  declared template class detail::TermSum<T>;        \
   declared template class detail::SeriesFlow<T>;     \
   declared template class detail::CreepFlow<T>;      \
   declared template class detail::OverdampedFlow<T>; \
