@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from tasks.machine import check_machine
@@ -17,11 +18,12 @@ ROOT = Path(__file__).resolve().parents[1]
 VENV = ROOT / ".venv"
 BIN = VENV / ("Scripts" if os.name == "nt" else "bin")
 STAMP = VENV / "pindrive.json"
+WHEELS = ROOT / "build" / "installed"
 SOURCES = ("pyproject.toml", "CMakeLists.txt", "include", "engine", "capi", "fmu", "src")
 
 
-def requirements(extras: set[str]) -> list[str]:
-    """Return the requirements of pyproject.toml to build, to run, and for the given extras."""
+def requirements(extras: set[str], *, runs: bool = True) -> list[str]:
+    """Return the requirements of pyproject.toml to build, to run unless told not to, and for extras."""
     import tomllib
 
     pyproject = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
@@ -34,7 +36,7 @@ def requirements(extras: set[str]) -> list[str]:
             else:
                 yield line
 
-    wanted = {*pyproject["build-system"]["requires"], *project["dependencies"]}
+    wanted = {*pyproject["build-system"]["requires"], *(project["dependencies"] if runs else ())}
     return sorted(wanted.union(*map(extra, extras)))
 
 
@@ -80,10 +82,25 @@ def quietly(what: str, command: list[str]) -> None:
         raise SystemExit(f"run.py: {what} failed, see above")
 
 
-def pip(what: str, *arguments: str) -> None:
-    """Installs into `.venv`."""
+def pip(what: str, command: str, *arguments: str) -> None:
+    """Runs pip in `.venv`. Python compiles what is imported, which is a small part of what is installed."""
     python = str(BIN / "python")
-    quietly(what, [python, "-m", "pip", "install", "--disable-pip-version-check", *arguments])
+    options = ["--no-compile"] if command == "install" else []
+    quietly(what, [python, "-m", "pip", "--disable-pip-version-check", command, *options, *arguments])
+
+
+def build_wheel() -> None:
+    """Builds the project into `WHEELS`, without isolation; changes nothing in `.venv`."""
+    shutil.rmtree(WHEELS, ignore_errors=True)
+    place = f"--wheel-dir={WHEELS}"
+    build = "--config-settings=build-dir=build/{wheel_tag}"
+    pip("building pindrive", "wheel", "--no-deps", "--no-build-isolation", place, build, ".")
+
+
+def install_wheel() -> None:
+    """Installs the wheel that `build_wheel` has built."""
+    wheels = map(str, WHEELS.glob("*.whl"))
+    pip("installing pindrive", "install", "--no-deps", "--force-reinstall", *wheels)
 
 
 def write_stamp(stamp: dict[str, object]) -> None:
@@ -110,19 +127,29 @@ def install(extras: set[str], *, project: bool = True) -> None:
 
     if not stamp:
         STAMP.unlink(missing_ok=True)
+        print("run.py: the first run compiles pindrive, for about a minute", file=sys.stderr)
         quietly("making .venv", [sys.executable, "-m", "venv", "--clear", str(VENV)])
-    wanted = requirements(extras)
-    if stamp.get("requirements") != wanted:
+    wanted, sources = requirements(extras), fingerprint()
+    needs = stamp.get("requirements") != wanted
+    builds = project and stamp.get("sources") != sources
+    if needs:
         STAMP.unlink(missing_ok=True)
-        pip("installing what pindrive needs", *wanted)
-        stamp |= {"python": sys.version, "place": str(VENV)}
-        stamp |= {"extras": sorted(extras), "requirements": wanted}
-        write_stamp(stamp)
-    sources = fingerprint()
-    if project and stamp.get("sources") != sources:
+        if builds:
+            pip("installing what builds pindrive", "install", *requirements({"build"}, runs=False))
+    elif builds:
         write_stamp({**stamp, "sources": None})
-        build = "--config-settings=build-dir=build/{wheel_tag}"
-        pip("building pindrive", "--no-deps", "--no-build-isolation", build, ".")
+    # Compilation takes all cores for most of the time, downloads take one for some of it.
+    with ThreadPoolExecutor(1) as beside:
+        built = beside.submit(build_wheel) if builds else None
+        if needs:
+            pip("installing what pindrive needs", "install", *wanted)
+            stamp |= {"python": sys.version, "place": str(VENV)}
+            stamp |= {"extras": sorted(extras), "requirements": wanted}
+            write_stamp({**stamp, "sources": None} if builds else stamp)
+        if built:
+            built.result()
+    if builds:
+        install_wheel()
         write_stamp({**stamp, "sources": sources})
 
 
