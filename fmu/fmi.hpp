@@ -1,5 +1,5 @@
 /// Types of the Functional Mock-up Interface 2.0.4 and 3.0.2 (https://fmi-standard.org) that the functions of a
-/// unit take. Names, sizes and values are those of the standard; tests/files/test_fmi_types.py compares them.
+/// unit take, with the names, sizes and values of the standard (compared in tests/files/test_fmi_types.py).
 #pragma once
 
 #include <cstddef>

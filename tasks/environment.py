@@ -86,7 +86,9 @@ def pip(what: str, command: str, *arguments: str) -> None:
     """Runs pip in `.venv`. Python compiles what is imported, which is a small part of what is installed."""
     python = str(BIN / "python")
     options = ["--no-compile"] if command == "install" else []
-    quietly(what, [python, "-m", "pip", "--disable-pip-version-check", command, *options, *arguments])
+    quietly(
+        what, [python, "-m", "pip", "--disable-pip-version-check", command, *options, *arguments]
+    )
 
 
 def build_wheel() -> None:

@@ -59,9 +59,10 @@ def test_package_lists_its_public_names(name: str) -> None:
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_functions_document_arguments_results_and_errors(name: str) -> None:
     words = inspect.getdoc(getattr(pd, name)) or ""
-    for part in ("Args:", "Returns:", "Raises:"):
+    arguments = inspect.signature(getattr(pd, name)).parameters
+    for part in ("Args:", "Returns:", "Raises:") if arguments else ("Returns:",):
         assert part in words, part
-    for argument in inspect.signature(getattr(pd, name)).parameters:
+    for argument in arguments:
         assert argument in words, argument
 
 

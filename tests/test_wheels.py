@@ -21,7 +21,10 @@ WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
 
 LIBRARIES = [f"pindrive/fmu/{name}/pindrive.{end}" for name, (_, end) in FMU_PLATFORMS.items()]
-WHOLE = ["pindrive/_core.abi3.so", "pindrive/studio.html", *LIBRARIES]
+WHOLE = [
+    *("pindrive/_core.abi3.so", "pindrive/studio.html", "pindrive/lib/libpindrive.so"),
+    *LIBRARIES,
+]
 GOOD = "pindrive-0.1.0-cp312-abi3-manylinux_2_28_x86_64.whl"
 
 
@@ -36,6 +39,7 @@ def test_a_whole_wheel_is_right(name: str) -> None:
     [
         (GOOD, 8.01, WHOLE, "has 8.01 MB; at most 8 MB"),
         (GOOD, 1.0, WHOLE[:2], "no library of FMUs"),
+        (GOOD, 1.0, [n for n in WHOLE if "/lib/" not in n], "no C library"),
         (GOOD, 1.0, WHOLE[:-1], "for aarch64-linux"),
         (GOOD, 1.0, [n for n in WHOLE if "studio" not in n], "lacks the studio page"),
         (GOOD.replace("manylinux_2_28", "linux"), 1.0, WHOLE, "not manylinux"),
@@ -50,7 +54,7 @@ def test_faults_of_a_wheel(name: str, size: float, names: list[str], complaint: 
 
 
 def test_without_complete_the_page_and_other_platforms_may_be_missing() -> None:
-    assert faults(GOOD, 1.0, [WHOLE[0], LIBRARIES[0]], complete=False) == []
+    assert faults(GOOD, 1.0, [WHOLE[0], WHOLE[2], LIBRARIES[0]], complete=False) == []
 
 
 def test_a_wheel_of_the_stable_abi_serves_later_pythons() -> None:

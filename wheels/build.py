@@ -23,6 +23,7 @@ DIST = ROOT / "build" / "dist"
 EXAMPLE = ROOT / "examples" / "tactile-mouse.toml"
 LARGEST = 8.0  # MB, of a wheel with the page and the libraries of FMUs for all platforms
 SLOWEST = 20.0  # s, of the installation and the first command after it
+C_LIBRARY = "-Ccmake.define.PINDRIVE_C=ON"
 PLATFORMS = 6  # those of `python3 run.py fmu-binaries`
 
 
@@ -56,6 +57,8 @@ def faults(name: str, size: float, names: Iterable[str], *, complete: bool) -> l
         wrong.append(f"{name} has {size:.2f} MB; at most {LARGEST:g} MB are allowed")
     if not platforms:
         wrong.append(f"{name} has no library of FMUs")
+    if not any(re.fullmatch(r"pindrive/lib/(lib)?pindrive\.\w+", each) for each in found):
+        wrong.append(f"{name} has no C library")
     if complete and not page:
         wrong.append(f"{name} lacks the studio page; build it with `python3 run.py studio`")
     if complete and len(platforms) < PLATFORMS:
@@ -96,7 +99,7 @@ def build() -> tuple[Path, Path]:
     shutil.rmtree(DIST, ignore_errors=True)
     with tempfile.TemporaryDirectory() as folder:
         made = Path(folder)
-        module = (sys.executable, "-m", "build", "--no-isolation", "--outdir", made)
+        module = (sys.executable, "-m", "build", "--no-isolation", C_LIBRARY, "--outdir", made)
         call("building the sdist, and the wheel from it", *module, ROOT)
         (sdist,) = made.glob("*.tar.gz")
         (wheel,) = made.glob("*.whl")
@@ -109,7 +112,16 @@ def build_with(python: str, sdist: Path) -> Path:
     with tempfile.TemporaryDirectory() as folder:
         place = Path(folder)
         programs = environment(python, place / "venv")
-        making = (programs / "python", "-m", "pip", "wheel", "--no-deps", "--wheel-dir", place)
+        making = (
+            programs / "python",
+            "-m",
+            "pip",
+            "wheel",
+            "--no-deps",
+            C_LIBRARY,
+            "--wheel-dir",
+            place,
+        )
         call(f"building the wheel of {name_of(python)}", *making, sdist)
         (wheel,) = place.glob("*.whl")
         return kept(wheel)
@@ -176,6 +188,8 @@ def try_out(wheel: Path, python: str | Path) -> tuple[float, float, float]:
         simulating, printed = timed("simulating the example with it", *command)
         if "Laws checked" not in printed:
             raise SystemExit(f"wheel: simulate printed no check of its laws, but:\n{printed}")
+        loading = "import ctypes, pindrive; ctypes.CDLL(pindrive.get_library()).pindrive_drive_new"
+        timed("loading its C library", programs / "python", "-c", loading)
         extra = f"{wheel}[complete]"
         completing, _ = timed(
             'installing the extra "complete"', *pip, "--only-binary", ":all:", extra

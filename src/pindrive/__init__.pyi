@@ -27,6 +27,8 @@ from .motion.profile import Profile as Profile
 from .motion.motion import Motion as Motion
 from .motion.release import Release as Release
 from .motion.simulate import simulate as simulate
+from .native import get_include as get_include
+from .native import get_library as get_library
 from .optimisation.designing import optimise as optimise
 from .quantities.status import Status as Status
 from .quantities.table import ImplausibleValueWarning as ImplausibleValueWarning

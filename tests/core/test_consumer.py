@@ -188,8 +188,10 @@ def test_build_is_optimised_by_default(tmp_path: Path) -> None:
 
 
 @COMPILES
-def test_add_subdirectory(tmp_path: Path) -> None:
-    build(CONSUMER, tmp_path / "build", f"-DPINDRIVE_SOURCE={ROOT.as_posix()}")
+@pytest.mark.parametrize("target", ["pindrive", "engine"])
+def test_add_subdirectory(target: str, tmp_path: Path) -> None:
+    settings = (f"-DPINDRIVE_SOURCE={ROOT.as_posix()}", f"-DPINDRIVE_TARGET={target}")
+    build(CONSUMER, tmp_path / "build", *settings)
     check(tmp_path / "build" / "consumer")
 
 

@@ -1,4 +1,4 @@
-"""The types and functions of `fmu/` are those of the standard's headers, which FMPy carries."""
+"""Types and functions of `fmu/` equal the declarations in the standard's headers, which FMPy carries."""
 
 from __future__ import annotations
 
@@ -73,7 +73,9 @@ def test_functions_are_those_of_the_standard(version: int, tmp_path: Path) -> No
     step = f"fmi{version}DoStep("
     assert compiled(standard.replace(step, step + "int, "), tmp_path).returncode != 0
 
-    declared = {*re.findall(r"^\s*FMI\d_Export \w+\s+(\w+);", (STANDARD / header).read_text(), re.M)}
+    declared = {
+        *re.findall(r"^\s*FMI\d_Export \w+\s+(\w+);", (STANDARD / header).read_text(), re.M)
+    }
     defined = {*re.findall(r"^PINDRIVE_FMI [\w\s]+\*?\s*\b(fmi\w+)\(", text, re.M)}
     defined |= {
         f"fmi3{verb}{kind}"

@@ -13,7 +13,7 @@ from recordings import FREE, RELEASE, START, recorded
 def test_candidates_are_refined_at_more_samples_than_they_are_compared_at(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """A recording of 1500 samples: every sixth is refined on, then all of them."""
+    """A recording of 1500 samples: every sixth is used, then every one."""
     refined, compared = list[int](), list[int]()
     candidates = search._candidates
 

@@ -19,7 +19,7 @@ bool goes_on(Function& function, const Arguments&... arguments) {
 /// Reference to a callable object, which must outlive the reference. A call returns true to continue; an
 /// empty reference, or an object that returns nothing, always continues.
 ///
-/// The engine takes callbacks by this one type, so that it is compiled once for all of them.
+/// The engine takes callbacks by this one type, so that it is compiled once for all callers.
 template <class... Arguments>
 class Callback {
  public:

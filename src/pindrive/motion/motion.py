@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import asdict
+from dataclasses import fields
 from functools import cached_property
-from math import inf
+from math import inf, isnan
+from operator import itemgetter
 from os import PathLike
 from pathlib import Path
 from typing import Any, Final, overload
@@ -22,10 +23,8 @@ from pindrive.motion.function import Function
 from pindrive.motion.profile import Profile
 from pindrive.motion.release import INPUTS, Release, core_numbers
 from pindrive.motion.results import (
-    Afterwards,
     Certificate,
     ContactName,
-    ContactUse,
     Crossings,
     Ending,
     Event,
@@ -35,10 +34,11 @@ from pindrive.motion.results import (
     Segment,
     Table,
     Transient,
+    ending_of,
     events_at,
     events_of,
-    part,
     segments_of,
+    transient_of,
 )
 from pindrive.motion.sensitivity import Sensitivity
 from pindrive.quantities import budgets
@@ -52,6 +52,11 @@ __all__ = ["Crossings", "Event", "Extrema", "Motion", "Segment"]
 
 _QUANTITIES: Final = ("position", "velocity", "acceleration")
 """In the order of `Quantity` in crossings.hpp."""
+_NAMES: Final = tuple(quantity.name for quantity in (*TRANSIENT, *ENDING, *ENERGY))
+"""Names of `Motion.numbers()`."""
+_ENERGY: Final = tuple(f"energy.{field.name}" for field in fields(Ledger))
+"""Names of the numbers of the core's energy ledger, which has the order of the dataclass."""
+_READ: Final = itemgetter(*_NAMES)
 
 
 class Motion(lazy.NotebookHtml):
@@ -319,25 +324,25 @@ class Motion(lazy.NotebookHtml):
     @cached_property
     def _numbers(self) -> dict[str, float]:
         """Numbers of the transient and the ending, by their names in the table of quantities."""
-        numbers = self.core.transient(self.duration, self.settling_band)
-        counts = ("transient.plate.reversals", "transient.finger.reversals")
-        return {k: int(n) if k in counts else n for k, n in numbers.items()}
+        numbers: dict[str, float] = self.core.transient(self.duration, self.settling_band)
+        for count in ("transient.plate.reversals", "transient.finger.reversals"):
+            numbers[count] = int(numbers[count])
+        return numbers
+
+    @cached_property
+    def _energy(self) -> dict[str, float]:
+        """Numbers of the energy ledger, by their names in the table of quantities."""
+        return dict(zip(_ENERGY, self.core.ledger(self.duration).values(), strict=True))
 
     @cached_property
     def transient(self) -> Transient:
         """The transient's numbers, from the closed forms."""
-        numbers = part(self._numbers, "transient.")
-        plate, finger = (ContactUse(**part(numbers, f"{name}.")) for name in ("plate", "finger"))
-        own = {name: number for name, number in numbers.items() if "." not in name}
-        return Transient(**own, plate=plate, finger=finger)
+        return transient_of(self._numbers)
 
     @cached_property
     def ending(self) -> Ending:
         """Ending of the motion."""
-        numbers = part(self._numbers, "ending.")
-        plate, finger = (Afterwards(**part(numbers, f"{name}.")) for name in ("plate", "finger"))
-        own = {name: number for name, number in numbers.items() if "." not in name}
-        return Ending(End(self.core.end), **own, plate=plate, finger=finger)
+        return ending_of(End(self.core.end), self._numbers)
 
     def settling_time(self, band: float = _core.settling_band) -> float:
         """The settling time (s) for another band, a part of |x(0) - x_end|; NaN if none.
@@ -350,7 +355,7 @@ class Motion(lazy.NotebookHtml):
     @cached_property
     def energy(self) -> Ledger:
         """The energy ledger over [0, duration]."""
-        return Ledger(**self.core.ledger(self.duration))
+        return Ledger(*self._energy.values())
 
     def certificate(self) -> Certificate:
         """The worst residual of each law over [0, duration], computed without the solver."""
@@ -514,9 +519,9 @@ class Motion(lazy.NotebookHtml):
 
     def numbers(self) -> dict[str, float]:
         """Every number of the transient, its ending and its energy, SI, by the table's names."""
-        found: dict[str, float] = self._numbers | {"transient.settled": self.transient.settled}
-        found |= {f"energy.{name}": term for name, term in asdict(self.energy).items()}
-        return {quantity.name: found[quantity.name] for quantity in (*TRANSIENT, *ENDING, *ENERGY)}
+        settled = not isnan(self._numbers["transient.settling_time"])
+        found = {**self._numbers, **self._energy, "transient.settled": settled}
+        return dict(zip(_NAMES, _READ(found), strict=True))
 
 
 def _quantity(which: str) -> int:

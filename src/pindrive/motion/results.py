@@ -7,8 +7,9 @@ what each means.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import astuple, dataclass
+from dataclasses import astuple, dataclass, fields
 from math import isnan
+from operator import itemgetter
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -18,15 +19,6 @@ from pindrive.quantities.status import End
 from pindrive.quantities.value import concise, equal_by_value
 
 ContactName = Literal["plate", "finger", "stop"]
-
-
-def part(numbers: Mapping[str, float], table: str) -> dict[str, Any]:
-    """The numbers of one part of the table of quantities, such as "ending.", without it."""
-    return {
-        name.removeprefix(table): number
-        for name, number in numbers.items()
-        if name.startswith(table)
-    }
 
 
 Cause = Literal["plate", "finger", "both", "stop"]
@@ -295,6 +287,32 @@ class Ending:
         repeat, once in one or several of their periods.
         """
         return _CYCLE.get(self.end)
+
+
+def _reader(cls: type, table: str) -> Callable[[Mapping[str, float]], tuple[Any, ...]]:
+    """Return a function that takes the numbers of a dataclass, in order, from the core's numbers.
+
+    Fields that are dataclasses themselves come last, and are left out.
+    """
+    own = [field.name for field in fields(cls) if field.name not in ("end", "plate", "finger")]
+    return itemgetter(*(f"{table}.{name}" for name in own))
+
+
+_TRANSIENT = _reader(Transient, "transient")
+_ENDING = _reader(Ending, "ending")
+_USES = [_reader(ContactUse, f"transient.{contact}") for contact in _EACH]
+_AFTERWARDS = [_reader(Afterwards, f"ending.{contact}") for contact in _EACH]
+
+
+def transient_of(numbers: Mapping[str, float]) -> Transient:
+    """Return the transient by the core's numbers."""
+    return Transient(*_TRANSIENT(numbers), *(ContactUse(*read(numbers)) for read in _USES))
+
+
+def ending_of(end: End, numbers: Mapping[str, float]) -> Ending:
+    """Return the ending by its kind and the core's numbers."""
+    each = (Afterwards(*read(numbers)) for read in _AFTERWARDS)
+    return Ending(end, *_ENDING(numbers), *each)
 
 
 @equal_by_value
