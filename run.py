@@ -5,7 +5,9 @@
     python3 run.py test [ARG...]      run the tests; arguments go to pytest
     python3 run.py explore [COUNT [SEED]]
                                       run the tests of random cases with COUNT (10) new seeds
-    python3 run.py lint [STEP...]     check style, types and stubs, or only the steps named
+    python3 run.py lint [--changed] [STEP...]
+                                      check style, types and stubs, or only the steps named;
+                                      clang-tidy with --changed only the changes of a day
     python3 run.py format             lay out Python and C++ as lint wants them
     python3 run.py studio [test|bench|picture]
                                       build the studio, a page; test, time or film it in a browser

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+from tasks.changes import changed_files
 from tasks.environment import BIN, ROOT, VENV, environment, install, run
 from tasks.machine import stop
 
@@ -25,10 +26,26 @@ def cpp_files() -> list[Path]:
     return sorted(p.relative_to(ROOT) for p in found)
 
 
-def clang_tidy() -> int:
-    """Check the core's headers as the programs that use them instantiate them, on all cores."""
+def checked_by_clang_tidy(files: set[str] | None) -> list[Path]:
+    """Return the programs that stand for changed files of C++; None: all programs.
+
+    A header of the core is checked as its test instantiates it, another header as the programs of
+    its folder do.
+    """
     folders = ("engine", "capi", "fmu", "tests")
     programs = [p for p in cpp_files() if p.suffix == ".cpp" and p.parts[0] in folders]
+    if files is None:
+        return programs
+    changed = [Path(name) for name in files]
+    tests = {f"{p.stem}_test" for p in changed if p.parts[0] == "include"}
+    beside = {p.parent for p in changed if p.suffix == ".hpp" and p.parts[0] != "include"}
+    return [p for p in programs if p in changed or p.stem in tests or p.parent in beside]
+
+
+def clang_tidy(files: set[str] | None) -> int:
+    """Check the core's headers as the programs that use them instantiate them, on all cores."""
+    programs = checked_by_clang_tidy(files)
+    print(f"{len(programs)} programs", flush=True)
     headers = ("-Iinclude", "-Isrc/pindrive", "-Icapi", "-Ifmu")
 
     def check(program: Path) -> int:
@@ -36,7 +53,7 @@ def clang_tidy() -> int:
 
     # clang-tidy checks one file after the other.
     with ThreadPoolExecutor(os.cpu_count()) as cores:
-        return max(cores.map(check, programs))
+        return max(cores.map(check, programs), default=0)
 
 
 def installed_stub() -> Path:
@@ -76,7 +93,7 @@ LINT: dict[str, Callable[[], int]] = {
     "format": lambda: run("ruff", "format", "--check"),
     "mypy": lambda: run("mypy"),
     "clang-format": lambda: run("clang-format", "--dry-run", "-Werror", *cpp_files()),
-    "clang-tidy": clang_tidy,
+    "clang-tidy": lambda: clang_tidy(None),
     "workflows": workflows,
     "stubs": check_stub,
     "typescript": lambda: run("python", Path("studio", "build.py"), "lint"),
@@ -84,7 +101,14 @@ LINT: dict[str, Callable[[], int]] = {
 
 
 def lint(steps: list[str]) -> int:
-    """Run the named steps, or all steps, to the end, and report the failed ones."""
+    """Run the named steps, or all steps, to the end, and report the failed ones.
+
+    With `--changed` clang-tidy, which takes longest, checks what changed in the last day alone.
+    """
+    found = dict(LINT)
+    if "--changed" in steps:
+        found["clang-tidy"] = lambda: clang_tidy(changed_files())
+        steps = [step for step in steps if step != "--changed"]
     unknown = [step for step in steps if step not in LINT]
     if unknown:
         stop(f"no lint step {unknown[0]!r}; there are {', '.join(LINT)}")
@@ -93,7 +117,7 @@ def lint(steps: list[str]) -> int:
     failed = []
     for step in steps:
         print(f"run.py: {step}", flush=True)
-        if LINT[step]():
+        if found[step]():
             failed.append(step)
     print(f"run.py: failed: {', '.join(failed)}" if failed else "run.py: lint passed")
     return 1 if failed else 0

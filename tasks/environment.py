@@ -23,7 +23,7 @@ SOURCES = ("pyproject.toml", "CMakeLists.txt", "include", "engine", "capi", "fmu
 
 
 def requirements(extras: set[str], *, runs: bool = True) -> list[str]:
-    """Return the requirements of pyproject.toml to build, to run unless told not to, and for extras."""
+    """Return the requirements of pyproject.toml to build, to run (`runs`), and for extras."""
     import tomllib
 
     pyproject = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
@@ -83,7 +83,7 @@ def quietly(what: str, command: list[str]) -> None:
 
 
 def pip(what: str, command: str, *arguments: str) -> None:
-    """Runs pip in `.venv`. Python compiles what is imported, which is a small part of what is installed."""
+    """Runs pip in `.venv`; a module is compiled when it is imported, as most never are."""
     python = str(BIN / "python")
     options = ["--no-compile"] if command == "install" else []
     quietly(

@@ -35,29 +35,29 @@ def in_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture(scope="session")
-def c_library(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Folder of the installed C interface, built by the first commands of docs/c.md."""
+def compiled(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Folder of what CMake builds and installs, by the first commands of docs/c.md.
+
+    The C++ tests, the engine and the C interface are built at once, so that they share the engine.
+    """
 
     def build(folder: Path) -> None:
         for command in blocks(DOCS / "c.md")[0].text.splitlines():
             _build(command, folder)
 
-    return _built_once(tmp_path_factory, "c-library", build) / "prefix"
+    return _built_once(tmp_path_factory, "compiled", build)
 
 
 @pytest.fixture(scope="session")
-def programs(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Folder of the C++ tests, `fuzz` and `endings`.
+def c_library(compiled: Path) -> Path:
+    """Folder in which the C interface, the engine and the headers are installed."""
+    return compiled / "prefix"
 
-    Compiling takes longer than running: -O1 halves the one and hardly adds to the other.
-    """
 
-    def build(folder: Path) -> None:
-        quick = ("-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG")
-        _run("cmake", "-S", ROOT, "-B", folder, "-G", "Ninja", "-DPINDRIVE_TESTS=ON", *quick)
-        _run("cmake", "--build", folder)
-
-    return _built_once(tmp_path_factory, "programs", build)
+@pytest.fixture(scope="session")
+def programs(compiled: Path) -> Path:
+    """Folder of the C++ tests, `fuzz` and `endings`."""
+    return compiled / "build"
 
 
 def _built_once(factory: pytest.TempPathFactory, name: str, build: Callable[[Path], None]) -> Path:
@@ -84,11 +84,16 @@ def _built_once(factory: pytest.TempPathFactory, name: str, build: Callable[[Pat
 
 
 def _build(command: str, folder: Path) -> None:
-    """A command of docs/c.md, in other folders and quicker."""
+    """A command of docs/c.md, in other folders, quicker, and with the C++ tests.
+
+    Compiling takes longer than running: -O1 halves the one and hardly adds to the other, and the
+    bits are the same.
+    """
     places = {".": str(ROOT), "build/c": str(folder / "build"), "~/.local": str(folder / "prefix")}
     words = [places.get(word, word) for word in shlex.split(command)]
-    if "-S" in words:  # the bits are the same at -O1, half of the time is not
+    if "-S" in words:
         words += ["-G", "Ninja", "-DCMAKE_INSTALL_LIBDIR=lib"]
+        words += ["-DPINDRIVE_TESTS=ON", "-DPINDRIVE_ENGINE=ON"]
         words += ["-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG"]
     _run(*words)
 

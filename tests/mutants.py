@@ -6,7 +6,8 @@ A mutant is one text of one file replaced by another (tests/mutations/*.toml). I
 copy of the installed package with that text replaced, in a fork of a process that has loaded the
 libraries; they must fail. Before that the same tests run on a copy as it is, and must pass. Without
 a NAME (a part of a mutant's name or of its file) all run; `--changed` takes those whose file or
-tests the last commit or the working tree changed, 20 at most, and says which it left out.
+tests changed in the last day, 20 at most and for ten minutes at most, and says which it left out:
+the nightly run takes all.
 
 Ends with 1 where a mutant lives that is not explained, where fewer than 95 % die, where a text is
 not once in its file, or where a mutant cannot be imported.
@@ -20,21 +21,28 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 import tomllib
 from collections.abc import Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
+from math import inf
 from pathlib import Path
 from queue import Queue
 
 import forked
 
 ROOT = Path(__file__).resolve().parents[1]
+sys.path.append(str(ROOT))
+from tasks.changes import changed_files  # noqa: E402
+
 SOURCE = ROOT / "src" / "pindrive"
 LISTS = Path(__file__).with_name("mutations")
 LIMIT = 20
 """Mutants of changed files that run at most."""
+LONGEST = 600.0
+"""Time after which no mutant of a changed file begins, s."""
 ENOUGH = 0.95
 TIMEOUT = 300.0
 FAILED, PASSED = 1, 0
@@ -81,15 +89,6 @@ def problems(chosen: list[Mutant]) -> list[str]:
             if not text or (function and f"def {function}(" not in text):
                 found.append(f"{mutant.name}: there is no {test}")
     return found
-
-
-def changed() -> set[str]:
-    """Return the files that differ from the last commit but one; relative to the root."""
-    command = ["git", "diff", "--name-only", "HEAD~1"]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
-    if done.returncode:
-        print("No commit before the last one is here: nothing to compare with.")
-    return set(done.stdout.split())
 
 
 def spread(chosen: list[Mutant]) -> list[Mutant]:
@@ -214,9 +213,10 @@ class Runner:
                 server.terminate()
 
 
-def run(chosen: list[Mutant]) -> int:
-    """Judges them on all cores; the exit status."""
-    died, lived, wrong = 0, [], []
+def run(chosen: list[Mutant], longest: float) -> int:
+    """Judges them on all cores, none that would begin after `longest` seconds; the exit status."""
+    died, lived, wrong, late = 0, [], [], 0
+    end = time.monotonic() + longest
     files: dict[str, set[str]] = {}
     for mutant in chosen:
         for test in mutant.tests:
@@ -236,10 +236,17 @@ def run(chosen: list[Mutant]) -> int:
             if wrong:
                 return 1
             print("they pass.", flush=True)
-            verdicts = pool.map(runner.verdict, chosen)
+
+            def verdict_in_time(mutant: Mutant) -> tuple[str, str]:
+                if time.monotonic() > end:
+                    return "left out", f"{longest:g} s are over"
+                return runner.verdict(mutant)
+
+            verdicts = pool.map(verdict_in_time, chosen)
             for mutant, (verdict, said) in zip(chosen, verdicts, strict=True):
                 print(f"{verdict}: {mutant.file}: {mutant.name} ({said})", flush=True)
                 died += verdict == "dies"
+                late += verdict == "left out"
                 if verdict == "lives":
                     lived.append(mutant)
                 elif verdict == "error":
@@ -249,10 +256,11 @@ def run(chosen: list[Mutant]) -> int:
             runner.close()
             print("Interrupted.")
             return 130
-    print(f"{len(chosen)} mutants: {died} die, {len(lived)} live, {len(wrong)} are none.")
+    counts = f"{died} die, {len(lived)} live, {len(wrong)} are none, {late} are left out"
+    print(f"{len(chosen)} mutants: {counts}.")
     for mutant in lived:
         print(f"  lives: {mutant.name}: {mutant.lives or 'NOT EXPLAINED'}")
-    if died < ENOUGH * len(chosen):
+    if died < ENOUGH * (len(chosen) - late):
         print(f"Fewer than {ENOUGH:.0%} die.")
         return 1
     return 1 if wrong or any(not mutant.lives for mutant in lived) else 0
@@ -267,11 +275,12 @@ def main(arguments: list[str]) -> int:
     names = [argument for argument in arguments if argument != "--changed"]
     chosen = [m for m in every if not names or any(n in m.name or n in m.file for n in names)]
     if "--changed" in arguments:
-        files = changed()
+        files = changed_files()
         chosen = [
             mutant
             for mutant in chosen
-            if f"src/pindrive/{mutant.file}" in files
+            if files is None
+            or f"src/pindrive/{mutant.file}" in files
             or files.intersection(test.partition("::")[0] for test in mutant.tests)
         ]
         left_out = spread(chosen)[LIMIT:]
@@ -284,7 +293,7 @@ def main(arguments: list[str]) -> int:
     if not chosen:
         print("No mutant is of a file that changed.")
         return 0
-    return run(chosen)
+    return run(chosen, LONGEST if "--changed" in arguments else inf)
 
 
 if __name__ == "__main__":

@@ -188,10 +188,15 @@ def test_build_is_optimised_by_default(tmp_path: Path) -> None:
 
 
 @COMPILES
-@pytest.mark.parametrize("target", ["pindrive", "engine"])
-def test_add_subdirectory(target: str, tmp_path: Path) -> None:
-    settings = (f"-DPINDRIVE_SOURCE={ROOT.as_posix()}", f"-DPINDRIVE_TARGET={target}")
-    build(CONSUMER, tmp_path / "build", *settings)
+def test_add_subdirectory(tmp_path: Path) -> None:
+    build(CONSUMER, tmp_path / "build", f"-DPINDRIVE_SOURCE={ROOT.as_posix()}")
+    check(tmp_path / "build" / "consumer")
+
+
+@COMPILES
+def test_installed_engine(c_library: Path, tmp_path: Path) -> None:
+    prefix = f"-DCMAKE_PREFIX_PATH={c_library.as_posix()}"
+    build(CONSUMER, tmp_path / "build", prefix, "-DPINDRIVE_TARGET=engine")
     check(tmp_path / "build" / "consumer")
 
 

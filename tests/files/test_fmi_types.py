@@ -1,4 +1,4 @@
-"""Types and functions of `fmu/` equal the declarations in the standard's headers, which FMPy carries."""
+"""Types and functions of `fmu/` equal those in the standard's headers, which FMPy carries."""
 
 from __future__ import annotations
 
@@ -50,7 +50,8 @@ def test_types_are_those_of_the_standard(tmp_path: Path) -> None:
             )
     checks += [f"static_assert(sizeof(ours::{n}) == sizeof(::{n}));" for n in callbacks]
     head = (
-        '#include <cstddef>\n#include <cstdint>\n#include <type_traits>\n#include "fmi2Functions.h"\n'
+        "#include <cstddef>\n#include <cstdint>\n#include <type_traits>\n"
+        '#include "fmi2Functions.h"\n'
         "static_assert(fmi2True == 1 && fmi2False == 0);\n#undef fmi2True\n#undef fmi2False\n"
         '#include "fmi3Functions.h"\nnamespace ours {\n#include "fmi.hpp"\n}\n'
     )

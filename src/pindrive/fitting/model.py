@@ -81,7 +81,7 @@ class Model:
         ]
 
     def thinned(self, samples: int) -> Model:
-        """Return the model with evenly spaced samples of each recording, at least `samples` or all."""
+        """Return the model at evenly spaced samples of each recording, at least so many or all."""
         strides = [max(1, len(recording.time) // samples) for recording in self.recordings]
         return Model(self.parameters, self.drive, self.releases, self.recordings, strides)
 
