@@ -22,7 +22,7 @@ import pytest
 from command import run
 from pages import FILES, ROOT, Block, file_of
 
-CHECKOUT = ("CMakeLists.txt", "examples", "include", "tests/consumer")
+CHECKOUT = ("CMakeLists.txt", "engine", "examples", "include", "tests/consumer")
 """Files of the checkout that the commands of a page find as copies in their folder."""
 NOT_RUN = {
     "python3 run.py": "it makes the environment that the tests run in",
