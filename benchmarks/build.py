@@ -47,7 +47,10 @@ class Compiled:
 def compiled(source: Path, settings: list[str], folder: Path) -> list[Compiled]:
     """Compile all files of a target of a checkout."""
     nanobind = subprocess.run(
-        [sys.executable, "-m", "nanobind", "--cmake_dir"], capture_output=True, text=True, check=True
+        [sys.executable, "-m", "nanobind", "--cmake_dir"],
+        capture_output=True,
+        text=True,
+        check=True,
     ).stdout.strip()
     configure = [
         *(BIN / "cmake", "-S", source, "-B", folder, "-G", "Ninja", *settings),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from math import log, sqrt
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
@@ -11,10 +12,10 @@ import pytest
 import xarray as xr
 from scipy.integrate import solve_ivp
 
+import tactile_mouse
 from command import GOOD, refused, run
 from pindrive import load_device
 from pindrive.device import (
-    Coil,
     CoilState,
     Commands,
     ControlBlock,
@@ -36,20 +37,7 @@ END = 0.03
 COMMANDS = Commands(np.array([0.001, 0.006, 0.0066, 0.018, 0.0184]))
 VOLTAGE = [(0.0, 3.0), (0.0009, 0.9), (0.003, 2.0)]
 
-
-def coil(**more: float) -> Coil:
-    return Coil(
-        turns=300,
-        pole_area=6e-6,
-        gap=6e-5,
-        wire_diameter=1e-4,
-        turn_length=0.016,
-        supply_voltage=3.0,
-        release_resistance=5.0,
-        **more,
-    )
-
-
+coil = partial(tactile_mouse.coil, release_resistance=5.0)
 LIFT = {"lift": 9e-5, "closing_force": 0.3}
 DRIVEN = {
     "on and off": Electromagnet.from_coil(coil(**LIFT), residual=0.05),

@@ -12,16 +12,9 @@ from scipy.integrate import solve_ivp
 
 from pindrive.device import Coil, CoilState, Commands, Electromagnet
 from pindrive.quantities.contradictions import problems_of
+from tactile_mouse import coil
 
-COIL = Coil(
-    turns=300,
-    pole_area=6e-6,
-    gap=6e-5,
-    wire_diameter=1e-4,
-    turn_length=0.016,
-    supply_voltage=3.0,
-    thermal_resistance=100.0,
-)
+COIL = coil(thermal_resistance=100.0)
 
 
 def commands(*times: float) -> Commands:
@@ -118,14 +111,7 @@ def test_pull_is_the_energy_that_the_gap_would_give() -> None:
     """F = -dW/dg of the field energy L I²/2 at constant flux, by a difference quotient."""
 
     def coil_of(gap: float) -> Coil:
-        return Coil(
-            turns=300,
-            pole_area=6e-6,
-            gap=gap,
-            wire_diameter=1e-4,
-            turn_length=0.016,
-            supply_voltage=3.0,
-        )
+        return coil(gap=gap)
 
     flux = COIL.inductance * COIL.current
     step = 1e-9
@@ -134,25 +120,10 @@ def test_pull_is_the_energy_that_the_gap_would_give() -> None:
 
 
 def test_a_strong_coil_saturates() -> None:
-    strong = Coil(
-        turns=300,
-        pole_area=6e-6,
-        gap=6e-5,
-        wire_diameter=1e-4,
-        turn_length=0.016,
-        supply_voltage=9.0,
-    )
+    strong = coil(supply_voltage=9.0)
     assert strong.saturation == pytest.approx(1.6 / (3 * COIL.field))
     assert strong.pull == pytest.approx(1.6**2 * 6e-6 / 1.25663706127e-6)
-    slow = Coil(
-        turns=300,
-        pole_area=6e-6,
-        gap=6e-5,
-        wire_diameter=1e-4,
-        turn_length=0.016,
-        supply_voltage=9.0,
-        release_resistance=strong.resistance,
-    )
+    slow = coil(supply_voltage=9.0, release_resistance=strong.resistance)
     magnet = Electromagnet.from_coil(slow)
     assert magnet.fall_constant == pytest.approx(0.5 * magnet.rise_constant)
     assert magnet.current(commands(0.0), CoilState(-1.0))(magnet.rise_constant) == pytest.approx(

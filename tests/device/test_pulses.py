@@ -26,7 +26,7 @@ from pindrive.device import (
 from pindrive.device.closing import Closing
 from pindrive.device.heating import Heat
 from pindrive.device.reading import Reading
-from tactile_mouse import SKIN, drive
+from tactile_mouse import SKIN, coil, drive
 
 ON, OFF = 0.0103, 0.0631
 CLOSED = Closing(0.0, 1.0)  # a gap that does not open
@@ -91,16 +91,7 @@ def test_rows_of_pulses_keep_their_bound(duty: float, frequency: float) -> None:
 
 
 DRIVE = drive(SKIN)
-COIL = Coil(
-    turns=300,
-    pole_area=6e-6,
-    gap=6e-5,
-    wire_diameter=1e-4,
-    turn_length=0.016,
-    supply_voltage=3.0,
-    release_resistance=20.0,
-    heat_capacity=0.02,
-)
+COIL = coil(release_resistance=20.0, heat_capacity=0.02)
 PULSED = Electromagnet.from_coil(COIL, pwm_frequency=333.0, pwm_duty=0.6)
 
 

@@ -23,21 +23,12 @@ from pindrive.device import (
     strokes,
 )
 from pindrive.device.coil import COIL_NEEDS
-from tactile_mouse import RIGID, SKIN, drive
+from tactile_mouse import RIGID, SKIN, coil, drive
 
 STEP = 1e-6  # of the size of a parameter
 FINGERS = {"rigid": RIGID, "skin": SKIN}
 CONTROL = ControlBlock(latency=0.0023)
-COIL = Coil(
-    turns=300,
-    pole_area=6e-6,
-    gap=6e-5,
-    wire_diameter=1e-4,
-    turn_length=0.016,
-    supply_voltage=3.0,
-    release_resistance=2.0,
-    saturation_field=0.5,
-)
+COIL = coil(release_resistance=2.0, saturation_field=0.5)
 HOT = replace(COIL, thermal_resistance=40.0, heat_capacity=0.02)
 LIFTED = replace(COIL, lift=4e-5, closing_force=0.2)
 VOLTAGE = [(0.0, 2.9), (0.004, 1.5)]
