@@ -30,7 +30,7 @@ TARGETS = {
     "C library": ["-DPINDRIVE_C=ON"],
     "C++ tests": ["-DPINDRIVE_TESTS=ON"],
 }
-"""What is configured for each target."""
+"""Settings of CMake for each target."""
 SHOWN = 8
 """Files of each target that are listed."""
 

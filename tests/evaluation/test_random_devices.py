@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
+from cases import cases
 from oracle.coil_course import ReferenceMagnet, decide
 from oracle.scan_evaluation import evaluated
 from pindrive import Contact, Drive, Function, Profile, simulate
@@ -148,7 +149,8 @@ def lines(done: Scan) -> int:
 
 
 @pytest.mark.filterwarnings("ignore::pindrive.ImplausibleValueWarning")
-@pytest.mark.parametrize("begin", range(0, 200, 25))
+@pytest.mark.explore
+@pytest.mark.parametrize("begin", range(0, cases(500), 25))
 def test_random_devices_equal_the_reference(begin: int) -> None:
     switchings = printed = 0
     for seed in range(begin, begin + 25):

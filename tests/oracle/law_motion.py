@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import pytest
@@ -65,3 +66,13 @@ def compare(case: dict[str, Any], part: float = 1e-11) -> None:
         assert float(motion.position(t, side="left")) == pytest.approx(x, abs=part * length)
         assert float(motion.velocity(t, side="left")) == pytest.approx(v, abs=part * speed)
     assert motion.certificate().worst < 1e-10
+
+
+def compare_all(cases: Sequence[dict[str, Any]], first: int) -> None:
+    """Compare cases, which are numbered from `first` on; a failure names its number."""
+    for number, case in enumerate(cases, first):
+        try:
+            compare(case)
+        except AssertionError as error:
+            error.add_note(f"case {number}")
+            raise

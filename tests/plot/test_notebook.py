@@ -77,7 +77,7 @@ NO_RESULTS = {
         "HandPath",
     ),  # they are given to what computes
     "SavedReading",  # device, page and hand that are given to scan
-    *("xr.Dataset", "Array", "NDArray[np.bool_]", "tuple[Array, Array]", "float"),
+    *("xr.Dataset", "Array", "NDArray[np.bool_]", "tuple[Array, Array]", "float", "str"),
 }
 
 
