@@ -1,4 +1,4 @@
-"""Types and functions of `fmu/` equal those in the standard's headers, which FMPy carries."""
+"""Types and functions of `fmu/` against the standard's headers, which FMPy carries."""
 
 from __future__ import annotations
 
