@@ -20,7 +20,6 @@ ROWS = {15.0: 8000, 1.5: 8000, 1.01: 20_000, 0.99: 1000}
 """Breakpoints of a period at each amplitude: near 1 only a short part slides."""
 
 
-@cache
 def _motion(amplitude: float, stiffness: float) -> Motion:
     given = GIVEN["parameters"]
     drive = Drive(
@@ -36,6 +35,7 @@ def _motion(amplitude: float, stiffness: float) -> Motion:
     return follow(drive, mouse_velocity=Profile(t.tolist(), v.tolist()), duration=given["to"])
 
 
+@cache
 def power(amplitude: float, stiffness: float) -> float:
     """Normal force times mean sliding speed, W: the way between turns over the time."""
     given = GIVEN["parameters"]
