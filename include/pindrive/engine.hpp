@@ -19,6 +19,7 @@
 #include "pindrive/numbers/dual.hpp"
 
 // Each list takes a number type, and `extern` to declare its instances or nothing to define them.
+// NOLINTBEGIN(bugprone-macro-parentheses): a keyword has none
 
 #define PINDRIVE_ENGINE_SIMULATION(T, declared)      \
   declared template struct InputPiece<T>;            \
@@ -55,6 +56,8 @@
   declared template void extrema(const Motion<T>&, Quantity, T, Callback<T, T>);         \
   declared template void events(const Motion<T>&, T, T, Callback<T, const Segment<T>&>); \
   declared template Certificate<T> certify(const Motion<T>&, T, GoOn);
+
+// NOLINTEND(bugprone-macro-parentheses)
 
 #ifdef PINDRIVE_COMPILED
 namespace pindrive {

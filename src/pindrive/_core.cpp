@@ -166,14 +166,11 @@ struct NamedQuantity {
   }
 };
 /// In the order of the columns of a table.
-constexpr NamedQuantity quantities[] = {{"position", pd::Sampled::position},
-                                        {"velocity", pd::Sampled::velocity},
-                                        {"acceleration", pd::Sampled::acceleration},
-                                        {"plate_force", pd::Sampled::plate_force},
-                                        {"finger_force", pd::Sampled::finger_force},
-                                        {"stop_force", pd::Sampled::stop_force},
-                                        {"stretch", pd::Sampled::stretch},
-                                        {"stretch_rate", pd::Sampled::stretch_rate}};
+constexpr NamedQuantity quantities[] = {
+    {"position", pd::Sampled::position},         {"velocity", pd::Sampled::velocity},
+    {"acceleration", pd::Sampled::acceleration}, {"plate_force", pd::Sampled::plate_force},
+    {"finger_force", pd::Sampled::finger_force}, {"stop_force", pd::Sampled::stop_force},
+    {"stretch", pd::Sampled::stretch},           {"stretch_rate", pd::Sampled::stretch_rate}};
 
 pd::Side side_of(bool right) { return right ? pd::Side::right : pd::Side::left; }
 

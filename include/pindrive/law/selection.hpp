@@ -437,7 +437,7 @@ class Selection {
   SelectedMotion<T>& selected_;
   bool follows_{
       false};  ///< the pin follows a plate that begins to slide across without an acceleration
-  T restoring_force_{};  ///< force of spring and damper less that of a stop, N
+  T restoring_force_{0};  ///< force of spring and damper less that of a stop, N
 };
 
 }  // namespace pindrive::detail
