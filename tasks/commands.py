@@ -130,4 +130,5 @@ def studio(arguments: list[str]) -> int:
     if arguments[0] == "picture":
         return run("python", Path("studio", "picture.py"))
     os.environ["PINDRIVE_STUDIO"] = "1"
-    return run("python", "-m", "pytest", Path("tests", "studio"), *arguments[1:])
+    beside = ("-n", "auto", "--dist", "loadfile")
+    return run("python", "-m", "pytest", *beside, Path("tests", "studio"), *arguments[1:])

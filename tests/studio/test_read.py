@@ -14,6 +14,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from typer.testing import CliRunner
 
 import pindrive as pd
+from cases import cases
 from pindrive.cli.app import app
 from pindrive.files.reading import PLACES, load_reading
 from studio_cases import Ask, doubles
@@ -143,8 +144,9 @@ def random_hand(node: Ask, seed: int) -> dict[str, Any]:
     return dict(hand)
 
 
-@pytest.mark.parametrize("begin", range(0, 200, 25))
-def test_200_hands_move_the_pins_as_in_python(node: Ask, tmp_path: Path, begin: int) -> None:
+@pytest.mark.explore
+@pytest.mark.parametrize("begin", range(0, cases(500), 25))
+def test_random_hands_move_the_pins_as_in_python(node: Ask, tmp_path: Path, begin: int) -> None:
     """No rate of pictures changes a bit; lines have the bits of Python, positions its digits."""
     few = READER.replace("columns = 4", "columns = 2").replace("rows = 4", "rows = 1")
     devices = (few, few.replace('stiffness = "300 N/m"\n', ""))
