@@ -14,7 +14,7 @@ import pytest
 from hypothesis import settings
 
 import run
-from tasks import commands, environment, machine
+from tasks import changes, checks, commands, environment, machine
 
 SCRIPT = environment.ROOT / "run.py"
 
@@ -198,6 +198,39 @@ def test_an_environment_of_another_python_or_place_is_made_anew(
     installed.clear()
     environment.install(set())
     assert {*installed} == ALL
+
+
+def test_clang_tidy_checks_the_programs_of_changed_files() -> None:
+    def checked(*files: str) -> set[str]:
+        return {path.as_posix() for path in checks.checked_by_clang_tidy({*files})}
+
+    assert checked("README.md", "src/pindrive/_core.cpp") == set()
+    assert checked("engine/motion.cpp", "gone.cpp") == {"engine/motion.cpp"}
+    assert checked("include/pindrive/law/skin.hpp") == {"tests/cpp/skin_test.cpp"}
+    of_fmu = checked("fmu/entry.hpp")
+    assert {"fmu/fmi2.cpp", "fmu/fmi3.cpp"} < of_fmu
+    assert all(name.startswith("fmu/") for name in of_fmu)
+    assert len(checks.checked_by_clang_tidy(None)) > 100
+
+
+def test_changes_of_a_day_are_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(changes, "ROOT", tmp_path)
+    assert changes.changed_files() is None, "there is no repository"
+    monkeypatch.setenv("GIT_CONFIG_GLOBAL", os.devnull)
+
+    def commit(name: str, time: int) -> None:
+        (tmp_path / name).write_text(name)
+        monkeypatch.setenv("GIT_COMMITTER_DATE", f"{time} +0000")
+        changes.git("add", ".")
+        changes.git("-c", "user.name=a", "-c", "user.email=a@b", "commit", "-m", name)
+
+    changes.git("init")
+    commit("first", 1_700_000_000)
+    assert changes.changed_files() is None, "the first commit has none before"
+    commit("second", 1_700_000_000 + changes.DAY)
+    commit("third", 1_700_000_060 + changes.DAY)
+    (tmp_path / "new").touch()
+    assert changes.changed_files() == {"second", "third", "new"}
 
 
 def test_failing_step_prints_its_output(capsys: pytest.CaptureFixture[str]) -> None:

@@ -59,6 +59,8 @@ def test_every_number_of_a_motion_is_in_the_table() -> None:
     assert set(motion.numbers()) | certificate == {q.name for q in OUTPUTS}
     assert certificate == {q.name for q in CERTIFICATE}
     assert set(motion.inputs()) <= set(QUANTITIES)
+    ledger = motion.core.ledger(motion.duration)
+    assert [*ledger] == [field.name for field in fields(motion.energy)], "read in this order"
 
 
 @pytest.mark.parametrize(
