@@ -257,9 +257,9 @@ pindrive_error take_function(pindrive_release* release, const char* name,
   });
 }
 
-/// A function of time: a velocity may not jump, a load may not be negative.
+/// A function of time: a velocity may not jump, a load may not be negative within the duration.
 pindrive_error check_function(const char* name, const pd::InputNumbers& input, bool negative,
-                              bool steps) {
+                              bool steps, double duration) {
   if (const pindrive_error error = check_pieces(name, input.pieces)) return error;
   const pd::OwnedInput<double> owned(input, input);
   const pd::Profile<double> profile = owned.profile();
@@ -268,7 +268,7 @@ pindrive_error check_function(const char* name, const pd::InputNumbers& input, b
     return fail(PINDRIVE_BAD_VALUE, "%s must be without a jump, not from %.17g to %.17g at %.17g s",
                 name, jump.before, jump.after, jump.time);
   const pd::InputPoint lowest =
-      negative ? pd::InputPoint{0, 0} : pd::lowest_value(profile, infinity);
+      negative ? pd::InputPoint{0, 0} : pd::lowest_value(profile, duration);
   if (lowest.value < -1e-9)
     return fail(PINDRIVE_BAD_VALUE, "%s must not be negative, and is %.17g at %.17g s", name,
                 lowest.value, lowest.time);
@@ -276,9 +276,9 @@ pindrive_error check_function(const char* name, const pd::InputNumbers& input, b
 }
 
 pindrive_error check_input(const char* name, const pd::InputNumbers& input, bool negative,
-                           bool steps) {
+                           bool steps, double duration) {
   return input.pieces.empty() ? check_rows(name, input.rows, negative, steps)
-                              : check_function(name, input, negative, steps);
+                              : check_function(name, input, negative, steps, duration);
 }
 
 pindrive_error check_contact(const char* name, const pd::ContactNumbers& contact) {
@@ -352,11 +352,14 @@ pindrive_error pindrive_c::check(const pindrive_drive& drive, const pindrive_rel
   if (!error && stops.stiffness != infinity)
     error = check("stop_stiffness", stop_stiffness, stops.stiffness);
   if (!error) error = check("stop_damping", stop_damping, stops.damping);
-  if (!error) error = check_input("mouse_velocity", release.mouse_velocity, true, false);
-  if (!error) error = check_input("plate_load", release.plate_load, false, true);
-  if (!error) error = check_input("force", release.force, true, true);
-  if (!error) error = check_input("across_velocity", release.across_velocity, true, false);
-  if (!error) error = check_input("finger_load", release.finger_load, false, true);
+  if (!error)
+    error = check_input("mouse_velocity", release.mouse_velocity, true, false, release.duration);
+  if (!error) error = check_input("plate_load", release.plate_load, false, true, release.duration);
+  if (!error) error = check_input("force", release.force, true, true, release.duration);
+  if (!error)
+    error = check_input("across_velocity", release.across_velocity, true, false, release.duration);
+  if (!error)
+    error = check_input("finger_load", release.finger_load, false, true, release.duration);
   if (!error && !release.finger_load.pieces.empty() && drive.finger.stiffness != infinity)
     error = fail(PINDRIVE_UNSUPPORTED,
                  "finger_load must be constant or a profile beside a finger.stiffness");

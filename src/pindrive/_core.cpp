@@ -402,19 +402,18 @@ NB_MODULE(_core, m) {
       "decay, frequency)) of a function.");
   m.def(
       "function_range",
-      [](std::vector<Piece> pieces) {
+      [](std::vector<Piece> pieces, double until) {
         const pd::InputNumbers input = input_of(std::move(pieces));
         const pd::OwnedInput<double> owned(input, input);
-        const pd::InputPoint low =
-            pd::lowest_value(owned.profile(), std::numeric_limits<double>::infinity());
+        const pd::InputPoint low = pd::lowest_value(owned.profile(), until);
         const pd::InputJump jump = pd::first_jump(owned.profile());
         return std::make_tuple(std::make_tuple(low.time, low.value),
                                std::make_tuple(jump.time, jump.before, jump.after));
       },
-      "pieces"_a,
-      "The lowest value of a function (time, value), and its first jump (time, before, after), at "
-      "an "
-      "infinite time without one.");
+      "pieces"_a, "until"_a,
+      "The lowest value of a function until a time (time, value), and its first jump (time, "
+      "before, "
+      "after), at an infinite time without one.");
   m.def(
       "input_period",
       [](std::vector<Input> inputs) {

@@ -103,9 +103,9 @@ def simulate(mass: float, stiffness: float, damping: float, plate: tuple[float, 
     Simulates one pin from its release until its ending is known or the duration is over. Contacts are (kinetic, static, stiffness, rows (speed, force) of the curve, (law, breakaway, Stribeck velocity, exponent, viscous)), inputs rows (time, value), one row for a constant, or the pieces (begin, polynomial, terms (cosine, sine, decay, frequency)) of a function.
     """
 
-def function_range(pieces: Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]]) -> tuple[tuple[float, float], tuple[float, float, float]]:
+def function_range(pieces: Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], until: float) -> tuple[tuple[float, float], tuple[float, float, float]]:
     """
-    The lowest value of a function (time, value), and its first jump (time, before, after), at an infinite time without one.
+    The lowest value of a function until a time (time, value), and its first jump (time, before, after), at an infinite time without one.
     """
 
 def input_period(inputs: Sequence[Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]]]) -> tuple[float, float, bool]:

@@ -58,6 +58,7 @@ const ENDS = [
   "limit_cycle",
   "driven",
   "irregular",
+  "drifting",
 ] as const;
 export type End = (typeof ENDS)[number];
 const TRANSITIONS = ["none", "stick", "slip", "reverse"] as const;

@@ -15,6 +15,7 @@ const ENDINGS: Readonly<Record<string, string>> = {
   limit_cycle: "a limit cycle sustained by falling friction",
   driven: "the periodic response to its inputs",
   irregular: "irregular, never repeats",
+  drifting: "follows a ramp of its inputs",
 };
 
 /** Description of the motion in one sentence. */

@@ -29,6 +29,15 @@ void lowest_values() {
   const pd::InputPiece<double> stroke[]{{0, {0.5, 0, -3, 2}, nullptr, 0}, {1, {-0.5}, nullptr, 0}};
   expect(std::abs(pd::lowest_value(Profile(stroke, 2), never).value + 0.5) < 1e-14,
          "each piece counts");
+  const pd::InputPiece<double> bends[]{{0, {1, -2e5, 1}, nullptr, 0}};
+  expect(std::abs(pd::lowest_value(Profile(bends, 1), never).value - (1 - 1e10)) < 1e-4,
+         "a parabola has its vertex");
+  const pd::InputPiece<double> ramp[]{{0, {1, 0.2}, terms, 1}};
+  const pd::InputPoint first = pd::lowest_value(Profile(ramp, 1), never);
+  expect(first.time < 0.1 && std::abs(first.value - 0.268) < 1e-3,
+         "a sinusoid on a ramp is lowest in its first period");
+  const pd::InputPiece<double> sinks[]{{0, {1, 0, -1e-9}, terms, 1}};
+  expect(pd::lowest_value(Profile(sinks, 1), never).value == -never, "a sinking sinusoid falls");
 }
 
 void jumps() {

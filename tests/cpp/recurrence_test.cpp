@@ -27,9 +27,13 @@ pd::Outcome<double> ending(const Flow& flow, ContactState plate = ContactState::
 void endings() {
   const pd::Oscillator<double> damped(0.01, 0.2, 100), undamped(0.01, 0, 100);
   expect(ending(Flow::stuck(1e-3, {})).end == End::resting, "at rest on the finger it rests");
-  expect(ending(Flow::stuck(1e-3, {0.1, 0})).end == End::moving, "with the plate it does not");
+  expect(ending(Flow::stuck(1e-3, {0.1, 0})).end == End::drifting, "with the plate it drifts");
+  expect(ending(Flow::stuck(1e-3, {0.1, 1})).end == End::moving,
+         "a plate that accelerates leaves it no ending");
   expect(ending(Flow::free(damped, 1e-3, 0.0, -1.0, 1e-4, 0.0)).end == End::decaying,
          "a damped vibration decays");
+  expect(ending(Flow::free(damped, 1e-3, 0.0, -1.0, 1e-4, 0.02)).end == End::drifting,
+         "... about a line it drifts");
   const auto free = ending(Flow::free(undamped, 1e-3, 0.0, -1.0, 1e-4, 0.0));
   expect(free.end == End::free && check::near(free.period, 0.0628318530717958648, 1e-14),
          "one without damping is free");

@@ -38,12 +38,32 @@ void turns_at_the_edge() {
   const auto settled = [&](double band, bool rests) {
     decay.segment.eliminated = rests ? pd::EliminatedPart::motion : pd::EliminatedPart::none;
     const pd::Motion<double> motion = decay.motion();
-    return pd::detail::Settling<double>(motion, 1.0).within(0.0, band);
+    return pd::detail::Settling<double>(motion, {}, 1.0).within(band);
   };
   expect(settled(edge * (1 - 1e-15), false) < turn, "a turn beyond the band by rounding is within");
   expect(settled(edge * (1 - 1e-13), false) > turn, "... and by more is not");
   expect(settled(edge * (1 - 1e-9), true) < turn, "a turn beyond by the rest criterion is within");
   expect(settled(edge * (1 - 1e-8), true) > turn, "... and by more is not");
+}
+
+/// A vibration about a ramp settles about the ramp as one about a position does.
+void about_a_ramp() {
+  const double never = std::numeric_limits<double>::infinity();
+  for (const double ratio : {0.003, 0.1, 1.0, 3.0}) {
+    const Decay decay(ratio, never);
+    Decay drifting(ratio, never);
+    drifting.outcome.end = pd::End::drifting;
+    drifting.segment.flow.position.drift = drifting.segment.flow.velocity.start = 0.7;
+    const pd::Motion<double> still = decay.motion(), ramp = drifting.motion();
+    const double since = pd::detail::Settling<double>(still, {}, never).within(0.05);
+    const double settled = pd::detail::Settling<double>(ramp, {0, 0.7}, never).within(0.05);
+    expect(std::abs(settled / since - 1) < 1e-12, "a drift settles about its line");
+  }
+  Decay undamped(0.0, never);
+  undamped.outcome.end = pd::End::drifting;
+  const pd::Motion<double> motion = undamped.motion();
+  expect(std::isnan(pd::detail::Settling<double>(motion, {}, never).within(0.05)),
+         "an undamped vibration never settles");
 }
 
 }  // namespace
@@ -55,7 +75,7 @@ int main() {
     for (const double band : {0.3, 0.05, 0.002}) {
       const Decay decay(ratio, never);
       const pd::Motion<double> motion = decay.motion();
-      const double since = pd::detail::Settling<double>(motion, never).within(0.0, band);
+      const double since = pd::detail::Settling<double>(motion, {}, never).within(band);
       const double width = band * 1e-3;
       enters = enters && std::abs(std::abs(decay.x(since)) - width) < 1e-12 * 1e-3;
       for (int i = 1; i < 2000; ++i)
@@ -65,16 +85,17 @@ int main() {
   expect(stays, "... and stays there");
 
   turns_at_the_edge();
+  about_a_ramp();
   const Decay decay(0.1, never);
   const pd::Motion<double> motion = decay.motion();
-  expect(std::isnan(pd::detail::Settling<double>(motion, 0.05).within(0.0, 0.05)),
+  expect(std::isnan(pd::detail::Settling<double>(motion, {}, 0.05).within(0.05)),
          "what settles after the duration has not settled");
-  expect(pd::detail::Settling<double>(motion, never).last_outside(0.0, 2e-3) == 0,
+  expect(pd::detail::Settling<double>(motion, {}, never).last_outside(2e-3) == 0,
          "what was never outside is settled from the start");
   Decay moving(0.1, 0.02);
   moving.outcome.end = pd::End::moving;
   const pd::Motion<double> cut = moving.motion();
-  expect(std::isnan(pd::detail::Settling<double>(cut, never).within(0.0, 0.05)),
+  expect(std::isnan(pd::detail::Settling<double>(cut, {}, never).within(0.05)),
          "a motion whose ending is not known has no settling time");
   return check::status();
 }

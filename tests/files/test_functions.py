@@ -296,3 +296,11 @@ def test_a_fit_refuses_what_is_not_free(tmp_path: Path) -> None:
     ):
         with pytest.raises(ValueError, match=message):
             pd.fit([recording], file.drive, file.release, free=[name])
+
+
+def test_a_load_may_become_negative_after_the_duration(tmp_path: Path) -> None:
+    more = "duration = '10 s'\nplate_load = { mean = 1, amplitude = 2, frequency = '0.01 Hz' }"
+    assert pd.load_device(device(tmp_path, more=more)).duration == 10.0
+    longer = more.replace("10", "70", 1)
+    with pytest.raises(ConfigError, match=r"plate_load must be >= 0 until the end of the motion"):
+        pd.load_device(device(tmp_path, more=longer))

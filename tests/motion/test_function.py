@@ -111,7 +111,7 @@ def test_function_is_equal_to_its_copy() -> None:
             "mouse_velocity must be without a step",
         ),
         (
-            lambda: pd.Release(1.0, plate_load=pd.harmonic(1, 1.5, 3)),
+            lambda: pd.simulate(DRIVE, pd.Release(1.0, plate_load=pd.harmonic(1, 1.5, 3))),
             r"plate_load must be >= 0 at all times, got -0\.(5|4999999)",
         ),
         (lambda: pd.Release(pd.harmonic("0 N", "1 N", 3)), "mouse_velocity must be a Function of"),
@@ -237,3 +237,11 @@ def test_a_pin_that_the_plate_takes_along_has_no_period(frequency: float) -> Non
     times = np.linspace(0.0, 2.0, 20001)
     assert np.abs(np.diff(motion.position(times))).max() < 1e-4 * 0.2
     assert sum(event.kind == "slip" for event in motion.events_between(0.0, 2.0)) > 15
+
+
+def test_load_that_becomes_negative_after_the_end_is_allowed() -> None:
+    """A slow vibration of the load, which is negative from 57.7 s on."""
+    release = pd.Release(0.1, plate_load=pd.harmonic(1.0, 1.5, 0.01))
+    assert pd.simulate(DRIVE, release, duration=10.0).status.name == "ok"
+    with pytest.raises(ValueError, match=r"plate_load must be >= 0 until the end of the motion"):
+        pd.simulate(DRIVE, release, duration=70.0)

@@ -205,6 +205,14 @@ class Evolution {
            pin.force.steady() && pin.plate.load.steady() && pin.finger.load.steady();
   }
 
+  /// True if no load of a contact falls: a function that falls for ever would become negative.
+  bool has_lasting_loads() const {
+    const auto lasts = [](const ContactPoint<T>& side) {
+      return !side.contact.present() || !(side.load.rate < 0);
+    };
+    return lasts(pin.plate) && lasts(pin.finger);
+  }
+
   T next_breakpoint{never};  ///< time of the next breakpoint of an input, s
   bool struck{false};        ///< the pin has just struck a rigid stop
 

@@ -17,18 +17,21 @@
 
 namespace pindrive::detail {
 
-/// Sets the ending of a motion whose last mode lasts for ever.
+/// Sets the ending of a motion whose last mode lasts for ever, as far as its inputs continue. A position that
+/// follows an accelerating plate has none.
 template <class T>
 void end_with(const Segment<T>& last, Outcome<T>& outcome) {
   const Flow<T>& flow = last.flow;
+  const Path<T>& x = flow.position;
   const T alpha = flow.oscillator.alpha();
-  if (!flow.position.oscillates()) {
-    const bool still = flow.velocity.start == 0 && flow.velocity.straight();
-    if (still)
-      outcome.end = last.eliminated == EliminatedPart::motion ? End::decaying : End::resting;
+  if (x.curvature != 0 || (x.oscillates() && alpha > 0)) return;
+  if (x.drift != 0) {
+    outcome.end = End::drifting;
+  } else if (!x.oscillates()) {
+    outcome.end = last.eliminated == EliminatedPart::motion ? End::decaying : End::resting;
   } else if (alpha < 0) {
     outcome.end = End::decaying;
-  } else if (alpha == 0) {
+  } else {
     // After a release with zero relative acceleration, the velocity touches that of the plate once a period.
     const bool grazes = is_slip(last.mode.plate) && flow.velocity.slope == 0 &&
                         flow.velocity.start == last.plate_velocity.value;

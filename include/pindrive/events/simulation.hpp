@@ -46,7 +46,7 @@ class Simulation {
                         evolution_.begins_period());
         else
           cycles_.pass(segment, pin.state);
-      } else if (tau == never) {
+      } else if (tau == never && evolution_.has_lasting_loads()) {
         end_with(segment, outcome_);
       }
       if (finished && !outcome_.known() && inputs_.duration < never) {

@@ -68,7 +68,9 @@ inline constexpr int transient_columns[] = {
     no_column,
     no_column,
     no_column,
-    no_column,  // the energy of a decay
+    no_column,  // the energy of a decay; velocity and lag of a drift
+    no_column,
+    no_column,
     no_column,  // the plate in a period of a steady oscillation
     no_column,
     no_column,

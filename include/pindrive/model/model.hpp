@@ -453,7 +453,8 @@ enum class End : signed char {
   stick_slip,   ///< periodic alternation of stick and slip
   limit_cycle,  ///< periodic motion sustained by falling friction, without stick
   driven,       ///< periodic response to periodic inputs
-  irregular     ///< chaotic or quasi-periodic: no return within `irregular_windows` (limits.hpp)
+  irregular,    ///< chaotic or quasi-periodic: no return within `irregular_windows` (limits.hpp)
+  drifting  ///< approach to a line, or oscillation about it, under inputs that grow; no further event
 };
 
 enum class Status : signed char { ok, too_many_events, standstill, stopped, inconsistent };

@@ -24,7 +24,8 @@ T duration_of(const Motion<T>& motion, T band, GoOn go_on = {}) {
   switch (outcome.end) {
     case End::resting:
       return std::max(last_begin * T(1.25), period);
-    case End::decaying: {
+    case End::decaying:
+    case End::drifting: {
       const Measurement<T> measured(motion, never, go_on);
       const T settled = measured.settling_time(std::min(band, T(settling_band)));
       const T decayed = measured.decayed() + period;  // infinite where there is nothing to decay

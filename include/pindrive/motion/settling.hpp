@@ -1,4 +1,4 @@
-/// Settling time of a motion: last time with a distance from a position larger than a width.
+/// Settling time of a motion: last time with a distance from a position, or from a line, larger than a width.
 #pragma once
 
 #include <algorithm>
@@ -18,19 +18,20 @@ bool may_turn(const Segment<T>& segment) {
   return !is_slip(segment.mode.finger);
 }
 
-/// Settling of a motion over [0, duration]; the motion outlives the measurement.
+/// Settling of a motion over [0, duration] about a goal: a line over time, whose rate is zero for a motion that
+/// rests or decays. The motion outlives the measurement.
 template <class T>
 class Settling {
  public:
-  Settling(const Motion<T>& motion, T duration, GoOn go_on = {})
-      : motion_(motion), duration_(duration), go_on_(go_on) {}
+  Settling(const Motion<T>& motion, const Line<T>& goal, T duration, GoOn go_on = {})
+      : motion_(motion), goal_(goal), duration_(duration), go_on_(go_on) {}
 
-  /// Earliest time after which |x − x_end| stays within the band, a fraction of |x(0) − x_end|, for
-  /// a motion that rests or decays; if |x(0) − x_end| is zero, the time of rest. NaN if later than
-  /// the duration, or never.
-  T within(T x_end, T band) const {
-    const T way = motion_.begin()->flow.position.start - x_end;
-    T size = abs(x_end);
+  /// Earliest time after which the distance from the goal stays within the band, a fraction of the
+  /// distance at the start; if that is zero, the time of rest. NaN if later than the duration, or
+  /// never.
+  T within(T band) const {
+    const T way = motion_.begin()->flow.position.start - goal_.value;
+    T size = abs(goal_.value);
     for (const Segment<T>& segment : motion_)
       size = std::max(size, abs(segment.flow.position.start));
     // A motion that turns at the edge of the band, to its error, stays within.
@@ -40,17 +41,17 @@ class Settling {
     const bool returns = !(abs(way) > error);  // ends at its start: the band has no width
     const bool rests = motion_.outcome().end == End::resting;
     const T since =
-        returns && !rests ? never : last_outside(x_end, returns ? error : band * abs(way) + error);
+        returns && !rests ? never : last_outside(returns ? error : band * abs(way) + error);
     return since <= duration_ && since < never ? since : none;
   }
 
-  /// Last time at which |x − x_end| exceeds the width: 0 if never, infinite if always.
-  T last_outside(T x_end, T width) const {
+  /// Last time at which the distance from the goal exceeds the width: 0 if never, infinite if always.
+  T last_outside(T width) const {
     T since{0};
     for (const Segment<T>* segment = motion_.end();
          since == 0 && segment != motion_.begin() && go_on_();)
-      since = motion_.along(
-          *--segment, [&](const auto& along) { return entry(along, *segment, x_end, width); });
+      since = motion_.along(*--segment,
+                            [&](const auto& along) { return entry(along, *segment, width); });
     return since;
   }
 
@@ -58,14 +59,21 @@ class Settling {
   static constexpr T never = std::numeric_limits<T>::infinity();
   static constexpr T none = std::numeric_limits<T>::quiet_NaN();
 
-  /// Time in a segment from which |x − x_end| stays within the width, evaluated from extremum to
-  /// extremum: 0 if never outside, infinite if outside at the end.
+  /// The goal from the begin of a segment on.
+  Line<T> goal_from(const Segment<T>& segment) const {
+    return {goal_.at(segment.begin), goal_.rate};
+  }
+
+  /// Time in a segment from which the distance from the goal stays within the width, evaluated from
+  /// extremum to extremum: 0 if never outside, infinite if outside at the end.
   template <class Trajectory>
-  T entry(const Trajectory& along, const Segment<T>& segment, T x_end, T width) const {
+  T entry(const Trajectory& along, const Segment<T>& segment, T width) const {
     T since{0};
+    const Line<T> goal = goal_from(segment);
     // Beyond the width on either side: where it comes within for good, or infinite.
     for (const int side : {1, -1}) {
-      const auto beyond = T(side) * along.above(along.position(), x_end + side * width);
+      const auto beyond =
+          T(side) * along.above(along.position(), Line<T>{goal.value + side * width, goal.rate});
       int sign = along.side_after_start(beyond);
       T last = sign > 0 ? never : T(0);
       along.each_root(beyond, sign, segment.end - segment.begin, [&](T tau) {
@@ -77,10 +85,13 @@ class Settling {
     }
     return since;
   }
-  T entry(const ClosedForm<T>& along, const Segment<T>& segment, T x_end, T width) const {
+  T entry(const ClosedForm<T>& along, const Segment<T>& segment, T width) const {
     T since{0};
     const Oscillator<T>& oscillator = segment.flow.oscillator;
-    const Path<T>& x = segment.flow.position;
+    const Line<T> goal = goal_from(segment);
+    Path<T> x = segment.flow.position;  // from the moving goal, plus its value at the begin
+    x.drift -= goal.rate;
+    const T x_end = goal.value;
     T low{0}, before = x.start - x_end;
     const auto follow_to = [&](T high, T position) {
       const T after = position - x_end;
@@ -96,7 +107,7 @@ class Settling {
         const T damping_ratio = -oscillator.alpha() / oscillator.omega();
         const T turn = angle * (1 - damping_ratio * angle / 3) / oscillator.omega();
         // A pin that is carried has no oscillator of its own, whose period could be asked.
-        const T guess = x.oscillates() ? high - turn : low;
+        const T guess = x.oscillates() && x.straight() ? high - turn : low;
         const T root = root_between(oscillator, distance, low, high, side, guess);
         since = segment.begin + Rooted<T>::at(oscillator, distance, root);
       }
@@ -105,8 +116,8 @@ class Settling {
     };
     if (abs(before) > width) since = never;
     if (isfinite(segment.end)) {
-      if (may_turn(segment)) {
-        const Stretch last = last_stretch_outside(along, segment, x_end, width);
+      if (goal.rate != 0 || may_turn(segment)) {
+        const Stretch last = last_stretch_outside(along, segment, x, x_end, width);
         before = x.at(segment.after(last.from)) - x_end;
         extrema(along, x, last.from, last.to, follow_to);
       } else {
@@ -115,11 +126,12 @@ class Settling {
       }
       return since;
     }
-    if (!x.oscillates()) return since;  // at x_end
+    if (!x.oscillates()) return since;  // at the goal
     if (!(width > 0)) return never;     // approached for ever
     const Zeros<T> turns = oscillator.zeros(x.slope, segment.flow.velocity.slope);
     if (turns.first < never) follow_to(turns.first, x.at(oscillator, turns.first));
     if (turns.spacing < never && abs(before) > width) {
+      if (oscillator.alpha() == 0) return never;
       // The extrema of a free decay shrink by one factor, so the last one outside is known.
       const T count = floor(log(abs(before) / width) / (-oscillator.alpha() * turns.spacing));
       low = turns.first + count * turns.spacing;
@@ -137,12 +149,11 @@ class Settling {
   struct Stretch {
     T from, to;
   };
-  /// Part of a finite segment to be evaluated: until |x − x_end| stays within the width. A long
+  /// Part of a finite segment to be evaluated: until |x − x_end| stays within the width, for its position x. A long
   /// oscillation is bisected until only the last few periods outside the band remain.
   static Stretch last_stretch_outside(const ClosedForm<T>& along, const Segment<T>& segment,
-                                      T x_end, T width) {
+                                      const Path<T>& x, T x_end, T width) {
     const Oscillator<T>& oscillator = segment.flow.oscillator;
-    const Path<T>& x = segment.flow.position;
     Stretch last{T(0), segment.end - segment.begin};
     const auto strays = [&](T from, T to) {
       bool outside = false;
@@ -159,6 +170,7 @@ class Settling {
   }
 
   const Motion<T>& motion_;
+  Line<T> goal_;
   T duration_;
   GoOn go_on_;
 };

@@ -44,6 +44,10 @@ class ClosedForm {
     path.start -= level;
     return path;
   }
+  Path<T> above(Path<T> path, const Line<T>& line) const {
+    path.drift -= line.rate;
+    return above(path, line.value);
+  }
 
   const Oscillator<T>& oscillator() const { return segment_.flow.oscillator; }
   T start(const Path<T>& path) const { return path.start; }
@@ -143,6 +147,10 @@ class BySeries {
     p.c[0] -= level;
     return p;
   }
+  Polynomial<T> above(Polynomial<T> p, const Line<T>& line) const {
+    p.c[1] -= line.rate * p.span;
+    return above(p, line.value);
+  }
 
   T start(const Polynomial<T>& p) const { return p.c[0]; }
   T at(const Polynomial<T>& p, T tau) const { return p.at(tau); }
@@ -234,7 +242,12 @@ class ByTerms {
   const TermSum<T>& plate_force() const { return plate_force_; }
   const TermSum<T>& finger_force() const { return finger_force_; }
   TermSum<T> input(const Curve<T>& curve) const { return curve; }
-  TermSum<T> above(TermSum<T> sum, T level) const { return sum += Line<T>{-level, T(0)}; }
+  TermSum<T> above(const TermSum<T>& sum, T level) const {
+    return above(sum, Line<T>{level, T(0)});
+  }
+  TermSum<T> above(TermSum<T> sum, const Line<T>& line) const {
+    return sum += Line<T>{-line.value, -line.rate};
+  }
 
   T start(const TermSum<T>& sum) const { return sum.at(T(0)); }
   T at(const TermSum<T>& sum, T tau) const { return sum.at(tau); }

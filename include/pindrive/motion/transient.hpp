@@ -39,7 +39,7 @@ class Measurement {
   }
 
   /// Earliest time after which |x − x_end| stays within the band, a fraction of |x(0) − x_end|; for
-  /// a steady oscillation, its begin.
+  /// a steady oscillation, its begin. The end of a drifting motion is a line.
   T settling_time(T band) const {
     Transient<T> result;
     ending(result);
@@ -47,7 +47,7 @@ class Measurement {
     return result.settling_time;
   }
 
-  /// End of a decaying motion: within a thousandth of the initial oscillation, or at the last event
+  /// End of a decaying or drifting motion: within a thousandth of the initial oscillation, or at the last event
   /// if later.
   T decayed() const {
     using std::abs;
@@ -59,8 +59,7 @@ class Measurement {
     const T speed = motion_.begin()->flow.velocity.start;
     const T size =
         abs(x.start - result.end_position) + abs(speed) / sqrt(drive.stiffness / drive.mass);
-    return std::max(settling().last_outside(result.end_position, size / 1000),
-                    std::prev(motion_.end())->begin);
+    return std::max(settling(result).last_outside(size / 1000), std::prev(motion_.end())->begin);
   }
 
  private:
@@ -70,11 +69,16 @@ class Measurement {
     const Outcome<T>& outcome = motion_.outcome();
     if (outcome.steady())
       result.settling_time = result.steady_since <= duration_ ? result.steady_since : result.none;
-    else if (outcome.end == End::resting || outcome.end == End::decaying)
-      result.settling_time = settling().within(result.end_position, band);
+    else if (outcome.end == End::resting || outcome.end == End::decaying ||
+             outcome.end == End::drifting)
+      result.settling_time = settling(result).within(band);
   }
 
-  detail::Settling<T> settling() const { return {motion_, duration_, go_on_}; }
+  detail::Settling<T> settling(const Transient<T>& result) const {
+    const bool drifts = motion_.outcome().end == End::drifting;
+    const Line<T> goal{result.end_position, drifts ? result.drift_velocity : T(0)};
+    return {motion_, goal, duration_, go_on_};
+  }
 
   T length(const Segment<T>& segment) const {
     return std::min(segment.end, duration_) - segment.begin;
@@ -187,6 +191,24 @@ class Measurement {
     result.end_position = outcome.end == End::resting    ? last.start
                           : outcome.end == End::decaying ? last.centre()
                                                          : result.steady.centre;
+    if (outcome.end == End::drifting) drift(result);
+  }
+
+  /// Line that a drifting pin follows, and its distance behind the position at which the spring balances the
+  /// inputs.
+  void drift(Transient<T>& result) const {
+    const Drive<T>& drive = motion_.drive();
+    const Segment<T>& last = *std::prev(motion_.end());
+    const Path<T>& x = last.flow.position;
+    result.drift_velocity = x.drift;
+    result.end_position = x.centre() - x.drift * last.begin;
+    const auto inputs = InputCurves<T>::of(drive, motion_.inputs(), last);
+    const T force = inputs.force.value + drive.mass * inputs.plate_velocity.rate;
+    const T rate = inputs.force.rate / drive.stiffness;
+    using std::abs;
+    // Beside a load that grows the distance grows, too.
+    if (abs(rate - x.drift) <= detail::difference_error<T> * abs(rate))
+      result.lag = (force / drive.stiffness - x.centre()) * (x.drift < 0 ? -1 : 1);
   }
 
   /// Times of endings without settling: rest, steady oscillation, last event.
@@ -211,7 +233,7 @@ class Measurement {
     const Outcome<T>& outcome = motion_.outcome();
     T end = duration_;
     if (outcome.end == End::resting) end = result.rest_time;
-    if (outcome.end == End::decaying) end = result.last_event_time;
+    if (outcome.end == End::decaying || outcome.end == End::drifting) end = result.last_event_time;
     if (outcome.steady()) end = result.steady_since;
     result.end_time = std::min({end, duration_, motion_.known_until()});
     const detail::ContactMeasurement<T> measurement(motion_, go_on_);
@@ -235,15 +257,17 @@ class Measurement {
     const Outcome<T>& outcome = motion_.outcome();
     const Drive<T>& drive = motion_.drive();
     const Segment<T>& last = *std::prev(motion_.end());
-    if (outcome.steady()) {
+    const auto lines = InputCurves<T>::of(drive, motion_.inputs(), last);
+    // Beside an input that grows for ever, the work of a contact grows from period to period.
+    const bool repeats = outcome.end == End::driven || contacts_last(lines);
+    if (outcome.steady() && repeats) {
       const detail::ContactMeasurement<T> measurement(motion_, go_on_);
       const T begin = outcome.cycles() ? outcome.cycle_begin : last.begin;
       const ContactsUse<T> period = measurement.measure(begin, begin + outcome.period);
       result.plate_afterwards.add(period.plate, outcome.period);
       result.finger_afterwards.add(period.finger, outcome.period);
-    } else if (outcome.end == End::resting) {
+    } else if (outcome.end == End::resting && repeats) {
       // The plate continues to slide under the pin, at constant speed and friction.
-      const auto lines = InputCurves<T>::of(drive, motion_.inputs(), last);
       using detail::hypot;
       const T speed = hypot(lines.plate_velocity.value, lines.across_velocity.value);
       const T friction = drive.plate.friction_at(speed) * lines.plate_load.value;
@@ -264,6 +288,15 @@ class Measurement {
       result.trough_time = result.trough_displacement = result.swing = result.none;
       result.return_velocity = result.return_velocity_time = result.none;
     }
+  }
+
+  /// True if velocities and loads of the contacts are constant.
+  bool contacts_last(const InputCurves<T>& lines) const {
+    const Drive<T>& drive = motion_.drive();
+    const bool of_plate = lines.plate_velocity.steady() && lines.across_velocity.steady() &&
+                          lines.plate_load.steady();
+    return (of_plate || !drive.plate.present()) &&
+           (lines.finger_load.steady() || !drive.finger.present());
   }
 
   /// Begin of permanent rest, which breakpoints of the inputs may divide into several segments.

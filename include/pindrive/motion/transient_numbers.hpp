@@ -44,7 +44,11 @@ struct Transient {
   T steady_since{none};  ///< start of a steady oscillation, s
   /// largest stretch (m) and stretch rate (m/s) of a compliant finger
   T peak_stretch{none}, peak_stretch_rate{none};
-  T end_position{none};         ///< x_end: position of rest, or centre of the final oscillation, m
+  /// x_end: position of rest, centre of the final oscillation, or of a drift the position of its line at t = 0, m
+  T end_position{none};
+  T drift_velocity{none};  ///< of the line that a drifting pin follows, m/s
+  T lag{
+      none};  ///< distance of a drifting pin behind the balance of spring and inputs, m; NaN if it grows
   T end_time{none};             ///< t*: end of the transient, s
   ContactUse<T> plate, finger;  ///< in the transient; peak forces of the whole motion
 
@@ -90,6 +94,8 @@ inline constexpr NamedNumber<T, Transient<T>> transient_numbers[] = {
     {"ending.peak_velocity", [](const Transient<T>& t) { return t.steady.peak_velocity; }},
     {"ending.rounds", [](const Transient<T>& t) { return t.steady.rounds; }},
     {"ending.decay_energy", [](const Transient<T>& t) { return t.decay_energy; }},
+    {"ending.drift_velocity", [](const Transient<T>& t) { return t.drift_velocity; }},
+    {"ending.lag", [](const Transient<T>& t) { return t.lag; }},
     {"ending.plate.reversals", [](const Transient<T>& t) { return t.plate_afterwards.reversals; }},
     {"ending.plate.time_stuck",
      [](const Transient<T>& t) { return t.plate_afterwards.time_stuck; }},

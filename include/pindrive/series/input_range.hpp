@@ -22,8 +22,30 @@ struct InputJump {
   double time, before, after;
 };
 
-/// Lowest value of a function in [0, until], or in the first 64 of its slowest time constants; within
-/// rounding of its largest value.
+namespace detail {
+
+/// Time since the begin of a piece that grows for ever after which each value exceeds the value at the begin, s;
+/// infinite if the piece falls for ever, zero without a polynomial (Cauchy's bound of the roots).
+inline double growing_after(const InputPiece<double>& piece) {
+  int order = InputPiece<double>::degree;
+  while (order > 0 && piece.polynomial[order] == 0) --order;
+  const double leading = piece.polynomial[order];
+  if (order == 0) return 0;
+  if (leading < 0) return std::numeric_limits<double>::infinity();
+  double terms{0}, time{0};
+  for (std::size_t j = 0; j < piece.count; ++j)
+    terms += 2 * (std::abs(piece.terms[j].cosine) + std::abs(piece.terms[j].sine));
+  for (int n = 0; n < order; ++n) {
+    const double size = n == 0 ? terms : std::max(-piece.polynomial[n], 0.0);
+    time = std::max(time, std::pow(order * size / leading, 1.0 / (order - n)));
+  }
+  return time;
+}
+
+}  // namespace detail
+
+/// Lowest value of a function in [0, until], within rounding of its largest value; of its last piece in the first 64
+/// of its slowest time constants, or as long as the piece does not grow for ever.
 ///
 /// Bernstein coefficients of its series enclose the values between two steps.
 inline InputPoint lowest_value(const Profile<double>& input, double until) {
@@ -38,9 +60,13 @@ inline InputPoint lowest_value(const Profile<double>& input, double until) {
     if (!curve.straight()) {
       const double fastest = curve.piece->fastest(), slowest = curve.piece->slowest();
       if (fastest > 0) end = std::min(end, time + detail::longest_input / fastest);
-      if (!(end < never)) end = time + 1;  // a polynomial alone
-      if (!(breakpoint < never) && slowest > 0)
-        until = std::min(until, curve.piece->begin + 64 / slowest);
+      if (!(breakpoint < never)) {
+        const double grows = detail::growing_after(*curve.piece);
+        if (!(grows < never)) return {never, -never};
+        until = curve.piece->begin + std::max(grows, slowest > 0 ? 64 / slowest : 0);
+        end = std::min(end, std::max(until, time));
+      }
+      if (!(end > time)) break;
     }
     if (!(end < never)) {
       if (curve.rate < 0) lowest = {never, -never};

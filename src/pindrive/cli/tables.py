@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from math import degrees, isfinite, tau
+from math import degrees, isfinite, isnan, tau
 from typing import TYPE_CHECKING
 
 from rich import box
@@ -274,6 +274,9 @@ def ending(motion: Motion) -> str:
         last = motion.transient.last_event_time
         events = f"last event at {duration(last)}" if last > 0.0 else "no event"
         return f"Decays towards x = {place} and never comes to rest; {events}."
+    if end.kind == "drifting":
+        lag = "" if isnan(end.lag) else f", {_POSITION.text(end.lag)} behind the balance of forces"
+        return f"Follows a ramp at {_VELOCITY.text(end.drift_velocity)}{lag}."
     if end.kind == "steady":
         rounds = f" ({end.rounds:.0f} rounds)" if end.rounds > 1.0 else ""
         return (

@@ -51,7 +51,7 @@ from pindrive.motion.drive import Contact, Drive, law_values
 from pindrive.motion.friction import COEFFICIENTS
 from pindrive.motion.function import Function
 from pindrive.motion.profile import Profile
-from pindrive.motion.release import Release
+from pindrive.motion.release import LOADS, Release, negative_load
 from pindrive.quantities.contradictions import problems_of
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.refusal import quoted, refusal
@@ -425,6 +425,11 @@ def _assembled(
         **dict.fromkeys(malformed),
     }
     found += [problem.at(place) for problem in problems_of(known, whole=whole)]
+    duration = given.get("motion.duration")
+    end = duration if isinstance(duration, float) else None
+    for key in (f"motion.{name}" for name in LOADS):
+        refused = negative_load(key, given.get(key), end)
+        found += [refused.at(place(key), key)] if refused else []
     if problems := [*problems, *found]:
         raise ConfigError(problems)
     try:

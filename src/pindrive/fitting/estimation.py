@@ -89,8 +89,8 @@ def fit(
     seed = check_whole(seed, "seed", least=0)
     if not 0.0 < confidence < 1.0:
         raise ValueError(refusal("confidence", "between 0 and 1", repr(confidence)))
-    for each in releases:
-        check_fits(drive, each)
+    for each, recording in zip(releases, given, strict=True):
+        check_fits(drive, each, float(recording.time[-1]))
     drive = drive.by_forces
     found = parameters(free, bounds or {}, drive, releases, given)
     _check_lengths(given, drive, [p.key for p in found])

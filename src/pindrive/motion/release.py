@@ -12,12 +12,15 @@ from pindrive.motion.drive import Contact, Drive, values_of
 from pindrive.motion.function import Function
 from pindrive.motion.profile import Profile, check_continuous
 from pindrive.quantities.contradictions import refuse
-from pindrive.quantities.refusal import refusal
+from pindrive.quantities.refusal import Refusal, refusal
 from pindrive.quantities.table import QUANTITIES, check, default
 from pindrive.quantities.value import concise
 
 INPUTS: Final = ("mouse_velocity", "plate_load", "force", "across_velocity", "finger_load")
 """Inputs of a release over time: a number, a `Profile` or a `Function` each."""
+
+LOADS: Final = ("plate_load", "finger_load")
+"""Inputs that may not be negative."""
 
 CONTINUOUS: Final = ("mouse_velocity", "across_velocity")
 """Inputs that may not have steps."""
@@ -132,24 +135,37 @@ def input_of(name: str, given: float | str | Profile | Function) -> float | Prof
 
 
 def _check_function(name: str, given: Function) -> None:
-    """Refuse a function that the input cannot be: one that jumps, or is negative."""
-    (time, least), (jumps, before, after) = _core.function_range(given.core)
+    """Refuse a function that jumps, where the input may not."""
+    _, (jumps, before, after) = _core.function_range(given.core, 0.0)
     if name in CONTINUOUS and jumps < inf:
         required = "without a step (a jump would take an infinite force)"
         raise ValueError(
             refusal(name, required, f"one from {before!r} to {after!r} at {jumps!r} s")
         )
-    lower = QUANTITIES[name].bounds.lower
-    if least < lower - 1e-9:
-        raise ValueError(refusal(name, f">= {lower:g} at all times", f"{least!r} at {time!r} s"))
 
 
-def check_fits(drive: Drive, release: Release) -> None:
+def negative_load(name: str, given: object, duration: float | None) -> Refusal | None:
+    """Return the refusal of a load that becomes negative within a duration, s; None: for ever."""
+    if not isinstance(given, Function):
+        return None
+    (time, least), _ = _core.function_range(given.core, inf if duration is None else duration)
+    if least >= -1e-9:
+        return None
+    until = "at all times" if duration is None else f"until the end of the motion at {duration!r} s"
+    return refusal(name, f">= 0 {until}", f"{least!r} at {time!r} s")
+
+
+def check_fits(drive: Drive, release: Release, duration: float | None = None) -> None:
     """Refuse a drive and a release that the core cannot follow together.
+
+    Args:
+        drive: Drive of the pin.
+        release: Initial state and inputs.
+        duration: End of the motion, s. None: its ending.
 
     Raises:
         ValueError: A curve has another form, the plate is compliant, the skin cannot hold the
-            stretch, or the displacement is beyond rigid end stops.
+            stretch, the displacement is beyond rigid end stops, or a load becomes negative.
     """
     if not isinstance(drive, Drive):
         raise ValueError(refusal("drive", "a Drive", repr(drive)))
@@ -160,6 +176,10 @@ def check_fits(drive: Drive, release: Release) -> None:
     if isinstance(release.finger_load, Function) and not drive.finger.rigid:
         required = "a number or a Profile beside a finger stiffness"
         raise ValueError(refusal("finger_load", required, "a Function"))
+    for name in LOADS:
+        refused = negative_load(name, getattr(release, name), duration)
+        if refused:
+            raise ValueError(refused)
     if drive.travel is not None or release.skin_stretch is not None:
         refuse(values_of(drive) | _start_of(release))
 

@@ -155,13 +155,14 @@ def _mode(plate: int, finger: int, stop: int, still: bool) -> ModeName:
     return "resting" if still or finger == 0 else "carried"
 
 
-EndKind = Literal["moving", "resting", "decaying", "steady", "irregular"]
+EndKind = Literal["moving", "resting", "decaying", "drifting", "steady", "irregular"]
 Cycle = Literal["free", "grazing", "stick-slip", "limit cycle", "driven"]
 
 _KIND: dict[End, EndKind] = {
     End.moving: "moving",
     End.resting: "resting",
     End.decaying: "decaying",
+    End.drifting: "drifting",
     End.irregular: "irregular",
 }
 _CYCLE: dict[End, Cycle] = {
@@ -249,7 +250,7 @@ class Ending:
     end: End
     """Kind of the ending; `kind` and `cycle` follow from it."""
     position: float
-    """Resting place, or centre of the final oscillation, m."""
+    """Resting place, centre of the final oscillation, or position of a drift's line at t = 0, m."""
     steady_since: float
     """Time from which the motion is steady, s."""
     amplitude: float
@@ -264,6 +265,12 @@ class Ending:
     """Rounds about the centre in one period of a steady motion."""
     decay_energy: float
     """Energy that a final decay has left to dissipate, J."""
+    drift_velocity: float
+    """Velocity of the line that a drifting pin follows, m/s."""
+    lag: float
+    """Distance of a drifting pin behind the position at which the spring balances the inputs, m.
+
+    NaN under a load that grows, as the distance then grows too."""
     plate: Afterwards
     finger: Afterwards
 
@@ -272,7 +279,9 @@ class Ending:
         """In which way it ends.
 
         `resting`: at rest forever; `steady`: an oscillation that lasts; `decaying`: a free damped
-        oscillation or creep towards `position` without another event; `irregular`: chaotic or
+        oscillation or creep towards `position` without another event; `drifting`: under inputs
+        that grow for ever it follows the line `position + drift_velocity * t` without another
+        event, where `settling_time` is about that line; `irregular`: chaotic or
         quasi-periodic, without a return within 15 360 events or 5700 periods of the inputs;
         `moving`: not known yet.
         """

@@ -85,8 +85,8 @@ def simulated(
     settling_band: float | str = _core.settling_band,
 ) -> Motion:
     """Simulate without warnings: for numbers that no person has written."""
-    check_fits(drive, release)
     end = None if duration is None else check("duration", duration)
+    check_fits(drive, release, end)
     if end is None:
         _check_end(release)
     if end is not None:

@@ -420,6 +420,7 @@ def outcome(motion: Motion) -> str:
     words = {
         "resting": f"At rest at {place} since {duration(numbers.rest_time)}",
         "decaying": f"Decays towards {place}",
+        "drifting": f"Drifts at {short('mouse_velocity', end.drift_velocity)}",
         "steady": f"Steady {end.cycle} oscillation of ±{short('displacement', end.amplitude)}",
         "irregular": f"Irregular oscillation of up to ±{short('displacement', end.amplitude)}",
         "moving": f"Still moving after {duration(motion.duration)}",

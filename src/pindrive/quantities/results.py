@@ -104,7 +104,12 @@ TRANSIENT: Final[tuple[Quantity, ...]] = (
 """The numbers of a transient."""
 
 ENDING: Final[tuple[Quantity, ...]] = (
-    Quantity("ending.position", "x_end", "m", "rest position, or centre of the final oscillation"),
+    Quantity(
+        "ending.position",
+        "x_end",
+        "m",
+        "rest position, centre of the final oscillation, or position of a drift's line at t = 0",
+    ),
     Quantity("ending.steady_since", "t_end", "s", "time from which the motion is steady"),
     Quantity("ending.amplitude", "X_end", "m", "half of the range of the final oscillation"),
     Quantity(
@@ -122,6 +127,8 @@ ENDING: Final[tuple[Quantity, ...]] = (
     Quantity("ending.peak_velocity", "v_end", "m/s", "largest speed in the final oscillation"),
     Quantity("ending.rounds", "n_end", "", "revolutions about the centre in one period"),
     Quantity("ending.decay_energy", "W_end", "J", "energy that the final decay still dissipates"),
+    Quantity("ending.drift_velocity", "v_drift", "m/s", "velocity of the line a drift follows"),
+    Quantity("ending.lag", "x_lag", "m", "distance of a drift behind the balance without friction"),
     *(
         Quantity(f"ending.{contact}.{name}", symbol.format(contact[0]), unit, meaning.format(where))
         for contact, where in (("plate", "at the plate"), ("finger", "at the finger"))

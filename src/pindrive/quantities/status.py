@@ -118,6 +118,7 @@ class End(IntEnum):
     limit_cycle = 6
     driven = 7
     irregular = 8
+    drifting = 9
 
 
 OUTCOMES: dict[str, type[Status | End] | None] = {"status": Status, "ending": End, "events": None}
