@@ -245,3 +245,30 @@ def test_load_that_becomes_negative_after_the_end_is_allowed() -> None:
     assert pd.simulate(DRIVE, release, duration=10.0).status.name == "ok"
     with pytest.raises(ValueError, match=r"plate_load must be >= 0 until the end of the motion"):
         pd.simulate(DRIVE, release, duration=70.0)
+
+
+@pytest.mark.parametrize("turns", [-3, -1, 1, 2, 101])
+@pytest.mark.parametrize("name", ["mouse_velocity", "across_velocity", "force"])
+@pytest.mark.parametrize("kinetic", [0.0, 0.2])
+def test_phase_of_half_turns_is_a_sign(turns: int, name: str, kinetic: float) -> None:
+    """Sin π is 1.2e-16 in floating point, which must not count as sliding at the start."""
+    drive = pd.Drive(
+        mass=0.01,
+        stiffness=100.0,
+        damping=0.1,
+        plate=pd.Contact(kinetic, 0.5),
+        finger=pd.Contact(0.1, 0.3),
+    )
+    amplitude = 2.0 if name == "force" else 0.1
+    t = np.linspace(0.0, 1.0, 1001)
+    by_phase = pd.harmonic(0.0, amplitude, 3.0, turns * math.pi)
+    by_sign = pd.harmonic(0.0, amplitude * (-1) ** turns, 3.0)
+    x, y = (
+        pd.simulate(
+            drive,
+            pd.Release(**{"mouse_velocity": 0.0, "velocity": 0.0, name: each}),
+            duration=2.0,
+        ).position(t)
+        for each in (by_phase, by_sign)
+    )
+    assert np.abs(x - y).max() <= 1e-12 * np.abs(y).max()

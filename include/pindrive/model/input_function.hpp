@@ -230,7 +230,9 @@ struct Curve {
     const Real time =
         abs(plain(of.begin)) + abs(plain(after)) + (fastest > 0 ? 1 / fastest : Real(0));
     if (abs(plain(value)) < near_zero * size) refine_beside_touch(known * size);
-    // An extremum within the resolution of time and phase is now; so is a zero that the function only touches.
+    // A zero or an extremum within the resolution of time and phase is now; so is a zero that the function only
+    // touches.
+    if (abs(plain(value)) <= known * time * abs(plain(rate))) value -= plain(value);
     if (abs(plain(rate)) > known * time * abs(2 * plain(c[2]))) return;
     rate -= plain(rate);
     if (abs(plain(value)) <= known * size) value -= plain(value);

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <limits>
 
 #include "pindrive/model/input_function.hpp"
 #include "pindrive/numbers/functions.hpp"
@@ -50,14 +52,20 @@ struct NamedFunction {
   }
 };
 
-/// mean + amplitude sin(2π frequency t + phase); the frequency in Hz, the phase in rad.
+/// mean + amplitude sin(2π frequency t + phase); the frequency in Hz, the phase in rad. A zero of the sinusoid
+/// within the rounding of the phase, as at π, is exact.
 template <class T>
 NamedFunction<T> harmonic(const T& mean, const T& amplitude, const T& frequency, const T& phase) {
-  using detail::cos, detail::sin;
+  using std::abs, detail::cos, detail::sin;
   constexpr double turn = 6.283185307179586;  // rad
+  const auto exact = [&](T part) {
+    const auto error = std::numeric_limits<detail::Real<T>>::epsilon() * abs(plain(phase));
+    return abs(plain(part)) <= error ? part - plain(part) : part;
+  };
   NamedFunction<T> made;
   made.add(T(0), {mean})
-      .add({amplitude * sin(phase), amplitude * cos(phase), T(0), T(turn) * frequency});
+      .add({amplitude * exact(sin(phase)), amplitude * exact(cos(phase)), T(0),
+            T(turn) * frequency});
   return made;
 }
 
