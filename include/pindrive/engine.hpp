@@ -42,7 +42,7 @@
 #define PINDRIVE_ENGINE_MOTION(T, declared)                                         \
   declared template Transient<T> transient_of(const Motion<T>&, T, T, GoOn);        \
   declared template T duration_of(const Motion<T>&, T, GoOn);                       \
-  declared template T steady_since(const Motion<T>&);                               \
+  declared template T steady_since(const Motion<T>&, GoOn);                         \
   declared template Ledger<T> energy_ledger(const Motion<T>&, T, GoOn);             \
   declared template T start_acceleration(const Motion<T>&, const Segment<T>&);      \
   declared template T sampled_in(const Motion<T>&, const Segment<T>&, T, Sampled);  \
@@ -50,11 +50,11 @@
   declared template void sample(const Motion<T>&, const double*, std::size_t, Side, \
                                 const Sampled*, std::size_t, Callback<std::size_t, const T*>);
 
-#define PINDRIVE_ENGINE_SEARCH(T, declared)                                              \
-  declared template T acceleration_bound(const Motion<T>&, const Segment<T>&);           \
-  declared template void crossings(const Motion<T>&, Quantity, T, T, Callback<T, int>);  \
-  declared template void extrema(const Motion<T>&, Quantity, T, Callback<T, T>);         \
-  declared template void events(const Motion<T>&, T, T, Callback<T, const Segment<T>&>); \
+#define PINDRIVE_ENGINE_SEARCH(T, declared)                                                    \
+  declared template T acceleration_bound(const Motion<T>&, const Segment<T>&);                 \
+  declared template void crossings(const Motion<T>&, Quantity, T, T, Callback<T, int>, GoOn);  \
+  declared template void extrema(const Motion<T>&, Quantity, T, Callback<T, T>, GoOn);         \
+  declared template void events(const Motion<T>&, T, T, Callback<T, const Segment<T>&>, GoOn); \
   declared template Certificate<T> certify(const Motion<T>&, T, GoOn);
 
 // NOLINTEND(bugprone-macro-parentheses)

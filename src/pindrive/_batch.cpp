@@ -180,12 +180,12 @@ class Batch {
   /// checks for an interrupt, which stops all threads.
   void run(std::size_t threads, Interrupt& interrupt) {
     share_ = std::clamp<std::size_t>(size() / (4 * threads), least_share, Block::capacity);
-    const auto go_on = [&](std::size_t) { return !stopped_.load(std::memory_order_relaxed); };
+    const auto go_on = [&] { return !stopped_.load(std::memory_order_relaxed); };
     std::vector<std::future<void>> others;
     try {
       while (others.size() + 1 < std::min(threads, size() / share_ + 1))
         others.push_back(std::async(std::launch::async, [this, go_on] { work(go_on); }));
-      work([&](std::size_t done) { return interrupt.go_on(done); });
+      work([&] { return interrupt.go_on(); });
     } catch (...) {
       stopped_ = true;
       throw;
@@ -263,7 +263,7 @@ class Batch {
       const std::size_t first = next_.fetch_add(share_);
       if (first >= size()) return;
       const std::size_t count = std::min(share_, size() - first);
-      if (!go_on(count)) return;
+      if (!go_on()) return;
       Block& block = space.block;
       points(inputs_, first, count, varies_, block.input);
       std::array<pe::Extremes, input_count> of_share = ends;
@@ -291,10 +291,10 @@ class Batch {
         }
         const Left left = stops_.empty() ? left_by_kernel(block, i) : Left::all;
         if (left == Left::nothing && !energy_) continue;
-        if (!go_on(1)) return;
+        if (!go_on()) return;
         Point p;
         for (std::size_t k = 0; k < input_count; ++k) p[k] = block.input[k][i];
-        by_general_core(first + i, p, stops, left, space.segments, [&] { return go_on(1); });
+        by_general_core(first + i, p, stops, left, space.segments, go_on);
         if (space.segments.capacity() > keep)
           std::vector<pd::Segment<double>>().swap(space.segments);
       }

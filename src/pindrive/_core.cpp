@@ -217,10 +217,8 @@ nb::dict columns(const CoreMotion<double>& motion, const Times& times, bool righ
 /// One column of the list of segments.
 template <class N, class T, class Function>
 Array<N> column(const CoreMotion<T>& motion, Function&& f) {
-  std::vector<N> values;
-  values.reserve(motion.segments().size());
-  for (const auto& segment : motion.segments()) values.push_back(static_cast<N>(f(segment)));
-  return to_array(std::move(values));
+  return mapped<N>(motion.segments().size(),
+                   [&](std::size_t i) { return f(motion.segments()[i]); });
 }
 
 template <class T>
@@ -282,16 +280,17 @@ nb::dict ledger(const CoreMotion<T>& motion, double duration) {
                }));
 }
 
-/// Times and values at these times, as far as a motion passes them on, up to a largest count.
+/// Times and values at these times, up to a largest count, that a search adds.
 template <class Seen, class Search>
 nb::tuple found(std::size_t most, Search&& search) {
   auto both = interruptible([&](auto go_on) {
     std::pair<std::vector<double>, std::vector<Seen>> lists;
-    search([&](double time, Seen seen) {
+    const auto add = [&](double time, Seen seen) {
       lists.first.push_back(time);
       lists.second.push_back(seen);
-      return lists.first.size() < most && go_on();
-    });
+      return lists.first.size() < most;
+    };
+    search(add, go_on);
     return lists;
   });
   return nb::make_tuple(to_array(std::move(both.first)), to_array(std::move(both.second)));
@@ -300,24 +299,29 @@ nb::tuple found(std::size_t most, Search&& search) {
 nb::tuple crossings(const CoreMotion<double>& motion, int quantity, double level, double until,
                     std::size_t most) {
   const auto view = motion.view();
-  return found<std::int8_t>(most, [&](auto add) {
-    pd::crossings(view, static_cast<pd::Quantity>(quantity), level, until,
-                  [&](double time, int side) { return add(time, static_cast<std::int8_t>(side)); });
+  return found<std::int8_t>(most, [&](auto add, auto go_on) {
+    pd::crossings(
+        view, static_cast<pd::Quantity>(quantity), level, until,
+        [&](double time, int side) { return add(time, static_cast<std::int8_t>(side)); }, go_on);
   });
 }
 
 nb::tuple extrema(const CoreMotion<double>& motion, int quantity, double until, std::size_t most) {
   const auto view = motion.view();
-  return found<double>(
-      most, [&](auto add) { pd::extrema(view, static_cast<pd::Quantity>(quantity), until, add); });
+  return found<double>(most, [&](auto add, auto go_on) {
+    pd::extrema(view, static_cast<pd::Quantity>(quantity), until, add, go_on);
+  });
 }
 
 nb::tuple events(const CoreMotion<double>& motion, double from, double to, std::size_t most) {
   const auto view = motion.view();
-  return found<std::int64_t>(most, [&](auto add) {
-    pd::events(view, from, to, [&](double time, const pd::Segment<double>& segment) {
-      return add(time, &segment - view.begin());
-    });
+  return found<std::int64_t>(most, [&](auto add, auto go_on) {
+    pd::events(
+        view, from, to,
+        [&](double time, const pd::Segment<double>& segment) {
+          return add(time, &segment - view.begin());
+        },
+        go_on);
   });
 }
 

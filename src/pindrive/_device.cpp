@@ -59,7 +59,7 @@ nb::tuple printed_lines(const RasterNumbers& raster, const PathNumbers& path, do
                                      threshold);
     std::vector<std::vector<device::PrintedLine>> lines;
     std::size_t edges = 0;
-    for (std::size_t i = 0; i < spots.shape(0) && edges < most && go_on(1U << 12); ++i)
+    for (std::size_t i = 0; i < spots.shape(0) && edges < most && go_on(); ++i)
       lines.push_back(page.lines({spots(i, 0), spots(i, 1)}, most - edges, edges));
     return std::pair{std::move(lines), edges};
   });

@@ -53,7 +53,7 @@ nb::tuple evaluate(const Scan& scan, const CriteriaNumbers& criteria, std::size_
                                      device.controller.threshold);
     const device::ScanEvaluation evaluation(inputs, criteria_of(criteria));
     std::size_t count = 0, pin = 0;
-    for (; pin < scan.size() && count < most && go_on(1U << 12); ++pin) {
+    for (; pin < scan.size() && count < most && go_on(); ++pin) {
       auto printed = page.lines(device.spots[pin], most - count, count);
       if (count >= most) continue;
       evaluation.add(pin, scan.run(pin), scan.motion(pin).view(), std::move(printed), found);
@@ -170,7 +170,7 @@ std::tuple<Bands, Bands, std::optional<TrialNumbers>, int> speed_limit(
     const device::TwoLines lines(device.view(), pitch, width, limits);
     device::SpeedLimitSearch search(lines, limits.direction, {{tried.first, tried.second}});
     return search.found(go_on, [&](int trials) {
-      if (progress.is_none() || !go_on(0)) return;  // an error that is pending allows no call
+      if (progress.is_none() || !go_on()) return;  // an error that is pending allows no call
       const nb::gil_scoped_acquire locked;
       progress(trials);
     });

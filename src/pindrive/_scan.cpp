@@ -155,10 +155,10 @@ nb::tuple closest_approaches(const std::vector<const pd::StoredMotion<double>*>&
   auto both = interruptible([&](auto go_on) {
     std::vector<device::BoundedPieces> pieces;
     for (const auto* const motion : motions)
-      if (go_on(1U << 10)) pieces.emplace_back(motion->view(), duration);
+      if (go_on()) pieces.emplace_back(motion->view(), duration);
     std::pair<std::vector<double>, std::vector<double>> found;
     for (const auto& [behind, ahead] : pairs) {
-      if (!go_on(1U << 12)) break;
+      if (!go_on()) break;
       const device::Approach closest =
           device::ClosestApproach(pieces.at(behind), pieces.at(ahead), duration).found();
       found.first.push_back(closest.difference);

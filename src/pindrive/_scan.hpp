@@ -187,8 +187,7 @@ class Scan {
   nb::tuple energise(std::size_t most_switchings, std::size_t most_rows) {
     std::size_t switchings = 0, rows = 0, pins = 0;
     interruptible([&](auto go_on) {
-      while (pins < size() && switchings <= most_switchings && rows <= most_rows &&
-             go_on(1U << 12)) {
+      while (pins < size() && switchings <= most_switchings && rows <= most_rows && go_on()) {
         device::PinRun& run = runs_[pins];
         run.energise(inputs_, pins, states_[pins], std::max(most_switchings, most_rows));
         switchings += run.coil.pieces.size() - 1;

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "interrupt.hpp"
+
 /// Array of numbers from Python.
 using Column =
     nanobind::ndarray<const double, nanobind::ndim<1>, nanobind::c_contig, nanobind::device::cpu>;
@@ -22,10 +24,12 @@ Array<T> to_array(std::vector<T>&& values) {
   return Array<T>(owned->data(), {owned->size()}, owner);
 }
 
-/// Array of f(0), f(1), ..., f(count - 1).
+/// Array of f(0), f(1), ..., f(count - 1), where f touches nothing of Python.
 template <class N, class Function>
 Array<N> mapped(std::size_t count, Function&& f) {
-  std::vector<N> found(count);
-  for (std::size_t i = 0; i < count; ++i) found[i] = static_cast<N>(f(i));
-  return to_array(std::move(found));
+  return to_array(interruptible([&](auto go_on) {
+    std::vector<N> found(count);
+    for (std::size_t i = 0; i < count && go_on(); ++i) found[i] = static_cast<N>(f(i));
+    return found;
+  }));
 }

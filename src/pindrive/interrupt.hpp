@@ -3,17 +3,17 @@
 
 #include <nanobind/nanobind.h>
 
-#include <cstddef>
+#include <chrono>
 
 /// Looks for a signal that Python has not handled yet, now and then; only the main thread finds any.
 class Interrupt {
  public:
-  /// Returns true to continue; called without Python's lock, after a number of segments, panels or
-  /// points.
-  bool go_on(std::size_t done = 1) {
-    done_ += done;
-    if (done_ < between_looks) return !found_;
-    done_ = 0;
+  /// Returns true to continue; called without Python's lock, after a segment, panel or point.
+  bool go_on() {
+    if (++calls_ % calls_between_times != 0) return !found_;
+    const Clock::time_point now = Clock::now();
+    if (now - looked_ < pause) return !found_;
+    looked_ = now;
     return look();
   }
   /// Returns true to continue, with an immediate check.
@@ -25,9 +25,12 @@ class Interrupt {
   bool found() const { return found_; }
 
  private:
-  static constexpr std::size_t between_looks = 1U << 14;  // some milliseconds
+  using Clock = std::chrono::steady_clock;
+  static constexpr unsigned calls_between_times = 16;
+  static constexpr std::chrono::milliseconds pause{10};
 
-  std::size_t done_{0};  ///< since the last look
+  unsigned calls_{0};
+  Clock::time_point looked_{Clock::now()};  ///< time of the last look
   bool found_{false};
 };
 
@@ -39,7 +42,7 @@ auto interruptible(Computation&& computation) {
   Interrupt interrupt;
   auto result = [&] {
     const nanobind::gil_scoped_release unlocked;
-    return computation([&interrupt](std::size_t done = 1) { return interrupt.go_on(done); });
+    return computation([&interrupt] { return interrupt.go_on(); });
   }();
   if (interrupt.found()) throw nanobind::python_error();
   return result;

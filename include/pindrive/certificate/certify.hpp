@@ -68,9 +68,9 @@ class Certifier {
   void repetition() {
     using std::abs;
     if (!motion_.outcome().steady()) return;
-    const T since = steady_since(motion_);
+    const T since = steady_since(motion_, go_on_);
     if (!(since <= duration_)) return;
-    const detail::PeriodSamples<T> samples(motion_);
+    const detail::PeriodSamples<T> samples(motion_, go_on_);
     const T tolerance = T(detail::repeat_tolerance);
     // The begin is found from four instants between two events: between those the difference may be larger.
     raise(result_.period, std::max(samples.difference_since(since) - 2 * tolerance, T(0)));

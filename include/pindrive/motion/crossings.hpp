@@ -65,13 +65,13 @@ class SignChanges {
 }  // namespace detail
 
 /// Calls visit(time, sign after) where a quantity crosses a level in [0, until], s, until visit
-/// returns false. A tangency is no crossing.
+/// returns false. A tangency is no crossing. `go_on` is called after each segment.
 template <class T>
 void crossings(const Motion<T>& motion, Quantity quantity, T level, T until,
-               detail::Given<Callback<T, int>> visit) {
+               detail::Given<Callback<T, int>> visit, GoOn go_on = {}) {
   detail::SignChanges<T> changes;
   motion.expanded(T(0), until, [&](const Segment<T>& segment, T begin, T span) {
-    return motion.along(segment, [&](const auto& along) {
+    return go_on() && motion.along(segment, [&](const auto& along) {
       const auto path = along.above(quantity_of(along, quantity), level);
       return changes.follow(along, path, path, begin, span,
                             [&](T time, T, int side) { return visit(time, side); });
@@ -84,7 +84,7 @@ void crossings(const Motion<T>& motion, Quantity quantity, T level, T until,
 /// neighbours the quantity is continuous and monotone.
 template <class T>
 void extrema(const Motion<T>& motion, Quantity quantity, T until,
-             detail::Given<Callback<T, T>> visit) {
+             detail::Given<Callback<T, T>> visit, GoOn go_on = {}) {
   using std::abs;
   const Drive<T>& drive = motion.drive();
   detail::SignChanges<T> changes;
@@ -104,7 +104,7 @@ void extrema(const Motion<T>& motion, Quantity quantity, T until,
     return abs(value - end) > detail::end_error<T> * terms;
   };
   motion.expanded(T(0), until, [&](const Segment<T>& segment, T begin, T span) {
-    return motion.along(segment, [&](const auto& along) {
+    return go_on() && motion.along(segment, [&](const auto& along) {
       const auto path = quantity_of(along, quantity);
       const T start = along.start(path);
       if (!began) {
@@ -129,8 +129,9 @@ void extrema(const Motion<T>& motion, Quantity quantity, T until,
 /// ends, until visit returns false.
 template <class T>
 void events(const Motion<T>& motion, T from, T to,
-            detail::Given<Callback<T, const Segment<T>&>> visit) {
+            detail::Given<Callback<T, const Segment<T>&>> visit, GoOn go_on = {}) {
   motion.expanded(from, to, [&](const Segment<T>& segment, T begin, T) {
+    if (!go_on()) return false;
     const T time = segment.end + (begin - segment.begin);
     return !segment.event.any() || !(time >= from && time <= to) || visit(time, segment);
   });

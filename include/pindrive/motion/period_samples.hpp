@@ -20,8 +20,8 @@ class PeriodSamples {
  public:
   /// The motion outlives the samples.
   explicit PeriodSamples(Motion<T>&& motion) = delete;
-  explicit PeriodSamples(const Motion<T>& motion)
-      : motion_(motion), period_(motion.outcome().period), step_(period_ / samples) {
+  explicit PeriodSamples(const Motion<T>& motion, GoOn go_on = {})
+      : motion_(motion), go_on_(go_on), period_(motion.outcome().period), step_(period_ / samples) {
     const Segment<T>& last = *std::prev(motion.end());
     until_ = motion.outcome().cycles() ? last.end : last.begin + period_;
     for (int i = 0; i < samples; ++i) last_[static_cast<std::size_t>(i)] = position(time(i));
@@ -33,7 +33,7 @@ class PeriodSamples {
   /// Largest difference from a time on, as a part of the amplitude.
   T difference_since(T since) const {
     T largest{0};
-    for (long long i = samples; time(i) >= since && time(i) >= 0; ++i)
+    for (long long i = samples; time(i) >= since && time(i) >= 0 && go_on_(); ++i)
       largest = std::max(largest, difference(i));
     return largest;
   }
@@ -41,7 +41,7 @@ class PeriodSamples {
   /// `step` apart.
   T begin(T part) const {
     long long i = samples;
-    while (time(i) > 0 && !(difference(i) > part)) ++i;
+    while (time(i) > 0 && !(difference(i) > part) && go_on_()) ++i;
     return time(i) > 0 ? time(i - 1) : T(0);
   }
   T step() const { return step_; }
@@ -60,6 +60,7 @@ class PeriodSamples {
   }
 
   const Motion<T>& motion_;
+  GoOn go_on_;
   T period_, step_, until_{0}, amplitude_{0}, rounding_{0};
   std::array<T, samples> last_{};  ///< positions of the last period, backwards
 };

@@ -34,8 +34,9 @@ T last_breakpoint(const Inputs<T>& inputs) {
 template <class T>
 class FirstRepeat {
  public:
-  explicit FirstRepeat(const Motion<T>& motion)
+  explicit FirstRepeat(const Motion<T>& motion, GoOn go_on = {})
       : motion_(motion),
+        go_on_(go_on),
         known_(motion.outcome().cycles() ? motion.outcome().cycle_begin
                                          : std::prev(motion.end())->begin),
         period_(motion.outcome().period),
@@ -47,7 +48,7 @@ class FirstRepeat {
     const Segment<T>*const first = own, *const last = std::prev(motion_.end());
     const Segment<T>* continued = last;
     T periods{1};
-    for (T since = known_; since > last_breakpoint_;) {
+    for (T since = known_; since > last_breakpoint_ && go_on_();) {
       const T before = own == motion_.begin() ? T(0) : std::prev(own)->begin;
       const T before_too =
           motion_.outcome().cycles() ? continued->begin - periods * period_ : last_breakpoint_;
@@ -89,10 +90,11 @@ class FirstRepeat {
   /// Amplitude of the steady motion, m.
   T amplitude() const {
     if (!motion_.outcome().cycles()) return std::prev(motion_.end())->flow.amplitude();
-    return SteadyMeasurement<T>(motion_).range().half();
+    return SteadyMeasurement<T>(motion_, go_on_).range().half();
   }
 
   const Motion<T>& motion_;
+  GoOn go_on_;
   T known_;                     ///< time from which the motion is steady in any case, s
   T period_, last_breakpoint_;  ///< s
 };
@@ -102,8 +104,8 @@ class FirstRepeat {
 /// Time from which a motion that ends in a steady one is periodic, to `repeat_tolerance` of its amplitude, s;
 /// NaN of any other motion.
 template <class T>
-T steady_since(const Motion<T>& motion) {
-  return motion.outcome().steady() ? detail::FirstRepeat<T>(motion).find()
+T steady_since(const Motion<T>& motion, GoOn go_on = {}) {
+  return motion.outcome().steady() ? detail::FirstRepeat<T>(motion, go_on).find()
                                    : std::numeric_limits<T>::quiet_NaN();
 }
 

@@ -186,7 +186,7 @@ class Measurement {
   void ending(Transient<T>& result) const {
     const Outcome<T>& outcome = motion_.outcome();
     const Path<T>& last = std::prev(motion_.end())->flow.position;
-    result.steady_since = steady_since(motion_);
+    result.steady_since = steady_since(motion_, go_on_);
     result.steady = steady_numbers(motion_, go_on_);
     result.end_position = outcome.end == End::resting    ? last.start
                           : outcome.end == End::decaying ? last.centre()
