@@ -488,5 +488,6 @@ NB_MODULE(_core, m) {
   statuses["standstill"] = static_cast<int>(pd::Status::standstill);
   statuses["stopped"] = static_cast<int>(pd::Status::stopped);
   statuses["inconsistent"] = static_cast<int>(pd::Status::inconsistent);
+  statuses["too_many_periods"] = static_cast<int>(pd::Status::too_many_periods);
   m.attr("statuses") = statuses;
 }

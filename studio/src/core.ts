@@ -59,6 +59,8 @@ const ENDS = [
   "driven",
   "irregular",
   "drifting",
+  "growing",
+  "approaching",
 ] as const;
 export type End = (typeof ENDS)[number];
 const TRANSITIONS = ["none", "stick", "slip", "reverse"] as const;

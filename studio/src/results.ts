@@ -16,6 +16,8 @@ const ENDINGS: Readonly<Record<string, string>> = {
   driven: "the periodic response to its inputs",
   irregular: "irregular, never repeats",
   drifting: "follows a ramp of its inputs",
+  growing: "grows from period to period",
+  approaching: "approaches a limit slowly",
 };
 
 /** Description of the motion in one sentence. */

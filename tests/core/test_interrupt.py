@@ -50,8 +50,8 @@ call, arguments = {call}
 print("ready", flush=True)
 deque(starmap(call, repeat(arguments)), maxlen=0)
 """
-"""Calls of the core one after the other by an iterator in C, without end: between two calls Python
-does not check for a signal, so that one of the calls must."""
+# An iterator in C repeats the call without end: between two calls Python does not check for a
+# signal, so that one of the calls must.
 BATCH = (
     "_core.simulate_batch, ([np.broadcast_to(np.array(x), 10**6) for x in (0.01, 100.0, 0.0, 0.0, "
     "0.0, 1e-9, 1e-9, np.inf, 0.06, 0.002, 0.06, np.inf, 0.05, 1.0)], batch._BOUNDS, 3, [], True)"

@@ -199,6 +199,16 @@ class Evolution {
   T time_error{0};  ///< rounding error of the time of the pin (Kahan 1965), s
   /// True if the pin is at the begin of a period of the inputs.
   bool begins_period() const { return begins_period_; }
+  /// State exactly at the begin of the period of the inputs, whose time is rounded.
+  State<T> state_at_begin_of_period() const {
+    using std::fma;
+    State<T> exact = pin.state;
+    const Real<T> time = plain(pin.time), since = plain(repetition_.since);
+    const Real<T> late = -(fma(Real<T>(periods_ - 1), plain(repetition_.period), -time) + since);
+    exact.x -= late * exact.v;
+    if (!pin.held()) exact.v -= late * selected.acceleration;
+    return exact;
+  }
   /// True if no input changes from now on.
   bool has_constant_inputs() const {
     return !(next_breakpoint < never) && pin.plate.surface.steady() && pin.plate.across.steady() &&

@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "pindrive/events/irregularity.hpp"
+#include "pindrive/events/trend.hpp"
 #include "pindrive/law/state.hpp"
 #include "pindrive/model/model.hpp"
 #include "pindrive/numbers/limits.hpp"
@@ -58,9 +59,10 @@ class CycleDetector {
   explicit CycleDetector(const Drive<T>& drive) : drive_(drive) {}
 
   /// Compares an event at time + time_error, between a segment and the mode and state after the event. Sets the
-  /// ending in the outcome if the event closes a cycle. `driven`: it begins a period of the inputs.
+  /// ending in the outcome if the event closes a cycle. `driven`: it begins a period of the inputs. `slow`: the segment
+  /// takes long to simulate.
   void visit(const Segment<T>& ended, const Mode& mode, T time, T time_error, const State<T>& state,
-             Outcome<T>& outcome, bool driven = false) {
+             Outcome<T>& outcome, bool driven = false, bool slow = false) {
     driven_ = driven;
     if (count_ < first_kept_event) {
       ++count_;
@@ -82,6 +84,10 @@ class CycleDetector {
       irregularity_.visit_period(time, state, outcome);
     else if (count_ >= irregular_window)
       irregularity_.visit(ended, time, state, outcome);
+    if (slow && count_ >= irregular_window) {
+      trend_.add(ended, state);
+      trend_.visit(time, state, outcome);
+    }
     if (count_ % memory == 0) keep(recent_, now);
     if (count_ == next_) {
       keep(kept_, now);
@@ -94,6 +100,15 @@ class CycleDetector {
   void pass(const Segment<T>& ended, const State<T>& state) {
     if (count_ <= first_kept_event) return;
     for (Visit* visit : {&kept_, &recent_, &followed_}) extend(*visit, ended, state);
+    if (count_ >= irregular_window) trend_.add(ended, state);
+  }
+
+  /// True if the motion has taken too many periods.
+  bool is_too_long() const { return trend_.is_too_long(); }
+  /// Outcome of a motion that has taken too many periods: it grows, approaches a limit, or is terminated.
+  Outcome<T> terminated(Outcome<T> outcome) const {
+    if (!trend_.conclude(outcome)) outcome.status = Status::too_many_periods;
+    return outcome;
   }
 
  private:
@@ -158,8 +173,9 @@ class CycleDetector {
   bool returns_to(Visit& earlier, const Segment<T>& ended, const Event& now, Outcome<T>& outcome) {
     extend(earlier, ended, now.state);
     const T distance = separation(earlier, now);
-    if (distance <= T(return_tolerance)) return close(earlier, now, outcome);
     const long long period = count_ - earlier.index;
+    if (distance <= T(return_tolerance) && (period != period_ || converges(distance)))
+      return close(earlier, now, outcome);
     // The shorter of two returns of a response that are alike is followed.
     const T factor = !driven_ || period == period_ ? T(1)
                      : period > period_            ? T(near_return)
@@ -181,14 +197,21 @@ class CycleDetector {
     if (count_ != followed_.index + period_) return false;
     const T distance = separation(followed_, now), ratio = distance / distance_;
     const T slower = std::max(ratio, ratio_);
+    const bool returns = distance <= T(return_tolerance) && converges(distance);
     ratio_ = ratio;
     distance_ = distance;
     if (!(ratio < 1)) period_ = 0;
     const bool within = slower < 1 && distance <= T(approach_step) &&
                         distance / (1 - slower) <= T(approach_tolerance) && !driven_;
-    if (within || distance <= T(return_tolerance)) return close(followed_, now, outcome);
+    if (within || returns) return close(followed_, now, outcome);
     keep(followed_, now);
     return false;
+  }
+
+  /// True if the returns of the followed period that remain after one at a distance are together within the
+  /// tolerance: those of an algebraic approach, whose ratio tends to 1, are not.
+  bool converges(T distance) const {
+    return !(distance > (1 - distance / distance_) * T(approach_tolerance));
   }
 
   bool close(const Visit& begin, const Event& now, Outcome<T>& outcome) const {
@@ -207,6 +230,7 @@ class CycleDetector {
   T distance_{0}, ratio_{1};          ///< distance of its last return; ratio to the distance before
   bool driven_{false};                ///< under periodic inputs
   IrregularityDetector<T> irregularity_;
+  Trend<T> trend_;
 };
 
 }  // namespace pindrive::detail

@@ -26,6 +26,7 @@ class Simulation {
 
   Outcome<T> run(SegmentSink<T> sink) {
     Pin<T>& pin = evolution_.pin;
+    const bool unlimited = !(inputs_.duration < never);
     int standing = 0;
     Segment<T> segment;
     for (long long events = 1;; ++events) {
@@ -35,15 +36,18 @@ class Simulation {
       const bool finished = !(evolution_.time_after(tau) < inputs_.duration);
       if (!finished) {
         evolution_.jump(segment, tau);
+        const bool by_series = evolution_.series.used();
         if (turn < event) pin.state.v = T(0);
         select();
         const Mode after = pin.mode();
         segment.event = evolution_.transitions(segment.mode);
         const bool changes = segment.event.any() || !same_mode(segment.mode, after);
-        if (evolution_.begins_period() ||
-            (evolution_.has_constant_inputs() && (changes || turn < event)))
-          cycles_.visit(segment, after, pin.time, evolution_.time_error, pin.state, outcome_,
-                        evolution_.begins_period());
+        if (evolution_.begins_period())
+          cycles_.visit(segment, after, pin.time, evolution_.time_error,
+                        evolution_.state_at_begin_of_period(), outcome_, true, by_series);
+        else if (evolution_.has_constant_inputs() && (changes || turn < event))
+          cycles_.visit(segment, after, pin.time, evolution_.time_error, pin.state, outcome_, false,
+                        by_series);
         else
           cycles_.pass(segment, pin.state);
       } else if (tau == never && evolution_.has_lasting_loads()) {
@@ -57,9 +61,10 @@ class Simulation {
       standing = segment.end > segment.begin ? 0 : standing + 1;
       if (!sink(segment))
         outcome_.status = Status::stopped;
-      else if (finished || outcome_.cycles() ||
-               (outcome_.end == End::irregular && !(inputs_.duration < never)))
+      else if (finished || outcome_.cycles() || (outcome_.unbounded() && unlimited))
         return outcome_;
+      else if (unlimited && cycles_.is_too_long())
+        return cycles_.terminated(outcome_);
       else if (events == event_limit)
         outcome_.status = Status::too_many_events;
       else if (standing > standstill_limit)

@@ -68,7 +68,8 @@ inline constexpr int transient_columns[] = {
     no_column,
     no_column,
     no_column,
-    no_column,  // the energy of a decay; velocity and lag of a drift
+    no_column,  // the energy of a decay; velocity and lag of a drift, growth
+    no_column,
     no_column,
     no_column,
     no_column,  // the plate in a period of a steady oscillation

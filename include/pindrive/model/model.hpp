@@ -454,22 +454,38 @@ enum class End : signed char {
   limit_cycle,  ///< periodic motion sustained by falling friction, without stick
   driven,       ///< periodic response to periodic inputs
   irregular,    ///< chaotic or quasi-periodic: no return within `irregular_windows` (limits.hpp)
-  drifting  ///< approach to a line, or oscillation about it, under inputs that grow; no further event
+  drifting,  ///< approach to a line, or oscillation about it, under inputs that grow; no further event
+  growing,     ///< the range grows from period to period, and no ending was found
+  approaching  ///< the range tends to a limit, too slowly for the limit to be found
 };
 
-enum class Status : signed char { ok, too_many_events, standstill, stopped, inconsistent };
+enum class Status : signed char {
+  ok,
+  too_many_events,
+  standstill,
+  stopped,
+  inconsistent,
+  too_many_periods
+};
 
 template <class T>
 struct Outcome {
   Status status{Status::ok};
   End end{End::moving};
-  T period{std::numeric_limits<T>::quiet_NaN()};  ///< period of a steady oscillation, s
+  /// Period of a steady, growing or approaching oscillation, s.
+  T period{std::numeric_limits<T>::quiet_NaN()};
+  /// Factor in a period of the range of a growing oscillation, of the distance from the limit of an approaching one.
+  double growth{std::numeric_limits<double>::quiet_NaN()};
   T until{0};  ///< end of the last segment, s; a cycle repeats from here on
   /// begin of the repeated cycle, s; of an irregular motion, begin of the stretch that is measured
   T cycle_begin{0};
 
   /// True if the state is known at all times, not only as far as it was simulated.
-  bool known() const { return end != End::moving && end != End::irregular; }
+  bool known() const { return end != End::moving && !unbounded(); }
+  /// True if the motion has no known ending however long it is simulated.
+  bool unbounded() const {
+    return end == End::irregular || end == End::growing || end == End::approaching;
+  }
   bool steady() const { return cycles() || end == End::free || end == End::grazing; }
   bool cycles() const {
     return end == End::stick_slip || end == End::limit_cycle || end == End::driven;

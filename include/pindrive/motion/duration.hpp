@@ -40,6 +40,8 @@ T duration_of(const Motion<T>& motion, T band, GoOn go_on = {}) {
     case End::driven:
       return outcome.until + 3 * outcome.period;
     case End::irregular:
+    case End::growing:
+    case End::approaching:
     case End::moving:
       break;
   }

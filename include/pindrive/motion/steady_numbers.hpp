@@ -139,6 +139,7 @@ SteadyNumbers<T> steady_numbers(const Motion<T>& motion, GoOn go_on = {}) {
   if (outcome.cycles() || outcome.end == End::irregular)
     return detail::SteadyMeasurement<T>(motion, go_on).measure();
   SteadyNumbers<T> found;
+  if (outcome.end == End::growing || outcome.end == End::approaching) found.period = outcome.period;
   if (!outcome.steady()) return found;
   const Flow<T>& last = std::prev(motion.end())->flow;
   found.centre = last.position.centre();

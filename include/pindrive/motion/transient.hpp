@@ -192,6 +192,7 @@ class Measurement {
                           : outcome.end == End::decaying ? last.centre()
                                                          : result.steady.centre;
     if (outcome.end == End::drifting) drift(result);
+    result.growth = T(outcome.growth);
   }
 
   /// Line that a drifting pin follows, and its distance behind the position at which the spring balances the
@@ -214,7 +215,7 @@ class Measurement {
   /// Times of endings without settling: rest, steady oscillation, last event.
   void rest_and_events(Transient<T>& result) const {
     const Outcome<T>& outcome = motion_.outcome();
-    if (outcome.end == End::moving) return;
+    if (!outcome.known() && outcome.end != End::irregular) return;
     result.rest_time = outcome.end == End::resting ? rest_begin() : never;
     result.last_event_time = T(0);
     const Segment<T>* segment = motion_.end();

@@ -47,8 +47,10 @@ struct Transient {
   /// x_end: position of rest, centre of the final oscillation, or of a drift the position of its line at t = 0, m
   T end_position{none};
   T drift_velocity{none};  ///< of the line that a drifting pin follows, m/s
-  T lag{
-      none};  ///< distance of a drifting pin behind the balance of spring and inputs, m; NaN if it grows
+  /// Distance of a drifting pin behind the balance of spring and inputs, m; NaN if it grows.
+  T lag{none};
+  /// Factor in a period of a growing range, or of the distance from the limit that is approached.
+  T growth{none};
   T end_time{none};             ///< t*: end of the transient, s
   ContactUse<T> plate, finger;  ///< in the transient; peak forces of the whole motion
 
@@ -96,6 +98,7 @@ inline constexpr NamedNumber<T, Transient<T>> transient_numbers[] = {
     {"ending.decay_energy", [](const Transient<T>& t) { return t.decay_energy; }},
     {"ending.drift_velocity", [](const Transient<T>& t) { return t.drift_velocity; }},
     {"ending.lag", [](const Transient<T>& t) { return t.lag; }},
+    {"ending.growth", [](const Transient<T>& t) { return t.growth; }},
     {"ending.plate.reversals", [](const Transient<T>& t) { return t.plate_afterwards.reversals; }},
     {"ending.plate.time_stuck",
      [](const Transient<T>& t) { return t.plate_afterwards.time_stuck; }},

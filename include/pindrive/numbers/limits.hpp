@@ -102,6 +102,12 @@ inline constexpr int irregular_window = 240, irregular_windows = 64;
 /// irregularity_test fails.
 inline constexpr int irregular_periods = 60;
 
+/// Events in a block whose range is compared with that of the block before, blocks after which a change in one
+/// direction is a trend, and periods after which a motion by series without an ending is terminated: some seconds.
+/// Without it: trend_test fails.
+inline constexpr int trend_block = 640, trend_blocks = 7;
+inline constexpr double period_limit = 50'000;
+
 /// Speed below which a pin is at rest, as a fraction of |x| ω0: below the remaining digits of the
 /// position in a decay (MODEL, section 10). Without it: endings fails.
 inline constexpr double rest_tolerance = 3e-11;

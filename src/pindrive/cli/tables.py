@@ -277,6 +277,13 @@ def ending(motion: Motion) -> str:
     if end.kind == "drifting":
         lag = "" if isnan(end.lag) else f", {_POSITION.text(end.lag)} behind the balance of forces"
         return f"Follows a ramp at {_VELOCITY.text(end.drift_velocity)}{lag}."
+    if end.kind in ("growing", "approaching"):
+        grows = "Grows" if end.kind == "growing" else "Approaches a limit: the distance changes"
+        until = duration(motion.segments[-1].end)
+        return (
+            f"{grows} by a factor of {end.growth:.8g} in each period of {duration(end.period)}; no "
+            f"ending up to {until}."
+        )
     if end.kind == "steady":
         rounds = f" ({end.rounds:.0f} rounds)" if end.rounds > 1.0 else ""
         return (

@@ -155,7 +155,9 @@ def _mode(plate: int, finger: int, stop: int, still: bool) -> ModeName:
     return "resting" if still or finger == 0 else "carried"
 
 
-EndKind = Literal["moving", "resting", "decaying", "drifting", "steady", "irregular"]
+EndKind = Literal[
+    "moving", "resting", "decaying", "drifting", "steady", "irregular", "growing", "approaching"
+]
 Cycle = Literal["free", "grazing", "stick-slip", "limit cycle", "driven"]
 
 _KIND: dict[End, EndKind] = {
@@ -164,6 +166,8 @@ _KIND: dict[End, EndKind] = {
     End.decaying: "decaying",
     End.drifting: "drifting",
     End.irregular: "irregular",
+    End.growing: "growing",
+    End.approaching: "approaching",
 }
 _CYCLE: dict[End, Cycle] = {
     End.free: "free",
@@ -271,6 +275,9 @@ class Ending:
     """Distance of a drifting pin behind the position at which the spring balances the inputs, m.
 
     NaN under a load that grows, as the distance then grows too."""
+    growth: float
+    """Factor in one period: of the range of a growing motion, of the distance from the limit that a
+    motion approaches."""
     plate: Afterwards
     finger: Afterwards
 
@@ -283,6 +290,9 @@ class Ending:
         that grow for ever it follows the line `position + drift_velocity * t` without another
         event, where `settling_time` is about that line; `irregular`: chaotic or
         quasi-periodic, without a return within 15 360 events or 5700 periods of the inputs;
+        `growing`: its range grew from period to period, by the factor `growth` in the last ones,
+        and no ending was found; `approaching`: it tends to a limit, from which the distance shrinks
+        by the factor `growth` in a period, so that the motion would take more than 50 000 periods;
         `moving`: not known yet.
         """
         return _KIND.get(self.end, "steady")

@@ -420,12 +420,14 @@ def outcome(motion: Motion) -> str:
     words = {
         "resting": f"At rest at {place} since {duration(numbers.rest_time)}",
         "decaying": f"Decays towards {place}",
+        "growing": f"Grows by a factor of {end.growth:.6g} in a period",
+        "approaching": f"Approaches a limit by a factor of {end.growth:.6g} in a period",
         "drifting": f"Drifts at {short('mouse_velocity', end.drift_velocity)}",
         "steady": f"Steady {end.cycle} oscillation of ±{short('displacement', end.amplitude)}",
         "irregular": f"Irregular oscillation of up to ±{short('displacement', end.amplitude)}",
         "moving": f"Still moving after {duration(motion.duration)}",
     }[end.kind]
-    if isfinite(end.period):
+    if isfinite(end.period) and end.kind in ("steady", "irregular"):
         mean = "mean " if end.kind == "irregular" else ""
         words += f", {mean}period {duration(end.period)}"
     if end.kind == "steady":

@@ -129,6 +129,12 @@ ENDING: Final[tuple[Quantity, ...]] = (
     Quantity("ending.decay_energy", "W_end", "J", "energy that the final decay still dissipates"),
     Quantity("ending.drift_velocity", "v_drift", "m/s", "velocity of the line a drift follows"),
     Quantity("ending.lag", "x_lag", "m", "distance of a drift behind the balance without friction"),
+    Quantity(
+        "ending.growth",
+        "q_T",
+        "",
+        "factor in a period of a range that grows, or of the distance from a limit",
+    ),
     *(
         Quantity(f"ending.{contact}.{name}", symbol.format(contact[0]), unit, meaning.format(where))
         for contact, where in (("plate", "at the plate"), ("finger", "at the finger"))

@@ -31,6 +31,7 @@ class Status(IntEnum):
     standstill = 2
     stopped = 3
     inconsistent = 4
+    too_many_periods = 5
     incomplete = 14
     refused = 15
     bad_mass = 16
@@ -76,8 +77,12 @@ class Status(IntEnum):
 _EXPLANATIONS = {
     Status.ok: "followed to the end",
     Status.too_many_events: (
-        "stopped at the largest number of events: friction and damping are too weak to end the "
-        "motion; give a shorter duration"
+        "stopped at a million segments before its ending or the end of its duration; give a "
+        "shorter duration"
+    ),
+    Status.too_many_periods: (
+        "stopped after 50 000 periods in which the motion neither ended nor repeated, nor steadily "
+        "grew or decayed; give a duration"
     ),
     Status.standstill: (
         "stopped where events pile up at one instant; change a parameter by a little, and please "
@@ -119,6 +124,8 @@ class End(IntEnum):
     driven = 7
     irregular = 8
     drifting = 9
+    growing = 10
+    approaching = 11
 
 
 OUTCOMES: dict[str, type[Status | End] | None] = {"status": Status, "ending": End, "events": None}
