@@ -163,7 +163,7 @@ class Batch {
     const bool settling = block_->unsure[i];
     if (!all && !settling && !energy_) return;
     const pd::Numbers& at = points_[i];
-    const pd::OwnedMotion<double> motion(at, at, [&] { return attended.go_on(); });
+    const pd::OwnedMotion<double> motion(at, at, [&](const auto&) { return attended.go_on(); });
     if (attended.stopped()) return;
     const auto view = motion.view();
     pd::Summary<double> summary{{}, motion.outcome(), pd::duration_of(view, band_), 0};

@@ -34,7 +34,8 @@ template <class T>
 pindrive_error simulated(std::unique_ptr<pd::OwnedMotion<T>>& motion, pd::Numbers at,
                          pd::Numbers along, Attended& attended) {
   start(at, along);
-  motion = std::make_unique<pd::OwnedMotion<T>>(at, along, [&] { return attended.go_on(); });
+  motion = std::make_unique<pd::OwnedMotion<T>>(at, along,
+                                                [&](const auto&) { return attended.go_on(); });
   if (!attended.stopped()) return PINDRIVE_OK;
   return stopped();
 }

@@ -266,13 +266,13 @@ class StoredMotion {
   const Drive<T>& drive() const { return drive_; }
 
  protected:
-  /// Simulates; go_on() says, after each segment, whether to continue.
-  StoredMotion(const Drive<T>& drive, const Inputs<T>& inputs, GoOn go_on)
+  /// Simulates; `go_on` is called with each segment.
+  StoredMotion(const Drive<T>& drive, const Inputs<T>& inputs, SegmentSink<T> go_on)
       : drive_(drive),
         inputs_(inputs),
         outcome_(simulate(drive_, inputs_, [&](const Segment<T>& segment) {
           segments_.push_back(segment);
-          return go_on();
+          return go_on(segment);
         })) {}
 
  private:
@@ -287,7 +287,7 @@ class StoredMotion {
 template <class T>
 class OwnedMotion : private OwnedInputs<T>, public StoredMotion<T> {
  public:
-  OwnedMotion(const Numbers& at, const Numbers& along, GoOn go_on)
+  OwnedMotion(const Numbers& at, const Numbers& along, SegmentSink<T> go_on)
       : OwnedInputs<T>(at, along),
         StoredMotion<T>(OwnedInputs<T>::core_drive, OwnedInputs<T>::core_inputs, go_on) {}
 };

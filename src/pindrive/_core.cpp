@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <complex>
 #include <cstddef>
 #include <cstdint>
@@ -140,10 +141,37 @@ pd::Numbers numbers(double mass, double stiffness, double damping, ContactNumber
           duration};
 }
 
+/// Reports the simulated time of a long simulation, s, to a function of Python, which may be None.
+class Progress {
+ public:
+  explicit Progress(const nb::object& report) : report_(report) {}
+
+  void at(double time) {
+    if (report_.is_none() || ++segments_ % 64 != 0 || Clock::now() < next_) return;
+    next_ = Clock::now() + pause;
+    const nb::gil_scoped_acquire locked;
+    report_(time);
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::milliseconds first{500}, pause{100};
+
+  const nb::object& report_;
+  unsigned segments_{0};
+  Clock::time_point next_{Clock::now() + first};
+};
+
 template <class T>
-std::unique_ptr<CoreMotion<T>> run(const pd::Numbers& at, const pd::Numbers& along) {
+std::unique_ptr<CoreMotion<T>> run(const pd::Numbers& at, const pd::Numbers& along,
+                                   const nb::object& report = nb::none()) {
+  Progress progress(report);
   return interruptible([&](auto go_on) -> std::unique_ptr<CoreMotion<T>> {
-    return std::make_unique<pd::OwnedMotion<T>>(at, along, go_on);
+    return std::make_unique<pd::OwnedMotion<T>>(at, along, [&](const pd::Segment<T>& segment) {
+      if (!go_on()) return false;
+      progress.at(result(segment.begin));
+      return true;
+    });
   });
 }
 
@@ -388,22 +416,24 @@ NB_MODULE(_core, m) {
       [](double mass, double stiffness, double damping, ContactNumbers plate, ContactNumbers finger,
          Input mouse_velocity, Input plate_load, double displacement, double velocity,
          double skin_stretch, Input force, Input across_velocity, Input finger_load,
-         const StopNumbers& stops, double duration) {
+         const StopNumbers& stops, double duration, const nb::object& progress) {
         const pd::Numbers at = numbers(
             mass, stiffness, damping, std::move(plate), std::move(finger),
             std::move(mouse_velocity), std::move(plate_load), displacement, velocity, skin_stretch,
             std::move(force), std::move(across_velocity), std::move(finger_load), stops, duration);
-        return run<double>(at, at);
+        return run<double>(at, at, progress);
       },
       "mass"_a, "stiffness"_a, "damping"_a, "plate"_a, "finger"_a, "mouse_velocity"_a,
       "plate_load"_a, "displacement"_a, "velocity"_a, "skin_stretch"_a, "force"_a,
       "across_velocity"_a, "finger_load"_a, "stops"_a, "duration"_a,
+      "progress"_a.none() = nb::none(),
       "Simulates one pin from its release until its ending is known or the duration is over. "
       "Contacts are (kinetic, static, stiffness, rows (speed, force) of the curve, (law, "
       "breakaway, Stribeck velocity, exponent, viscous)), inputs rows "
       "(time, value), one row for a constant, or the pieces (begin, polynomial, terms (cosine, "
       "sine, "
-      "decay, frequency)) of a function.");
+      "decay, frequency)) of a function. In a long simulation, progress is called with the "
+      "simulated time.");
   m.def(
       "function_range",
       [](std::vector<Piece> pieces, double until) {

@@ -104,3 +104,17 @@ def test_motion_to_a_duration_says_that_it_grows() -> None:
 def test_statuses_say_what_to_do() -> None:
     assert "give a duration" in Status.too_many_periods.explanation
     assert "give a shorter duration" in Status.too_many_events.explanation
+
+
+def test_long_simulation_reports_its_time() -> None:
+    push = harmonic(0.0, 1.4, 10.0 / (2.0 * pi))
+    release = Release(0.0, velocity=0.0, force=push)
+    times: list[float] = []
+    motion = simulate(
+        body(finger=Contact(1.0)), release, duration=2e5, progress=lambda time: times.append(time)
+    )
+    assert motion.status == Status.too_many_events
+    assert times == sorted(times)
+    assert 0.0 < times[0] < times[-1] < motion.core.until
+    with pytest.raises(ZeroDivisionError):
+        simulate(body(finger=Contact(1.0)), release, duration=2e5, progress=lambda _: 1 // 0)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING
 
 from pindrive.lazy import rich_console, rich_progress
@@ -22,6 +22,41 @@ def bar(what: str) -> Iterator[Progress | None]:
     with rich_progress.Progress(console=rich_console.Console(stderr=True), transient=True) as shown:
         task = shown.add_task(what)
         yield lambda done, of: shown.update(task, completed=done, total=of)
+
+
+@contextmanager
+def simulated_time(duration: float | None) -> Iterator[Callable[[float], None] | None]:
+    """Return a function that shows the simulated time, s, from its first call on.
+
+    Args:
+        duration: End of the simulation, s. None: its ending.
+
+    Yields:
+        The function; None if standard error is no terminal.
+    """
+    if not sys.stderr.isatty():
+        yield None
+        return
+    columns = (
+        rich_progress.SpinnerColumn(),
+        rich_progress.TextColumn("{task.description}"),
+        rich_progress.TimeElapsedColumn(),
+    )
+    of = "" if duration is None else f" of {duration:.6g} s"
+    with ExitStack() as stack:
+        shown: list[rich_progress.Progress] = []
+
+        def show(time: float) -> None:
+            text = f"Simulated {time:.6g} s{of}"
+            if shown:
+                shown[0].update(shown[0].task_ids[0], description=text)
+                return
+            screen = rich_console.Console(stderr=True)
+            bar = rich_progress.Progress(*columns, console=screen, transient=True)
+            bar.add_task(text)
+            shown.append(stack.enter_context(bar))
+
+        yield show
 
 
 @contextmanager

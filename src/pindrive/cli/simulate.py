@@ -20,6 +20,7 @@ from pindrive.cli.outputs import (
     say_written,
     with_events,
 )
+from pindrive.cli.progress import simulated_time
 
 if TYPE_CHECKING:
     from pindrive.motion.motion import Motion
@@ -75,7 +76,8 @@ def simulate(
         )
         targets = with_events(targets, EVENTS_CSV, export.write_events)
         with results(targets, device.inputs, force=force) as write:
-            motion = motion_of(device)
+            with simulated_time(device.duration) as progress:
+                motion = motion_of(device, progress)
             write(motion)
     from pindrive.cli.tables import motion_report, release_words, show, warn_of
 

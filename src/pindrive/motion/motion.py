@@ -538,7 +538,13 @@ def _times(t: ArrayLike) -> NDArray[np.float64]:
         raise ValueError(refusal("t", "numbers, in seconds", repr(t))) from None
 
 
-def solve(drive: Drive, release: Release, duration: float | None, settling_band: float) -> Motion:
+def solve(
+    drive: Drive,
+    release: Release,
+    duration: float | None,
+    settling_band: float,
+    progress: Callable[[float], None] | None = None,
+) -> Motion:
     """Simulate a pin with checked arguments.
 
     Args:
@@ -546,6 +552,7 @@ def solve(drive: Drive, release: Release, duration: float | None, settling_band:
         release: Initial state and inputs, which fit the drive.
         duration: End of the simulation, s. None: until the ending is known.
         settling_band: Half width of the settling band, as a fraction of |x(0) - x_end|.
+        progress: Function called with the simulated time, s, of a long simulation.
     """
     numbers = core_numbers(drive, release, duration)
-    return Motion(drive, release, numbers, _core.simulate(*numbers), settling_band)
+    return Motion(drive, release, numbers, _core.simulate(*numbers, progress), settling_band)

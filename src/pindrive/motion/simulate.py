@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import inf
 from typing import cast
 
@@ -16,6 +17,8 @@ from pindrive.quantities.contradictions import refuse
 from pindrive.quantities.drive import DRIVE_QUANTITIES
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.table import QUANTITIES, check, warn_of
+
+Progress = Callable[[float], None]
 
 _SEEN = {quantity.name: quantity.seen for quantity in DRIVE_QUANTITIES if quantity.seen}
 _GLANCE = (
@@ -34,6 +37,7 @@ def simulate(
     *,
     duration: float | str | None = None,
     settling_band: float | str | None = None,
+    progress: Progress | None = None,
 ) -> Motion:
     """Follow the pin of a drive from its release, exactly.
 
@@ -45,6 +49,8 @@ def simulate(
             device, or long enough to see the ending.
         settling_band: Half the band about the end in which the motion counts as settled, a part of
             |x(0) - x_end|, above 0 and at most 1; None: that of the device, or 0.05.
+        progress: Function called with the simulated time, s, ten times a second in a simulation that
+            lasts longer than half a second.
 
     Returns:
         The motion. Sustained motions are recognised and reported in its `ending`.
@@ -62,7 +68,9 @@ def simulate(
         settling_band = drive.settling_band if settling_band is None else settling_band
         drive = drive.drive
     band = _core.settling_band if settling_band is None else settling_band
-    motion = simulated(drive, cast(Release, release), duration=duration, settling_band=band)
+    motion = simulated(
+        drive, cast(Release, release), duration=duration, settling_band=band, progress=progress
+    )
     release = motion.release
     if not _plausible(motion.core_numbers):
         given = motion.inputs()
@@ -83,6 +91,7 @@ def simulated(
     *,
     duration: float | str | None = None,
     settling_band: float | str = _core.settling_band,
+    progress: Progress | None = None,
 ) -> Motion:
     """Simulate without warnings: for numbers that no person has written."""
     end = None if duration is None else check("duration", duration)
@@ -92,7 +101,7 @@ def simulated(
     if end is not None:
         keys = ("drive.mass", "drive.stiffness", "motion.duration")
         refuse(dict(zip(keys, (drive.mass, drive.stiffness, end), strict=True)))
-    return solve(drive, release, end, check("settling_band", settling_band))
+    return solve(drive, release, end, check("settling_band", settling_band), progress)
 
 
 def _check_end(release: Release) -> None:
@@ -105,13 +114,14 @@ def _check_end(release: Release) -> None:
             raise ValueError(refusal("duration", required, None))
 
 
-def motion_of(device: pindrive.DeviceFile) -> Motion:
+def motion_of(device: pindrive.DeviceFile, progress: Progress | None = None) -> Motion:
     """The release that a device file describes, without the warnings, which its reading gives."""
     return simulated(
         device.drive,
         device.release,
         duration=device.duration,
         settling_band=device.settling_band,
+        progress=progress,
     )
 
 
