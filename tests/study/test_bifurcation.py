@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import exp
+from math import exp, log
 from pathlib import Path
 
 import numpy as np
@@ -68,6 +68,12 @@ def test_sliding_sets_in_where_friction_falls_less_than_the_damper_rises(tmp_pat
     assert sticks[: stable.argmax()].all()
     assert 5 < (sticks & stable).sum() < 20
     assert "two motions" in repr(found)
+    # The branches end where a bisection of `simulate` ends stick-slip, and where b = -F'(v).
+    (fast,), (slow,) = ([c for c in found.changes if c.direction == d] for d in ("up", "down"))
+    assert fast.last < 0.488898102674 < fast.first < fast.last + 1e-5
+    assert slow.first < 0.05 * log(40.0) < slow.last < slow.first + 1e-5
+    assert [each.end.name for each in (fast.before, fast.after)] == ["stick_slip", "decaying"]
+    assert [each.end.name for each in (slow.before, slow.after)] == ["decaying", "stick_slip"]
     for one, other in zip(found.up, found.down, strict=True):
         if one.end == other.end:
             assert one.amplitude == pytest.approx(other.amplitude, rel=1e-8)
@@ -98,7 +104,10 @@ def test_the_dataset_has_both_directions(tmp_path: Path) -> None:
     found = bifurcation(study(tmp_path, FORCED))
     data = found.to_dataset()
     assert data.sizes["direction"] == 2 and data.sizes["force_frequency"] == 13
-    assert data.displacement.attrs["units"] == "m"
+    assert data.displacement.attrs["units"] == data.lowest.attrs["units"] == "m"
+    np.testing.assert_allclose(data.highest - data.lowest, 2.0 * data.amplitude)
+    assert data.change_direction.values.tolist() == ["down"]
+    assert float(data.change_first.item()) < float(data.change_last.item())
     assert data.amplitude.sel(direction="up").values.tolist() == [m.amplitude for m in found.up]
     assert data.force_frequency.attrs["units"] == "Hz"
     figure = found.plot()
@@ -126,6 +135,23 @@ def test_a_study_of_another_kind_is_refused(tmp_path: Path, axes: str, message: 
     text = BELT[: BELT.index("[axes]")] + f"[axes]\n{axes}\n"
     with pytest.raises((ValueError, ConfigError), match=message):
         bifurcation(study(tmp_path, text))
+
+
+@pytest.mark.parametrize("count", [27, 40])
+def test_end_of_a_branch_does_not_depend_on_the_step(tmp_path: Path, count: int) -> None:
+    """Of another belt, whose stick-slip ends at 301.258884377 mm/s by bisection of `simulate`."""
+    text = (
+        BELT.replace("1 kg", "0.5 kg").replace("100 N/m", "800 N/m").replace("0.5 N*s/m", "2 N*s/m")
+    )
+    text = text.replace('"1 N"', '"4 N"').replace('"2 N"', '"6 N"')
+    text = text.replace(
+        '["20 mm/s", "600 mm/s"], count = 30', f'["10 mm/s", "400 mm/s"], count = {count}'
+    )
+    found = bifurcation(study(tmp_path, text))
+    (fast,) = (each for each in found.changes if each.direction == "up")
+    assert fast.last < 0.301258884377 < fast.first < fast.last + 2e-6
+    (slow,) = (each for each in found.changes if each.direction == "down")
+    assert slow.first < 0.05 * log(20.0) < slow.last < slow.first + 2e-6
 
 
 def test_one_axis_of_several_is_named(tmp_path: Path) -> None:

@@ -6,6 +6,7 @@ import json
 import shlex
 from functools import partial
 from itertools import groupby
+from math import floor, log10
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -33,7 +34,8 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
     from rich.table import Table
 
-    from pindrive.study.bifurcation import Bifurcation, SteadyMotion
+    from pindrive.quantities.quantity import Quantity
+    from pindrive.study.bifurcation import Bifurcation, BranchChange, SteadyMotion
     from pindrive.study.evaluate import RefusedPoints
     from pindrive.study.local_sensitivity import Elasticities
     from pindrive.study.outputs import Share
@@ -158,7 +160,20 @@ def bifurcation_report(found: Bifurcation) -> RenderableType:
             low, high = (length.digits(f(m.amplitude for m in branch)) for f in (min, max))
             cells += [_kind(branch[0]), low if low == high else f"{low} to {high}"]
         made.add_row(*ends, *cells)
-    return Group(made, *whole_lines([f"{repr(found)[1:-1]}."]))
+    lines = [f"{repr(found)[1:-1]}.", *map(partial(_change, quantity), found.changes)]
+    return Group(made, *whole_lines(lines))
+
+
+def _change(quantity: Quantity, change: BranchChange) -> str:
+    """Return the bracket of an end or a jump of a branch, in a sentence."""
+    ends = sorted((change.last, change.first))
+    low, high = (end * quantity.display_scale for end in ends)
+    digits = max(1, 1 - floor(log10(high - low))) if high > low else 6
+    between = f"between {low:.{digits}f} and {high:.{digits}f} {quantity.display_unit}".rstrip()
+    before, after = _kind(change.before), _kind(change.after)
+    what = "jumps" if before == after else "ends"
+    then = "" if before == after else f"; then {after}"
+    return f"Parameter {change.direction}: {before} {what} {between}{then}."
 
 
 def _kind(motion: SteadyMotion) -> str:

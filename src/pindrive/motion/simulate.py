@@ -49,8 +49,8 @@ def simulate(
             device, or long enough to see the ending.
         settling_band: Half the band about the end in which the motion counts as settled, a part of
             |x(0) - x_end|, above 0 and at most 1; None: that of the device, or 0.05.
-        progress: Function called with the simulated time, s, ten times a second in a simulation that
-            lasts longer than half a second.
+        progress: Function called with the simulated time, s, ten times a second, once the
+            simulation has taken half a second.
 
     Returns:
         The motion. Sustained motions are recognised and reported in its `ending`.

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from math import isfinite, nan
+from dataclasses import dataclass, replace
+from math import nan
 from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pindrive import lazy
 from pindrive.files.keys import NAMES, NUMERIC_KEYS, variable
@@ -20,8 +21,7 @@ from pindrive.quantities.refusal import refusal
 from pindrive.quantities.status import End, Status
 from pindrive.quantities.table import QUANTITIES
 from pindrive.quantities.value import equal_by_value
-from pindrive.study.design import Columns
-from pindrive.study.distributions import Even, Listed, with_links
+from pindrive.study.distributions import Even, Linked, Listed, with_links
 from pindrive.study.study import Study
 
 Progress = Callable[[int, int], None]
@@ -32,10 +32,17 @@ MOST_POINTS: Final = 256
 ALIKE: Final = 1e-7
 """Distance within which two turning points are one, over the amplitude."""
 NUDGE: Final = 1e-6
-"""Displacement by which a continued motion begins beside the one before, over its size.
+"""Displacement, over its size, by which a motion begins beside an equilibrium.
 
 An equilibrium that has lost its stability is then left.
 """
+HALVINGS: Final = 14
+"""Bisections of the step in which a branch ends or jumps."""
+_UNKNOWN: Final = (End.moving, End.growing, End.approaching)
+_GRIPPING: Final = 3
+"""State of a compliant finger whose skin sticks, in the table of segments."""
+JUMP: Final = 0.1
+"""Change of amplitude or period, over the larger one, from which a step may contain a jump."""
 
 
 @equal_by_value
@@ -48,12 +55,36 @@ class SteadyMotion:
     end: End
     points: tuple[float, ...]
     """Displacements at the turning points away from the plate's pull, m; the position of a rest."""
-    amplitude: float
-    """Half of the range, m; 0 at rest."""
+    lowest: float
+    """Lower envelope, the smallest displacement of the motion, m."""
+    highest: float
+    """Upper envelope, the largest displacement, m."""
     period: float
     """s; NaN where the motion does not repeat."""
     multiplier: float
     """Absolute value of the largest Floquet multiplier; NaN where there is none."""
+
+    @property
+    def amplitude(self) -> float:
+        """Half of the range, m; 0 at rest."""
+        return (self.highest - self.lowest) / 2.0
+
+
+@equal_by_value
+@dataclass(frozen=True, slots=True)
+class BranchChange:
+    """End or jump of a branch of motions, between two values of the parameter."""
+
+    direction: str
+    """Direction in which the branch is followed, "up" or "down"."""
+    last: float
+    """Value at which the branch still exists, SI."""
+    first: float
+    """Value at which another motion follows, SI."""
+    before: SteadyMotion
+    """Motion at the last value."""
+    after: SteadyMotion
+    """Motion at the next value of the study."""
 
 
 @equal_by_value
@@ -67,6 +98,8 @@ class Bifurcation(lazy.NotebookHtml):
     """Motions as the parameter grows, in order of its values."""
     down: tuple[SteadyMotion, ...]
     """Motions as it falls, in order of its values."""
+    changes: tuple[BranchChange, ...] = ()
+    """Ends and jumps of the branches, each within a ten-thousandth of a step."""
     name: str = ""
     """Name of the study."""
 
@@ -79,7 +112,7 @@ class Bifurcation(lazy.NotebookHtml):
     @property
     def status(self) -> Status:
         """`incomplete` where the ending of a motion is not known."""
-        known = all(motion.end != End.moving for motion in (*self.up, *self.down))
+        known = all(motion.end not in _UNKNOWN for motion in (*self.up, *self.down))
         return Status.ok if known else Status.incomplete
 
     def plot(self) -> mpl_figure.Figure:
@@ -93,24 +126,38 @@ class Bifurcation(lazy.NotebookHtml):
 
         Returns:
             Over the direction, "up" and "down", and the values of the parameter: `ending` by its
-            number, `amplitude` (m), `period` (s), `multiplier`, and over `point` also
-            `displacement` (m), that of the turning points; NaN where there is none.
+            number, the envelope `lowest` and `highest` (m), `amplitude` (m), `period` (s),
+            `multiplier`, and over `point` also `displacement` (m), that of the turning points; NaN
+            where there is none. Over `change`, each end or jump of a branch: `change_direction`,
+            and the two values of the parameter between which it is, `change_last` and
+            `change_first`, with the endings before and after.
         """
         quantity, name = NUMERIC_KEYS[self.key], variable(self.key)
         branches = (self.up, self.down)
+        dims = ("direction", name)
+        ends = [[int(motion.end) for motion in branch] for branch in branches]
+        data: dict[str, Any] = {
+            "ending": (dims, np.array(ends, np.int8), {"long_name": "kind of the ending"})
+        }
+        for of, attributes in _NUMBERS.items():
+            values = [[getattr(motion, of) for motion in branch] for branch in branches]
+            data[of] = (dims, values, attributes)
         most = max(len(motion.points) for branch in branches for motion in branch)
         points = np.full((2, len(self.up), most), nan)
         for i, branch in enumerate(branches):
             for j, motion in enumerate(branch):
                 points[i, j, : len(motion.points)] = motion.points
-        dims = ("direction", name)
         words = {"long_name": "displacement at the turning points", "units": "m"}
-        data: dict[str, Any] = {"displacement": ((*dims, "point"), points, words)}
-        for of, attributes in _NUMBERS.items():
-            values = [[getattr(motion, of) for motion in branch] for branch in branches]
-            data[of] = (dims, values, attributes)
-        ends = [[int(motion.end) for motion in branch] for branch in branches]
-        data["ending"] = (dims, np.array(ends, np.int8), {"long_name": "kind of the ending"})
+        data["displacement"] = ((*dims, "point"), points, words)
+        changes = self.changes
+        data["change_direction"] = ("change", [each.direction for each in changes])
+        for at, words in (("last", "the branch exists"), ("first", "another motion follows")):
+            found = np.array([getattr(each, at) for each in changes], float)
+            attributes = quantity.attributes | {"long_name": f"value at which {words}"}
+            data[f"change_{at}"] = ("change", found, attributes)
+        for at in ("before", "after"):
+            codes = np.array([int(getattr(each, at).end) for each in changes], np.int8)
+            data[f"change_{at}"] = ("change", codes, {"long_name": f"ending {at} the change"})
         coords = {
             "direction": [*DIRECTIONS],
             name: (name, [motion.value for motion in self.up], quantity.attributes),
@@ -119,6 +166,8 @@ class Bifurcation(lazy.NotebookHtml):
 
 
 _NUMBERS: Final[dict[str, dict[str, str]]] = {
+    "lowest": {"long_name": "smallest displacement", "units": "m"},
+    "highest": {"long_name": "largest displacement", "units": "m"},
     "amplitude": {"long_name": QUANTITIES["ending.amplitude"].meaning, "units": "m"},
     "period": {"long_name": QUANTITIES["ending.period"].meaning, "units": "s"},
     "multiplier": {"long_name": "absolute value of the largest Floquet multiplier", "units": "1"},
@@ -130,8 +179,9 @@ def bifurcation(
 ) -> Bifurcation:
     """Follow the steady motions of a pin over one parameter, up and down.
 
-    Each motion begins where the one at the value before has ended. Where two motions exist, the two
-    directions find one each.
+    Each motion begins in the state of the one at the value before, at an event of its cycle. Where
+    two motions exist, the two directions find one each. A step in which the branch ends, or jumps
+    to another motion, is bisected to less than a ten-thousandth.
 
     Args:
         study: Study of releases.
@@ -140,33 +190,82 @@ def bifurcation(
         progress: Function called with the motions done and the motions in all.
 
     Returns:
-        For each value and direction how the motion ends, with its turning points, amplitude, period
-        and largest multiplier.
+        For each value and direction how the motion ends, with its turning points, envelope, period
+        and largest multiplier, and the ends and jumps of the branches.
 
     Raises:
         ValueError: The study has no such axis, or several and none is named; it has a page; or a
             motion cannot be simulated.
     """
-    key, columns = _axis(study, over)
-    values = columns[key]
+    key, values, links = _axis(study, over)
     found: dict[str, list[SteadyMotion]] = {}
+    changes: list[BranchChange] = []
+
+    def follow(value: float, start: _Start) -> tuple[SteadyMotion, _Start]:
+        columns = with_links(study.device, {key: np.array([value])}, links)
+        motion = _motion(study, {name: float(column[0]) for name, column in columns.items()}, start)
+        return _steady(value, motion), _state(motion)
+
     for i, direction in enumerate(DIRECTIONS):
-        places = range(len(values)) if direction == "up" else reversed(range(len(values)))
-        start: dict[str, float] = {}
-        branch = []
-        for j, place in enumerate(places):
-            at = {name: float(column[place]) for name, column in columns.items()}
-            motion = _motion(study, at, start)
-            branch.append(_steady(at[key], motion))
-            start = _state(motion)
+        start: _Start = {}
+        branch: list[SteadyMotion] = []
+        for j, value in enumerate(values if direction == "up" else values[::-1]):
+            before = start
+            motion, start = follow(float(value), before)
+            if branch:
+                changes += _change(direction, branch[-1], motion, before, follow)
+            branch.append(motion)
             progress(i * len(values) + j + 1, 2 * len(values))
         found[direction] = branch if direction == "up" else branch[::-1]
     up, down = (tuple(found[direction]) for direction in DIRECTIONS)
-    return Bifurcation(key=key, up=up, down=down, name=study.name)
+    return Bifurcation(key=key, up=up, down=down, changes=tuple(changes), name=study.name)
 
 
-def _axis(study: Study, over: str | None) -> tuple[str, Columns]:
-    """Return the key of the axis, its increasing values and those of the keys linked to it."""
+_Start = dict[str, float | None]
+"""Initial state, by the arguments of a release."""
+_Follow = Callable[[float, _Start], tuple[SteadyMotion, _Start]]
+
+
+def _change(
+    direction: str, one: SteadyMotion, other: SteadyMotion, start: _Start, follow: _Follow
+) -> list[BranchChange]:
+    """Return the end or jump of a branch between two motions of a step, if there is one.
+
+    Args:
+        direction: Direction of the continuation.
+        one: Motion before the step.
+        other: Motion after the step.
+        start: State of the motion before the step.
+        follow: Simulates the motion at a value from a state.
+    """
+    after, ends = other, one.end != other.end
+    if not ends and not _apart(one, other) > JUMP:
+        return []
+    for _ in range(HALVINGS):
+        middle, state = follow(0.5 * (one.value + other.value), start)
+        if middle.end == End.approaching:  # close to the motion before, by which it is continued
+            one = replace(one, value=middle.value)
+        elif one.end == middle.end if ends else _apart(one, middle) <= _apart(middle, other):
+            one, start = middle, state
+        else:
+            other = middle
+        # A steep branch changes by half in half of the step, a jump does not.
+        if not ends and not _apart(one, other) > JUMP:
+            return []
+    return [BranchChange(direction, one.value, other.value, one, after)]
+
+
+def _apart(one: SteadyMotion, other: SteadyMotion) -> float:
+    """Return the larger of the relative differences of amplitude and period."""
+
+    def difference(x: float, y: float) -> float:
+        return abs(x - y) / max(x, y) if max(x, y) > 0.0 else 0.0
+
+    return max(difference(one.amplitude, other.amplitude), difference(one.period, other.period))
+
+
+def _axis(study: Study, over: str | None) -> tuple[str, NDArray[np.float64], dict[str, Linked]]:
+    """Return the key of the axis, its increasing values, and the links to it."""
     grids = {key: axis for key, axis in study.axes.items() if isinstance(axis, Even | Listed)}
     if study.page:
         raise ValueError(refusal("the study", "of releases", "a page", str(study.path)))
@@ -179,10 +278,10 @@ def _axis(study: Study, over: str | None) -> tuple[str, Columns]:
         raise ValueError(refusal("over", f"an axis ({', '.join(grids)})", key, str(study.path)))
     values = np.unique(grids[key].at(np.arange(grids[key].count)))
     links = {name: link for name, link in study.links.items() if link.of == key}
-    return key, with_links(study.device, {key: values}, links)
+    return key, values, links
 
 
-def _motion(study: Study, at: Mapping[str, float], start: Mapping[str, float]) -> Motion:
+def _motion(study: Study, at: Mapping[str, float], start: _Start) -> Motion:
     """Return the motion at a value from a start; without one, from that of the device."""
     file = study.device_at(at)
     release: Release = file.release.replace(**start)
@@ -191,12 +290,15 @@ def _motion(study: Study, at: Mapping[str, float], start: Mapping[str, float]) -
 
 def _steady(value: float, motion: Motion) -> SteadyMotion:
     """Return the ending of a motion."""
+    if End(motion.core.end) in _UNKNOWN:
+        return SteadyMotion(value, End(motion.core.end), (nan,), nan, nan, nan, nan)
     end = motion.ending
     moves = end.kind in ("steady", "irregular") and end.amplitude > 0.0
     points = tuple(sorted(_turning_points(motion))) if moves else (end.position,)
     amplitude = end.amplitude if moves else 0.0
+    low, high = (end.position + side * amplitude for side in (-1.0, 1.0))
     period = end.period if end.kind == "steady" else nan
-    return SteadyMotion(value, end.end, points, amplitude, period, _multiplier(motion))
+    return SteadyMotion(value, end.end, points, low, high, period, _multiplier(motion))
 
 
 def _multiplier(motion: Motion) -> float:
@@ -225,17 +327,31 @@ def _turning_points(motion: Motion) -> list[float]:
     return list(map(float, ordered[apart][-MOST_POINTS:]))
 
 
-def _state(motion: Motion) -> dict[str, float]:
-    """Return the state from which the motion at the next value begins."""
-    end = motion.ending
-    if end.kind in ("resting", "decaying"):
-        x, v = end.position, 0.0
-    else:
-        # The phase of inputs that repeat is that of the begin of a period.
-        time = motion.core.cycle_begin if end.kind == "steady" else motion.core.until
-        x, v = motion.position(time), motion.velocity(time)
-    size = max(abs(x), end.amplitude if isfinite(end.amplitude) else 0.0)
-    return {"displacement": x + NUDGE * size, "velocity": v}
+def _state(motion: Motion) -> _Start:
+    """Return the state from which the motion at the next value begins.
+
+    A cycle is continued from its first event at which the plate takes the pin along: at another
+    speed of the plate the pin then has that speed. Without stick, and under inputs that repeat, the
+    cycle is continued from its begin.
+    """
+    core, end = motion.core, End(motion.core.end)
+    if end in (End.resting, End.decaying):
+        position = motion.ending.position
+        return {"displacement": position + NUDGE * abs(position), "velocity": 0.0}
+    table = core.segments()
+    begins = table["begin"]
+    time = core.until if end in _UNKNOWN or end == End.irregular else core.cycle_begin
+    if end == End.stick_slip:
+        time = float(begins[(begins >= time) & (table["plate"] == 0)][0])
+    place = max(int(np.searchsorted(begins, time, side="right")) - 1, 0)
+    carried = int(table["plate"][place]) == 0
+    state: _Start = {
+        "displacement": motion.position(time),
+        "velocity": None if carried else motion.velocity(time),
+    }
+    if int(table["finger"][place]) == _GRIPPING:
+        state["skin_stretch"] = motion.stretch(time)
+    return state
 
 
 def _differ(one: SteadyMotion, other: SteadyMotion) -> bool:
