@@ -123,7 +123,8 @@ bool pindrive_c::set(pindrive_release& release, const char* name, double value) 
   const std::pair<const char*, double*> numbers[] = {{"displacement", &release.displacement},
                                                      {"velocity", &release.velocity},
                                                      {"skin_stretch", &release.skin_stretch},
-                                                     {"duration", &release.duration}};
+                                                     {"duration", &release.duration},
+                                                     {"support", &release.support}};
   for (const auto& [known, number] : numbers)
     if (std::strcmp(known, name) == 0) {
       *number = value;
@@ -363,6 +364,9 @@ pindrive_error pindrive_c::check(const pindrive_drive& drive, const pindrive_rel
   if (!error && !release.finger_load.pieces.empty() && drive.finger.stiffness != infinity)
     error = fail(PINDRIVE_UNSUPPORTED,
                  "finger_load must be constant or a profile beside a finger.stiffness");
+  if (!error)
+    error = check("support", release.support, release.support == 0 || release.support == 1,
+                  "0 (mouse) or 1 (ground)");
   if (!error) error = check("displacement", displacement, release.displacement);
   if (!error && stops.stiffness == infinity)
     error =
@@ -451,7 +455,8 @@ pd::Numbers pindrive_c::numbers_of(const pindrive_drive& drive, const pindrive_r
           drive.plate,          drive.finger,         release.mouse_velocity,
           release.plate_load,   release.displacement, release.velocity,
           release.skin_stretch, release.force,        release.across_velocity,
-          release.finger_load,  drive.stops,          release.duration};
+          release.finger_load,  drive.stops,          release.duration,
+          release.support};
 }
 
 void pindrive_c::start(pd::Numbers& at, pd::Numbers& along, double begin) {
@@ -618,9 +623,11 @@ const char* pindrive_status_text(pindrive_status status) {
     case PINDRIVE_STATUS_OK:
       return "followed to the end";
     case PINDRIVE_STATUS_TOO_MANY_EVENTS:
-      return "stopped at the largest number of events: friction and damping are too weak to end "
-             "the "
-             "motion; give a shorter duration";
+      return "stopped at a million segments before its ending or the end of its duration; give a "
+             "shorter duration";
+    case PINDRIVE_STATUS_TOO_MANY_PERIODS:
+      return "stopped after 50 000 periods in which the motion neither ended nor repeated, nor "
+             "steadily grew or decayed; give a duration";
     case PINDRIVE_STATUS_STANDSTILL:
       return "stopped where events pile up at one instant; change a parameter by a little, and "
              "please report the drive";

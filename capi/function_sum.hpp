@@ -1,42 +1,55 @@
-/// Sums of functions of time in pieces, as the interfaces in Python and C have them.
+/// Functions of time in pieces: sums, and the force of a housing that does not accelerate.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <utility>
 #include <vector>
 
-#include "owned_motion.hpp"
+#include "pindrive/model/model.hpp"
 #include "pindrive/numbers/functions.hpp"
 
 namespace pindrive {
 
-using Pieces = std::vector<PieceNumbers>;
+/// Piece of an input that is a function: its begin (s), its polynomial in the time since then, and its
+/// terms (cosine, sine, decay in 1/s, frequency in rad/s).
+template <class T>
+struct FunctionPiece {
+  T begin{0};
+  std::array<T, InputPiece<T>::degree + 1> polynomial{};
+  std::vector<std::array<T, 4>> terms{};
+};
+template <class T>
+using FunctionPieces = std::vector<FunctionPiece<T>>;
 
 /// A piece from a time after its begin (s) on.
-inline PieceNumbers later(const PieceNumbers& piece, double after) {
-  if (after == 0) return piece;
-  PieceNumbers found;
+template <class T>
+FunctionPiece<T> later(const FunctionPiece<T>& piece, const T& after) {
+  if (detail::vanishes(after)) return piece;
+  FunctionPiece<T> found;
   found.begin = piece.begin + after;
-  InputPiece<double> polynomial;
+  InputPiece<T> polynomial;
   polynomial.polynomial = piece.polynomial;
-  polynomial.expand(after, 1, found.polynomial, InputPiece<double>::degree);
+  polynomial.expand(after, T(1), found.polynomial, InputPiece<T>::degree);
+  using detail::cos, detail::exp, detail::sin;
   for (const auto& [cosine, sine, decay, frequency] : piece.terms) {
-    const double part = detail::exp(-decay * after), phase = frequency * after;
-    const double c = detail::cos(phase) * part, s = detail::sin(phase) * part;
+    const T part = exp(-decay * after), phase = frequency * after;
+    const T c = cos(phase) * part, s = sin(phase) * part;
     found.terms.push_back({cosine * c + sine * s, sine * c - cosine * s, decay, frequency});
   }
   return found;
 }
 
 /// A function from a time on (s), until its next begin; before the first piece, its first value.
-inline PieceNumbers piece_from(const Pieces& pieces, double time) {
-  PieceNumbers found;
+template <class T>
+FunctionPiece<T> piece_from(const FunctionPieces<T>& pieces, const T& time) {
+  FunctionPiece<T> found;
   const auto next =
       std::find_if(pieces.begin(), pieces.end(), [&](const auto& p) { return p.begin > time; });
   if (next != pieces.begin()) {
-    const PieceNumbers& piece = *(next - 1);
-    found = later(piece, time - piece.begin);
+    const FunctionPiece<T>& piece = *(next - 1);
+    found = later(piece, T(time - piece.begin));
   } else {
     found.polynomial[0] = pieces[0].polynomial[0];
     for (const auto& term : pieces[0].terms) found.polynomial[0] += term[0];
@@ -46,16 +59,18 @@ inline PieceNumbers piece_from(const Pieces& pieces, double time) {
 }
 
 /// Sum of two functions.
-inline Pieces sum_of(const Pieces& one, const Pieces& other) {
-  std::vector<double> begins;
-  for (const Pieces* pieces : {&one, &other})
-    for (const PieceNumbers& piece : *pieces) begins.push_back(piece.begin);
-  std::sort(begins.begin(), begins.end());
-  begins.erase(std::unique(begins.begin(), begins.end()), begins.end());
-  Pieces sum;
-  for (const double begin : begins) {
-    PieceNumbers piece = piece_from(one, begin);
-    const PieceNumbers added = piece_from(other, begin);
+template <class T>
+FunctionPieces<T> sum_of(const FunctionPieces<T>& one, const FunctionPieces<T>& other) {
+  std::vector<T> begins;
+  for (const FunctionPieces<T>* pieces : {&one, &other})
+    for (const FunctionPiece<T>& piece : *pieces) begins.push_back(piece.begin);
+  std::sort(begins.begin(), begins.end(), [](const T& a, const T& b) { return a < b; });
+  const auto same = [](const T& a, const T& b) { return a == b; };
+  begins.erase(std::unique(begins.begin(), begins.end(), same), begins.end());
+  FunctionPieces<T> sum;
+  for (const T& begin : begins) {
+    FunctionPiece<T> piece = piece_from(one, begin);
+    const FunctionPiece<T> added = piece_from(other, begin);
     for (std::size_t n = 0; n < piece.polynomial.size(); ++n)
       piece.polynomial[n] += added.polynomial[n];
     piece.terms.insert(piece.terms.end(), added.terms.begin(), added.terms.end());
@@ -64,21 +79,37 @@ inline Pieces sum_of(const Pieces& one, const Pieces& other) {
   return sum;
 }
 
-/// An input as a function; of two rows at one time, the later value holds.
-inline Pieces as_function(const InputNumbers& input) {
-  if (!input.pieces.empty()) return input.pieces;
-  Pieces pieces;
-  for (std::size_t i = 0; i < input.rows.size(); ++i) {
-    const bool last = i + 1 == input.rows.size();
-    const auto [time, value] = input.rows[i];
-    if (!last && input.rows[i + 1].first == time) continue;
-    PieceNumbers& piece = pieces.emplace_back();
+/// Rows (time, value) as a function; of two rows at one time, the later value holds.
+template <class T>
+FunctionPieces<T> function_of(const std::vector<std::pair<T, T>>& rows) {
+  FunctionPieces<T> pieces;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const bool last = i + 1 == rows.size();
+    const auto& [time, value] = rows[i];
+    if (!last && rows[i + 1].first == time) continue;
+    FunctionPiece<T>& piece = pieces.emplace_back();
     piece.begin = time;
     piece.polynomial[0] = value;
-    if (!last)
-      piece.polynomial[1] = (input.rows[i + 1].second - value) / (input.rows[i + 1].first - time);
+    if (!last) piece.polynomial[1] = (rows[i + 1].second - value) / (rows[i + 1].first - time);
   }
   return pieces;
+}
+
+/// The derivative of a function times a factor; zero before the first piece.
+template <class T>
+FunctionPieces<T> derivative_of(const FunctionPieces<T>& function, const T& factor) {
+  FunctionPieces<T> found;
+  if (function[0].begin > 0) found.emplace_back();
+  for (const FunctionPiece<T>& of : function) {
+    FunctionPiece<T>& piece = found.emplace_back();
+    piece.begin = of.begin;
+    for (std::size_t n = 0; n + 1 < of.polynomial.size(); ++n)
+      piece.polynomial[n] = factor * of.polynomial[n + 1] * static_cast<double>(n + 1);
+    for (const auto& [cosine, sine, decay, frequency] : of.terms)
+      piece.terms.push_back({factor * (frequency * sine - decay * cosine),
+                             -factor * (frequency * cosine + decay * sine), decay, frequency});
+  }
+  return found;
 }
 
 }  // namespace pindrive

@@ -28,7 +28,7 @@ struct pindrive_release {
   pindrive::InputNumbers mouse_velocity{{{0, 0}}}, plate_load{{{0, 1}}}, force{{{0, 0}}},
       across_velocity{{{0, 0}}}, finger_load{{{0, 1}}};
   double displacement{0}, velocity{pindrive_c::none}, skin_stretch{pindrive_c::none},
-      duration{pindrive_c::infinity};
+      duration{pindrive_c::infinity}, support{0};
 };
 
 namespace pindrive_c {
@@ -96,7 +96,7 @@ constexpr const char* input_names =
     "the inputs mouse_velocity, plate_load, force, across_velocity and finger_load";
 constexpr const char* release_names =
     "mouse_velocity, plate_load, force, across_velocity, finger_load, displacement, velocity, "
-    "skin_stretch, duration";
+    "skin_stretch, duration, support";
 
 /// Checks a value of an input, which a message calls by a label.
 pindrive_error check(const char* label, const pd::device::InputQuantity& input, double value);

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "function_sum.hpp"
 #include "pindrive/engine.hpp"
 
 namespace pindrive {
@@ -16,18 +17,13 @@ namespace pindrive {
 /// (speed, force) of a friction curve, or (time, value) of an input: one row for a constant.
 using Rows = std::vector<std::pair<double, double>>;
 
-/// Piece of an input that is a function: its begin (s), its polynomial in the time since then, and its
-/// terms (cosine, sine, decay in 1/s, frequency in rad/s).
-struct PieceNumbers {
-  double begin{0};
-  std::array<double, InputPiece<double>::degree + 1> polynomial{};
-  std::vector<std::array<double, 4>> terms{};
-};
+using PieceNumbers = FunctionPiece<double>;
+using Pieces = FunctionPieces<double>;
 
 /// Input over time: rows or, if it is a function, pieces.
 struct InputNumbers {
   Rows rows{};
-  std::vector<PieceNumbers> pieces{};
+  Pieces pieces{};
 
   bool constant() const { return pieces.empty() && rows.size() == 1; }
   /// Value of a constant.
@@ -76,11 +72,12 @@ struct Numbers {
   InputNumbers force, across_velocity, finger_load;
   StopNumbers stops;
   double duration;
+  double support{0};  ///< 1: the spring stands on the ground, 0: in the accelerating mouse
 };
 
 /// A direction in which an input does not change.
 inline InputNumbers without_change(const InputNumbers& at) {
-  InputNumbers along{Rows(at.rows.size()), std::vector<PieceNumbers>(at.pieces.size())};
+  InputNumbers along{Rows(at.rows.size()), Pieces(at.pieces.size())};
   for (std::size_t i = 0; i < at.pieces.size(); ++i)
     along.pieces[i].terms.resize(at.pieces[i].terms.size());
   return along;
@@ -139,16 +136,42 @@ struct OwnedRows {
   }
 };
 
+/// The pieces of an input that is a function; none of rows.
+template <class T>
+FunctionPieces<T> pieces_of(const InputNumbers& at, const InputNumbers& along) {
+  FunctionPieces<T> pieces(at.pieces.size());
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const PieceNumbers &value = at.pieces[i], &rate = along.pieces[i];
+    pieces[i].begin = number<T>(value.begin, rate.begin);
+    for (std::size_t n = 0; n < value.polynomial.size(); ++n)
+      pieces[i].polynomial[n] = number<T>(value.polynomial[n], rate.polynomial[n]);
+    pieces[i].terms.resize(value.terms.size());
+    for (std::size_t j = 0; j < value.terms.size(); ++j)
+      for (std::size_t n = 0; n < 4; ++n)
+        pieces[i].terms[j][n] = number<T>(value.terms[j][n], rate.terms[j][n]);
+  }
+  return pieces;
+}
+
 /// An input with the arrays to which its profile refers.
 template <class T>
 class OwnedInput {
  public:
-  OwnedInput(const InputNumbers& at, const InputNumbers& along) : rows_(at.rows, along.rows) {
+  OwnedInput(const InputNumbers& at, const InputNumbers& along)
+      : OwnedInput(pieces_of<T>(at, along), at.rows, along.rows) {}
+  explicit OwnedInput(const FunctionPieces<T>& pieces, const Rows& rows = {},
+                      const Rows& along = {})
+      : rows_(rows, along) {
     std::size_t terms = 0;
-    for (const PieceNumbers& piece : at.pieces) terms += piece.terms.size();
+    for (const FunctionPiece<T>& piece : pieces) terms += piece.terms.size();
     terms_.reserve(terms);  // so that no piece refers to a term that moves
-    pieces_.reserve(at.pieces.size());
-    for (std::size_t i = 0; i < at.pieces.size(); ++i) add(at.pieces[i], along.pieces[i]);
+    pieces_.reserve(pieces.size());
+    for (const FunctionPiece<T>& piece : pieces) {
+      pieces_.push_back(
+          {piece.begin, piece.polynomial, terms_.data() + terms_.size(), piece.terms.size()});
+      for (const auto& [cosine, sine, decay, frequency] : piece.terms)
+        terms_.push_back({cosine, sine, decay, frequency});
+    }
   }
   OwnedInput(const OwnedInput&) = delete;
   OwnedInput& operator=(const OwnedInput&) = delete;
@@ -159,20 +182,6 @@ class OwnedInput {
   }
 
  private:
-  void add(const PieceNumbers& at, const PieceNumbers& along) {
-    InputPiece<T> piece{
-        number<T>(at.begin, along.begin), {}, terms_.data() + terms_.size(), at.terms.size()};
-    for (std::size_t n = 0; n < at.polynomial.size(); ++n)
-      piece.polynomial[n] = number<T>(at.polynomial[n], along.polynomial[n]);
-    for (std::size_t j = 0; j < at.terms.size(); ++j) {
-      const auto [cosine, sine, decay, frequency] = at.terms[j];
-      const auto& rate = along.terms[j];
-      terms_.push_back({number<T>(cosine, rate[0]), number<T>(sine, rate[1]),
-                        number<T>(decay, rate[2]), number<T>(frequency, rate[3])});
-    }
-    pieces_.push_back(piece);
-  }
-
   OwnedRows<T> rows_;
   std::vector<InputTerm<T>> terms_;
   std::vector<InputPiece<T>> pieces_;
@@ -213,6 +222,27 @@ struct OwnedContact {
   static constexpr T unlimited = std::numeric_limits<T>::infinity();
 };
 
+/// An input as a function.
+template <class T>
+FunctionPieces<T> function_of(const InputNumbers& at, const InputNumbers& along) {
+  if (!at.pieces.empty()) return pieces_of<T>(at, along);
+  std::vector<std::pair<T, T>> rows;
+  for (std::size_t i = 0; i < at.rows.size(); ++i)
+    rows.emplace_back(number<T>(at.rows[i].first, along.rows[i].first),
+                      number<T>(at.rows[i].second, along.rows[i].second));
+  return function_of<T>(rows);
+}
+inline Pieces as_function(const InputNumbers& input) { return function_of<double>(input, input); }
+
+/// The force on a pin whose spring stands on the ground: the given force less the inertial force of an
+/// accelerating mouse, which the core includes.
+template <class T>
+FunctionPieces<T> force_on_ground(const Numbers& at, const Numbers& along) {
+  const T mass = number<T>(at.mass, along.mass);
+  return sum_of(function_of<T>(at.force, along.force),
+                derivative_of(function_of<T>(at.mouse_velocity, along.mouse_velocity), T(-mass)));
+}
+
 /// Inputs of a motion with the arrays to which they refer.
 template <class T>
 struct OwnedInputs {
@@ -226,7 +256,9 @@ struct OwnedInputs {
         finger(at.finger, along.finger),
         mouse_velocity(at.mouse_velocity, along.mouse_velocity),
         plate_load(at.plate_load, along.plate_load),
-        force(at.force, along.force),
+        force(at.support == 0 || at.mouse_velocity.constant()
+                  ? OwnedInput<T>(at.force, along.force)
+                  : OwnedInput<T>(force_on_ground<T>(at, along))),
         across_velocity(at.across_velocity, along.across_velocity),
         finger_load(at.finger_load, along.finger_load),
         core_drive{number<T>(at.mass, along.mass),
@@ -243,7 +275,8 @@ struct OwnedInputs {
                     number<T>(at.skin_stretch, along.skin_stretch),
                     force.profile(),
                     across_velocity.profile(),
-                    finger_load.profile()} {}
+                    finger_load.profile(),
+                    at.support != 0} {}
   OwnedInputs(const OwnedInputs&) = delete;
   OwnedInputs& operator=(const OwnedInputs&) = delete;
 };

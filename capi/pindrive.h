@@ -133,7 +133,8 @@ PINDRIVE_API void pindrive_release_free(pindrive_release *release);
  *   displacement    m    x(0), from the spring's rest
  *   velocity        m/s  x'(0); NaN: the plate's, as it is at first
  *   skin_stretch    m    of a compliant finger that grips; NaN: as it slides or, at rest, none
- *   duration        s    > 0; infinite: until the ending is known, as it is at first */
+ *   duration        s    > 0; infinite: until the ending is known, as it is at first
+ *   support              0: spring fixed in the mouse, which accelerates; 1: spring on the ground */
 PINDRIVE_API pindrive_error pindrive_release_set(pindrive_release *release, const char *name,
                                                  double value);
 
@@ -219,7 +220,8 @@ enum {
   PINDRIVE_STATUS_OK = 0,
   PINDRIVE_STATUS_TOO_MANY_EVENTS = 1,
   PINDRIVE_STATUS_STANDSTILL = 2,
-  PINDRIVE_STATUS_INCONSISTENT = 4
+  PINDRIVE_STATUS_INCONSISTENT = 4,
+  PINDRIVE_STATUS_TOO_MANY_PERIODS = 5
 };
 
 /* How it ends. */
@@ -233,7 +235,10 @@ enum {
   PINDRIVE_END_STICK_SLIP = 5, /* a cycle of carried and sliding phases */
   PINDRIVE_END_LIMIT_CYCLE = 6, /* a cycle sustained by falling friction, without a carried phase */
   PINDRIVE_END_DRIVEN = 7,      /* the periodic response to periodic inputs */
-  PINDRIVE_END_IRREGULAR = 8    /* chaotic or quasi-periodic: no return within 15 360 events */
+  PINDRIVE_END_IRREGULAR = 8,   /* chaotic or quasi-periodic: no return within 15 360 events */
+  PINDRIVE_END_DRIFTING = 9,    /* along a line, under inputs that grow for ever */
+  PINDRIVE_END_GROWING = 10,    /* its range grows from period to period, without an ending in sight */
+  PINDRIVE_END_APPROACHING = 11 /* a limit that is too far to be reached in 200 000 periods */
 };
 
 typedef struct pindrive_outcome {

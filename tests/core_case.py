@@ -77,6 +77,7 @@ class Case:
             self.inputs["finger_load"],
             (n["travel"], n["stop_stiffness"], n["stop_damping"]),
             n["duration"],
+            0.0,
         )
 
     def law_of(self, name: str) -> dict[str, Any]:

@@ -57,9 +57,10 @@ using Piece = std::tuple<double, std::array<double, 6>, std::vector<std::array<d
 /// Rows (time, value) of an input, one row for a constant; or the pieces of a function.
 using Input = std::variant<Rows, std::vector<Piece>>;
 /// Mass, stiffness, damping; plate, finger; mouse velocity and plate load; displacement, velocity, skin
-/// stretch; the force, the velocity across and the finger's load; the end stops; duration.
-using Numbers = std::tuple<double, double, double, ContactNumbers, ContactNumbers, Input, Input,
-                           double, double, double, Input, Input, Input, StopNumbers, double>;
+/// stretch; the force, the velocity across and the finger's load; the end stops; duration; support.
+using Numbers =
+    std::tuple<double, double, double, ContactNumbers, ContactNumbers, Input, Input, double, double,
+               double, Input, Input, Input, StopNumbers, double, double>;
 
 /// Converts a Python tuple to the struct with equal fields.
 template <class Struct, class Tuple>
@@ -122,8 +123,8 @@ auto pieces_of(const std::string& kind, const std::array<Number, 4>& numbers) {
 pd::Numbers numbers(double mass, double stiffness, double damping, ContactNumbers&& plate,
                     ContactNumbers&& finger, Input&& mouse_velocity, Input&& plate_load,
                     double displacement, double velocity, double skin_stretch, Input&& force,
-                    Input&& across, Input&& finger_load, const StopNumbers& stops,
-                    double duration) {
+                    Input&& across, Input&& finger_load, const StopNumbers& stops, double duration,
+                    double support) {
   return {mass,
           stiffness,
           damping,
@@ -138,7 +139,8 @@ pd::Numbers numbers(double mass, double stiffness, double damping, ContactNumber
           input_of(std::move(across)),
           input_of(std::move(finger_load)),
           as<pd::StopNumbers>(stops),
-          duration};
+          duration,
+          support};
 }
 
 /// Reports the simulated time of a long simulation, s, to a function of Python, which may be None.
@@ -416,16 +418,17 @@ NB_MODULE(_core, m) {
       [](double mass, double stiffness, double damping, ContactNumbers plate, ContactNumbers finger,
          Input mouse_velocity, Input plate_load, double displacement, double velocity,
          double skin_stretch, Input force, Input across_velocity, Input finger_load,
-         const StopNumbers& stops, double duration, const nb::object& progress) {
-        const pd::Numbers at = numbers(
-            mass, stiffness, damping, std::move(plate), std::move(finger),
-            std::move(mouse_velocity), std::move(plate_load), displacement, velocity, skin_stretch,
-            std::move(force), std::move(across_velocity), std::move(finger_load), stops, duration);
+         const StopNumbers& stops, double duration, double support, const nb::object& progress) {
+        const pd::Numbers at =
+            numbers(mass, stiffness, damping, std::move(plate), std::move(finger),
+                    std::move(mouse_velocity), std::move(plate_load), displacement, velocity,
+                    skin_stretch, std::move(force), std::move(across_velocity),
+                    std::move(finger_load), stops, duration, support);
         return run<double>(at, at, progress);
       },
       "mass"_a, "stiffness"_a, "damping"_a, "plate"_a, "finger"_a, "mouse_velocity"_a,
       "plate_load"_a, "displacement"_a, "velocity"_a, "skin_stretch"_a, "force"_a,
-      "across_velocity"_a, "finger_load"_a, "stops"_a, "duration"_a,
+      "across_velocity"_a, "finger_load"_a, "stops"_a, "duration"_a, "support"_a,
       "progress"_a.none() = nb::none(),
       "Simulates one pin from its release until its ending is known or the duration is over. "
       "Contacts are (kinetic, static, stiffness, rows (speed, force) of the curve, (law, "
@@ -490,7 +493,7 @@ NB_MODULE(_core, m) {
       },
       "pieces"_a, "time"_a, "The piece of a function from a time on (s), in a list.");
   m.def(
-      "function_of_rows", [](Rows rows) { return numbers_of(pd::as_function({std::move(rows)})); },
+      "function_of_rows", [](Rows rows) { return numbers_of(pd::function_of<double>(rows)); },
       "rows"_a, "The pieces of rows (time, value); the later value holds at a step.");
   m.def("function_pieces", &pieces_of<double, double>, "kind"_a, "numbers"_a,
         "The pieces of a named function; four numbers, of which the last may have no effect.");

@@ -25,7 +25,7 @@ const MOUSE = "motion.mouse_velocity";
 /** Keys of end stops, each of which requires the keys before it. */
 const STOPS = ["travel", "stop_stiffness", "stop_damping"] as const;
 /** Keys of a release beside its inputs over time. */
-const RELEASED = ["displacement", "velocity", "skin_stretch", "duration"] as const;
+const RELEASED = ["displacement", "velocity", "skin_stretch", "duration", "support"] as const;
 
 /** A device file as a design. Throws DeviceError. */
 export function designOf(core: Core, { text, file, rows }: Given): Design {

@@ -47,7 +47,9 @@ export class Panel {
         .filter(({ key }) => key.startsWith(`${table}.`))
         .map((quantity) =>
           quantity.choices
-            ? this.law(quantity)
+            ? quantity.key.endsWith(".law")
+              ? this.law(quantity)
+              : this.choice(quantity)
             : quantity.rows && !quantity.mayBeConstant
               ? this.rowsOnly(quantity)
               : this.number(quantity),
@@ -105,6 +107,19 @@ export class Panel {
     return {
       element: h("label", { class: "kind", for: id, title: meaning }, "law", select),
       update: (values) => (select.value = lawOf(values, contact)),
+    };
+  }
+
+  /** One of some names, of which the first is the default. */
+  private choice(quantity: Quantity): Control {
+    const { key, choices, meaning } = quantity;
+    const id = key.replace(".", "-");
+    const names = choices!.map((name) => option(name, name));
+    const select = h("select", { id, "aria-label": meaning }, ...names);
+    select.addEventListener("change", () => this.set(key, choices!.indexOf(select.value) || null, ""));
+    return {
+      element: h("label", { class: "kind", for: id, title: meaning }, nameOf(quantity), select),
+      update: (values) => (select.value = choices![(values[key] as number | undefined) ?? 0]!),
     };
   }
 

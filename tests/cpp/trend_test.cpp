@@ -12,7 +12,7 @@ namespace {
 
 /// Outcome of an oscillation with two events in a period of 0.1 s, whose amplitude is a function of the number of periods.
 template <class Amplitude>
-pd::Outcome<double> outcome(Amplitude&& amplitude, double most = 2 * pd::detail::period_limit) {
+pd::Outcome<double> outcome(Amplitude&& amplitude, double most = 2 * pd::detail::approach_limit) {
   pd::detail::Trend<double> trend;
   pd::Outcome<double> found;
   for (int i = 0; i < 2 * most && !found.unbounded() && !trend.is_too_long(); ++i) {

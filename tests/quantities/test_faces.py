@@ -35,7 +35,7 @@ BRAKE = Profile([0.0, 0.1], [0.06, 0.0])
 
 def parameters(made: Callable[..., Any]) -> dict[str, inspect.Parameter]:
     """Return the numeric arguments, by their names in Python."""
-    of_python = "self plate finger coil places spots curve drive release steps"
+    of_python = "self plate finger coil places spots curve drive release steps progress"
     parts = of_python.split()
     found = inspect.signature(made).parameters
     return {name: p for name, p in found.items() if name not in parts}
@@ -64,7 +64,10 @@ def test_arguments_in_python_are_names_of_the_table(made: Callable[..., Any]) ->
 def test_defaults_in_python_are_those_of_the_table(made: Callable[..., Any]) -> None:
     for name, parameter in parameters(made).items():
         if parameter.default is not inspect.Parameter.empty:
-            assert parameter.default == QUANTITIES[name].absent, name
+            quantity = QUANTITIES[name]
+            absent = quantity.absent
+            expected = quantity.choices[int(absent)] if quantity.choices else absent
+            assert parameter.default == expected, name
 
 
 def literal_defaults(text: str) -> list[str]:

@@ -139,7 +139,7 @@ def test_a_study_of_another_kind_is_refused(tmp_path: Path, axes: str, message: 
 
 @pytest.mark.parametrize("count", [27, 40])
 def test_end_of_a_branch_does_not_depend_on_the_step(tmp_path: Path, count: int) -> None:
-    """Of another belt, whose stick-slip ends at 301.258884377 mm/s by bisection of `simulate`."""
+    """Stick-slip on another belt ends at 301.258884377 mm/s, by bisection of `simulate`."""
     text = (
         BELT.replace("1 kg", "0.5 kg").replace("100 N/m", "800 N/m").replace("0.5 N*s/m", "2 N*s/m")
     )

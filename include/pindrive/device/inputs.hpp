@@ -110,6 +110,7 @@ inline constexpr InputQuantity input_quantities[] = {
     {"motion.displacement", "m", finite, either_way, 0},
     {"motion.velocity", "m/s", finite, either_way, none},
     {"motion.skin_stretch", "m", finite, either_way, none},
+    {"motion.support", "1", between(0, 1), any, 0},
     {"motion.duration", "s", positive, above_zero, none},
     {"motion.settling_band", "1", share, any, 0.05},
     {"magnet.hold_force", "N", between(1e-6, 10000), any, 1},

@@ -16,7 +16,7 @@ namespace pindrive::detail {
 ///
 /// The range of a motion that grows or decays changes in one direction. The ratio of successive changes tells how many
 /// periods remain: an approach is geometric, growth at resonance is linear. A motion that would take more than
-/// `period_limit` periods ends as growing or approaching.
+/// `approach_limit` periods ends as growing or approaching.
 template <class T>
 class Trend {
  public:
@@ -42,7 +42,7 @@ class Trend {
     block_ = {};
     if (outcome.end == End::growing || outcome.end == End::approaching) outcome.end = End::moving;
     if (in_row_ >= trend_blocks &&
-        periods(events_ + trend_block * remaining_blocks()) > period_limit)
+        periods(events_ + trend_block * remaining_blocks()) > approach_limit)
       conclude(outcome);
   }
 
@@ -56,8 +56,11 @@ class Trend {
     outcome.period = period_;
     return true;
   }
-  /// True if the motion has taken more than `period_limit` periods.
-  bool is_too_long() const { return periods(events_) > period_limit; }
+  /// True if the motion has taken too many periods: `period_limit` if its end cannot be predicted.
+  bool is_too_long() const {
+    const bool predictable = in_row_ >= trend_blocks && (change_ < 0 || ratio_ < 1 - alike);
+    return periods(events_) > (predictable ? approach_limit : period_limit);
+  }
 
  private:
   using Real = detail::Real<T>;

@@ -300,6 +300,8 @@ struct Inputs {
   Profile<T> force{T(0)};            ///< external force on the pin, N
   Profile<T> across_velocity{T(0)};  ///< transverse velocity of the plate, m/s; continuous
   Profile<T> finger_load{T(1)};      ///< factor of the finger friction; >= 0
+  /// True if the force contains −m v_p', as for a spring that stands on the ground.
+  bool on_ground{false};
 
   /// First breakpoint of any input after time t, s; infinite without one.
   T next_breakpoint(T t) const {

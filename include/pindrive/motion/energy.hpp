@@ -136,6 +136,10 @@ Ledger<T> energy_ledger(const Motion<T>& motion, T duration, GoOn go_on = {}) {
   ledger.plate_work += used.across_dissipated;
   ledger.plate_dissipated = used.plate.dissipated;
   ledger.finger_dissipated = used.finger.dissipated;
+  if (motion.inputs().on_ground) {
+    ledger.force_work += ledger.inertia_work;
+    ledger.inertia_work = T(0);
+  }
   return ledger;
 }
 

@@ -103,10 +103,10 @@ inline constexpr int irregular_window = 240, irregular_windows = 64;
 inline constexpr int irregular_periods = 60;
 
 /// Events in a block whose range is compared with that of the block before, blocks after which a change in one
-/// direction is a trend, and periods after which a motion by series without an ending is terminated: some seconds.
-/// Without it: trend_test fails.
+/// direction is a trend, and periods after which a motion by series without an ending is terminated: a second or two,
+/// or some seconds while the motion approaches a limit that it would reach in that time. Without it: trend_test fails.
 inline constexpr int trend_block = 640, trend_blocks = 7;
-inline constexpr double period_limit = 50'000;
+inline constexpr double period_limit = 50'000, approach_limit = 200'000;
 
 /// Speed below which a pin is at rest, as a fraction of |x| ω0: below the remaining digits of the
 /// position in a decay (MODEL, section 10). Without it: endings fails.

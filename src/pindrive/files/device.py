@@ -53,6 +53,7 @@ from pindrive.motion.function import Function
 from pindrive.motion.profile import Profile
 from pindrive.motion.release import LOADS, Release, negative_load
 from pindrive.quantities.contradictions import problems_of
+from pindrive.quantities.drive import SUPPORTS
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.refusal import quoted, refusal
 from pindrive.quantities.table import warn_of
@@ -257,6 +258,8 @@ def _values_of(drive: Drive, release: Release) -> dict[str, Value]:
         of = release if table == "motion" else contacts[table] if quantity.name == key else drive
         law = isinstance(of, Contact) and name == "law"
         value = law_values(contacts[table])["law"] if law else getattr(of, name)
+        if name == "support":
+            value = float(SUPPORTS.index(value)) or None
         found[key] = value.rows if isinstance(value, Profile) else None if value == inf else value
         if isinstance(value, Function):
             found |= {f"{key}.{part}": number for part, number in value.parameters.items()}

@@ -25,7 +25,7 @@ from pindrive.motion.friction import COEFFICIENTS
 from pindrive.motion.function import Function
 from pindrive.motion.release import INPUTS
 from pindrive.motion.release import initial as value_at_begin
-from pindrive.quantities.drive import COLUMNS
+from pindrive.quantities.drive import COLUMNS, SUPPORTS
 from pindrive.quantities.quantity import DISPLAY, Quantity
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.results import SERIES
@@ -79,6 +79,7 @@ _RATES: Final = {"m/s": "m/s^2", "1": "1/s", "N": "N/s"}
 ELSEWHERE: Final = {
     "motion.duration": "the stop time of the default experiment",
     "motion.settling_band": "criterion of the evaluation: the motion does not depend on it",
+    "motion.support": "the spring stands in the mouse, which the importer moves",
     "magnet.outer_diameter": "says whether the device can be built",
     "magnet.height": "says whether the device can be built",
     "magnet.temperature_rise": "limit of the warming: the motion does not depend on it",
@@ -258,6 +259,9 @@ def write_fmu(device: DeviceFile, path: Path, version: int = 3, *, control: bool
         ValueError: Another version; this installation has no library for an FMU; a control block
             of a file that describes no whole device.
     """
+    if device.release.support != SUPPORTS[0]:
+        required = f"{SUPPORTS[0]} in an FMU, whose input force can add the inertial force"
+        raise ValueError(refusal("motion.support", required, device.release.support))
     if version not in VERSIONS:
         raise ValueError(f"version must be one of {', '.join(map(str, VERSIONS))}, got {version}")
     libraries = dict(_libraries(version))

@@ -31,7 +31,7 @@ from pindrive.motion.friction import normal_force
 from pindrive.motion.function import Function
 from pindrive.motion.profile import Profile
 from pindrive.motion.release import INPUTS, Release, input_of
-from pindrive.quantities.drive import COLUMNS
+from pindrive.quantities.drive import COLUMNS, SUPPORTS
 from pindrive.quantities.quantity import Quantity, Rows
 from pindrive.quantities.refusal import quoted, refusal
 from pindrive.quantities.table import QUANTITIES
@@ -188,7 +188,7 @@ def release_of(values: Mapping[str, Value]) -> Release:
     del given["duration"], given["settling_band"]
     for name in INPUTS:
         given[name] = over_time(given[name])
-    return Release(**given)
+    return Release(**given | {"support": SUPPORTS[int(given["support"] or 0.0)]})
 
 
 def over_time(value: Value) -> float | Profile | Function | None:

@@ -442,7 +442,8 @@ def _assembled(
     carried: bool,
     duration: float,
 ) -> Any:
-    mass, stiffness, damping, plate, finger, plate_velocity, load, x, v, stretch, *others, _ = base
+    mass, stiffness, damping, plate, finger, plate_velocity, load, x, v, stretch, *others = base
+    *others, _, support = others
     mass = values.get("mass", mass)
     stiffness = values.get("stiffness", stiffness)
     damping = values.get("damping", damping)
@@ -466,7 +467,7 @@ def _assembled(
         stretch = stretch / (finger[1] / finger[2]) * (contacts[1][1] / contacts[1][2])
     return (
         *(mass, stiffness, damping, *contacts, plate_velocity, load),
-        *(x, v, stretch, *others, duration),
+        *(x, v, stretch, *others, duration, support),
     )
 
 

@@ -43,10 +43,13 @@ CoreNumbers = tuple[
     Input,
     tuple[float, float, float],
     float,
+    float,
 ]
 """In the order of `Numbers` in _core.cpp."""
 
 
+DURATION: Final = 14
+"""Place of the duration."""
 LAW_PLACE: Final = 4
 """Place of the law among the numbers of a contact."""
 PLACES: Final[dict[str, tuple[int, ...]]] = {

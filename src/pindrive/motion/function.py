@@ -202,7 +202,7 @@ class Function:
 def harmonic(
     mean: float | str, amplitude: float | str, frequency: float | str, phase: float | str = 0.0
 ) -> Function:
-    """Return mean + amplitude sin(2π frequency t + phase).
+    """Return mean + amplitude sin(2π frequency t + phase): a sine; a cosine has the phase π/2.
 
     Args:
         mean: SI, or text with a unit, such as "60 mm/s".

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pindrive import _core, lazy
 from pindrive.lazy import mpl_figure, xr
-from pindrive.motion.core_numbers import CoreNumbers
+from pindrive.motion.core_numbers import DURATION, CoreNumbers
 from pindrive.motion.drive import Drive, law_values
 from pindrive.motion.friction import COEFFICIENTS, PRESSED_BY
 from pindrive.motion.function import Function
@@ -42,6 +42,7 @@ from pindrive.motion.results import (
 )
 from pindrive.motion.sensitivity import Sensitivity
 from pindrive.quantities import budgets
+from pindrive.quantities.drive import SUPPORTS
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.results import ENDING, ENERGY, TRANSIENT
@@ -88,7 +89,7 @@ class Motion(lazy.NotebookHtml):
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickle the arguments of the simulation, which is repeated."""
-        requested = self.core_numbers[-1]
+        requested = self.core_numbers[DURATION]
         duration = None if requested == inf else requested
         return solve, (self.drive, self.release, duration, self.settling_band)
 
@@ -452,6 +453,8 @@ class Motion(lazy.NotebookHtml):
                 values[name] = given.rows if isinstance(given, Profile) else given
         values["displacement"] = self.release.displacement
         values["velocity"] = self.release.initial_velocity
+        if self.release.support != SUPPORTS[0]:
+            values["support"] = self.release.support
         if self.release.skin_stretch is not None:
             values["skin_stretch"] = self.release.skin_stretch
         return values | {"duration": self.duration, "settling_band": self.settling_band}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 from math import inf, nan
-from typing import Any, Final, overload
+from typing import Any, Final, Literal, overload
 
 from pindrive import _core
 from pindrive.motion.core_numbers import ContactNumbers, CoreNumbers, DriveNumbers, Input, Rows
@@ -12,12 +12,15 @@ from pindrive.motion.drive import Contact, Drive, values_of
 from pindrive.motion.function import Function
 from pindrive.motion.profile import Profile, check_continuous
 from pindrive.quantities.contradictions import refuse
+from pindrive.quantities.drive import SUPPORTS
 from pindrive.quantities.refusal import Refusal, refusal
 from pindrive.quantities.table import QUANTITIES, check, default
 from pindrive.quantities.value import concise
 
 INPUTS: Final = ("mouse_velocity", "plate_load", "force", "across_velocity", "finger_load")
 """Inputs of a release over time: a number, a `Profile` or a `Function` each."""
+
+Support = Literal["mouse", "ground"]
 
 LOADS: Final = ("plate_load", "finger_load")
 """Inputs that may not be negative."""
@@ -50,6 +53,9 @@ class Release:
         finger_load: Factor on the finger's friction, from 0 to 1e12: how the touch force changes,
             over the `touch_force` of a drive whose finger has a coefficient; constant or a
             `Profile`, which may have steps.
+        support: "mouse" for a spring that is fixed in the housing of the mouse, which accelerates
+            with the mouse velocity, so that m dv/dt acts on the pin; "ground" for a spring that
+            stands on the ground, while only the plate, such as a belt, has that velocity.
 
     Raises:
         ValueError: A value is not a number or out of its range, or the mouse velocity has a step.
@@ -63,6 +69,7 @@ class Release:
     force: float | Profile | Function
     across_velocity: float | Profile | Function
     finger_load: float | Profile | Function
+    support: Support
 
     def __init__(
         self,
@@ -74,6 +81,7 @@ class Release:
         force: float | str | Profile | Function = default("force"),
         across_velocity: float | str | Profile | Function = default("across_velocity"),
         finger_load: float | str | Profile | Function = default("finger_load"),
+        support: Support = "mouse",
     ) -> None:
         """Validate, and keep plain floats."""
         put = object.__setattr__
@@ -86,6 +94,10 @@ class Release:
         put(self, "force", input_of("force", force))
         put(self, "across_velocity", input_of("across_velocity", across_velocity))
         put(self, "finger_load", input_of("finger_load", finger_load))
+        if support not in SUPPORTS:
+            required = " or ".join(f'"{name}"' for name in SUPPORTS)
+            raise ValueError(refusal("support", required, repr(support)))
+        put(self, "support", support)
 
     def replace(self, **changes: Any) -> Release:
         """A release with other values of the arguments of `Release`.
@@ -212,6 +224,7 @@ def core_numbers(drive: Drive, release: Release, duration: float | None) -> Core
         numbers_of(release.finger_load),
         stops,
         inf if duration is None else duration,
+        float(SUPPORTS.index(release.support)),
     )
 
 

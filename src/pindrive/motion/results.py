@@ -292,7 +292,7 @@ class Ending:
         quasi-periodic, without a return within 15 360 events or 5700 periods of the inputs;
         `growing`: its range grew from period to period, by the factor `growth` in the last ones,
         and no ending was found; `approaching`: it tends to a limit, from which the distance shrinks
-        by the factor `growth` in a period, so that the motion would take more than 50 000 periods;
+        by the factor `growth` in a period, so that the motion would take more than 200 000 periods;
         `moving`: not known yet.
         """
         return _KIND.get(self.end, "steady")

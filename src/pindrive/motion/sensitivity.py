@@ -494,7 +494,7 @@ def _in_range(numbers: CoreNumbers) -> bool:
         return all(a[0] < b[0] for a, b in pairwise(rows))
 
     mass, stiffness, _, plate, finger, *_ = numbers
-    *_, stretch, _, _, _, stops, _ = numbers
+    *_, stretch, _, _, _, stops, _, _ = numbers
     mouse_velocity, plate_load, force, across, finger_load = (
         _rows_of(entry(numbers, (i,))) for i in (5, 6, 10, 11, 12)
     )

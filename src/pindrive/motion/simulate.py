@@ -128,7 +128,7 @@ def motion_of(device: pindrive.DeviceFile, progress: Progress | None = None) -> 
 def _plausible(numbers: CoreNumbers) -> bool:
     """Return True if `warn_of` has nothing to report, quickly: a motion takes microseconds."""
     mass, stiffness, damping, plate, finger, v_plate, load, x, v, *_ = numbers
-    *_, force, across, finger_load, stops, duration = numbers
+    *_, force, across, finger_load, stops, duration, _ = numbers
     m0, m1, k0, k1, b1, plate1, finger1, skin0, skin1, speed1, load1, x1, v1, t0, t1 = _GLANCE
     return (
         m0 <= mass <= m1

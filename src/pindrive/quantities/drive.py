@@ -129,6 +129,9 @@ _DRIVE: Final = (
     ),
 )
 
+SUPPORTS: Final = ("mouse", "ground")
+"""Bodies on which the spring of a pin may stand, in the order of their numbers."""
+
 FRICTION_LAWS: Final = tuple(_core.friction_laws)
 """Names of the friction laws, in the order of their numbers."""
 
@@ -478,6 +481,17 @@ _MOTION: Final = (
         remark="that of sliding skin, or zero for a pin at rest, unless given",
         follows=("finger.static", "finger.stiffness"),
         seen=between(0.0, 0.05),
+    ),
+    Quantity(
+        "support",
+        "frame",
+        "1",
+        "body on which the spring stands: mouse, which accelerates with mouse_velocity, or ground, "
+        "beside which only the plate, such as a belt, has that velocity",
+        source="a belt beside a bench",
+        example=1.0,
+        remark="mouse unless given",
+        choices=SUPPORTS,
     ),
     Quantity(
         "duration",
