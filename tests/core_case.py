@@ -126,7 +126,7 @@ class Case:
             finger=contact("finger", n["finger.stiffness"]),
         )
         inputs: dict[str, Any] = {name: given(rows) for name, rows in self.inputs.items()}
-        start = {name: n[name] for name in ("displacement", "velocity")}
+        start: dict[str, Any] = {name: n[name] for name in ("displacement", "velocity")}
         return drive, Release(**inputs, **start)
 
 

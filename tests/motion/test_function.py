@@ -266,7 +266,7 @@ def test_phase_of_half_turns_is_a_sign(turns: int, name: str, kinetic: float) ->
     x, y = (
         pd.simulate(
             drive,
-            pd.Release(**{"mouse_velocity": 0.0, "velocity": 0.0, name: each}),
+            pd.Release(0.0, velocity=0.0).replace(**{name: each}),
             duration=2.0,
         ).position(t)
         for each in (by_phase, by_sign)

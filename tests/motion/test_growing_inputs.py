@@ -36,7 +36,8 @@ def ramp(slope: float, base: float = 0.0) -> Function:
 
 
 def released(name: str, given: Function | Profile) -> Release:
-    return Release(**{"mouse_velocity": BASES["mouse_velocity"], "displacement": 0.02, name: given})
+    base = Release(BASES["mouse_velocity"], displacement=0.02, velocity=BASES["mouse_velocity"])
+    return base.replace(**{name: given})
 
 
 @pytest.mark.parametrize("name", BASES)

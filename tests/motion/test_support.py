@@ -59,10 +59,9 @@ def test_ground_is_a_mouse_with_the_opposite_inertial_force(
 ) -> None:
     times = np.linspace(0.0, 3.0, 601)
     for force in (0.0, harmonic(0.0, 0.4, 1.3)):
-        given = force if isinstance(force, Function) else Profile([0.0, 1.0], [force, force])
-        both = given + inertia if isinstance(force, Function) else inertia
+        both = force + inertia if isinstance(force, Function) else inertia
         x, y = (
-            simulate(BODY, Release(velocity, **more), duration=3.0).position(times)  # type: ignore[arg-type]
+            simulate(BODY, Release(velocity).replace(**more), duration=3.0).position(times)
             for more in ({"force": force, "support": "ground"}, {"force": both})
         )
         np.testing.assert_allclose(x, y, atol=1e-12)

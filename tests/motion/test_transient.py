@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import isfinite, isnan, pi
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import pytest
@@ -100,7 +100,7 @@ def test_numbers_against_samples(case: Case) -> None:
 
 
 def example(**changes: float) -> Motion:
-    values = {"mouse_velocity": 0.1, "displacement": 1.5e-3, **changes}
+    values: dict[str, Any] = {"mouse_velocity": 0.1, "displacement": 1.5e-3, **changes}
     duration = values.pop("duration", None)
     drive = Drive(
         mass=0.01, stiffness=100.0, damping=0.2, plate=Contact(0.02), finger=Contact(0.005)

@@ -276,15 +276,11 @@ def _releases(given: Sequence[Recording], release: Release | Sequence[Release]) 
             refusal("release", f"one, or {len(given)} for as many recordings", len(listed))
         )
     return [
-        Release(
-            each.mouse_velocity if recording.mouse_velocity is None else recording.mouse_velocity,
-            each.displacement,
-            each.velocity,
-            each.plate_load if recording.plate_load is None else recording.plate_load,
-            each.skin_stretch,
-            each.force,
-            each.across_velocity,
-            each.finger_load,
+        each.replace(
+            mouse_velocity=each.mouse_velocity
+            if recording.mouse_velocity is None
+            else recording.mouse_velocity,
+            plate_load=each.plate_load if recording.plate_load is None else recording.plate_load,
         )
         for recording, each in zip(given, listed, strict=True)
     ]

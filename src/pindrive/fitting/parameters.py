@@ -330,6 +330,7 @@ class Assembly:
         ]
         self._base = [core_numbers(drive, release, inf) for release in releases]
         self._durations = durations
+        self._releases = releases
         self._carried = [release.velocity is None for release in releases]
         self._still = [mapped(lambda _: 0.0, base) for base in self._base]
 
@@ -368,7 +369,7 @@ class Assembly:
         """The release of a recording with these parameters."""
         _, _, x, v, stretch, *_ = self.numbers(theta, r)[5:13]
         carried = self._carried[r] and "velocity" not in self._own[r]
-        return Release(
+        return self._releases[r].replace(
             displacement=float(x),
             velocity=None if carried else float(v),
             skin_stretch=None if isnan(stretch) else float(stretch),

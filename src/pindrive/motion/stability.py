@@ -43,7 +43,7 @@ def release_at(motion: pindrive.Motion, time: float) -> Release:
     """Return the release that goes on as a motion from a time (s) without a contact in stick."""
     inputs: dict[str, Any] = {name: _from(getattr(motion.release, name), time) for name in INPUTS}
     x, v = motion.position(time), motion.velocity(time)
-    return Release(displacement=x, velocity=v, **inputs)
+    return motion.release.replace(displacement=x, velocity=v, skin_stretch=None, **inputs)
 
 
 def _from(given: float | Profile | Function, time: float) -> float | Profile | Function:

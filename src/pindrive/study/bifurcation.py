@@ -151,9 +151,9 @@ class Bifurcation(lazy.NotebookHtml):
         data["displacement"] = ((*dims, "point"), points, words)
         changes = self.changes
         data["change_direction"] = ("change", [each.direction for each in changes])
-        for at, words in (("last", "the branch exists"), ("first", "another motion follows")):
+        for at, meaning in (("last", "the branch exists"), ("first", "another motion follows")):
             found = np.array([getattr(each, at) for each in changes], float)
-            attributes = quantity.attributes | {"long_name": f"value at which {words}"}
+            attributes = quantity.attributes | {"long_name": f"value at which {meaning}"}
             data[f"change_{at}"] = ("change", found, attributes)
         for at in ("before", "after"):
             codes = np.array([int(getattr(each, at).end) for each in changes], np.int8)
