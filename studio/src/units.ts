@@ -37,6 +37,7 @@ export function toSi(text: string, unit: string, example: string): number {
   }
   const [number, written] = [match[1]!, match[2]!.trim().replace("%", "percent")];
   if (!written && unit !== "1") {
+    if (unit !== "K" && Number(number) === 0) return Number(number); // zero needs no unit
     throw new UnitError(`a number with its unit (give a unit, like "${example}")`);
   }
   const factor = conversion(written, unit);

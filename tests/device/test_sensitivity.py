@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pindrive import Contact
+from pindrive import Contact, Drive
 from pindrive.device import (
     Coil,
     ControlBlock,
@@ -53,6 +53,15 @@ def of(part: str, name: str) -> Callable[[Device, float], Device]:
     return changed
 
 
+def of_saturation(device: Device, by: float) -> Device:
+    """Return the device with another saturation and the same times, as in a device file."""
+    before = device.magnet
+    names = ("hold_force", "rise_time", "fall_time", "residual", "pwm_frequency", "pwm_duty")
+    given = {name: getattr(before, name) for name in names}
+    magnet = Electromagnet.from_times(**given, saturation=before.saturation + by)
+    return replace(device, magnet=magnet)
+
+
 CHANGES = {
     **{name: of("drive", name) for name in ("mass", "stiffness", "damping", "preload")},
     "plate_kinetic": of_contact("plate", "kinetic"),
@@ -60,8 +69,9 @@ CHANGES = {
     "finger_static": of_contact("finger", "static"),
     **{
         f"magnet.{name}": of("magnet", name)
-        for name in ("hold_force", "residual", "saturation", "rise_constant", "fall_constant")
+        for name in ("hold_force", "residual", "rise_constant", "fall_constant")
     },
+    "magnet.saturation": of_saturation,
     "control.latency": of("control", "latency"),
 }
 
@@ -163,3 +173,40 @@ def test_the_normal_force_presses_on_coefficients_too() -> None:
 def test_parameters_that_a_device_does_not_have(parameter: str, magnet: Electromagnet) -> None:
     with pytest.raises(ValueError, match=parameter):
         scanned(device(magnet=magnet)).sensitivity([parameter])
+
+
+@pytest.mark.parametrize(
+    ("key", "change"),
+    [
+        ("magnet.rise_time", "rise_time"),
+        ("magnet.fall_time", "fall_time"),
+        ("magnet.saturation", "saturation"),
+    ],
+)
+def test_keys_of_a_magnet_hold_the_times_of_the_file(key: str, change: str) -> None:
+    given = {"hold_force": 1.0, "rise_time": 0.004, "fall_time": 0.006, "saturation": 0.8}
+
+    def changed(to: Device, step: float) -> Device:
+        times = given | {change: given[change] + step}
+        return replace(to, magnet=Electromagnet.from_times(**times))
+
+    compare(device(magnet=Electromagnet.from_times(**given)), key, changed)
+
+
+@pytest.mark.parametrize("name", ["mass", "stiffness", "damping_ratio"])
+def test_keys_of_a_drive_include_the_damping_of_its_ratio(name: str) -> None:
+    given = {"mass": 0.01, "stiffness": 100.0, "damping_ratio": 0.2}
+    more: dict[str, Any] = {"plate": Contact(0.02, 0.025), "finger": Contact(0.005)}
+
+    def changed(to: Device, step: float) -> Device:
+        return replace(to, drive=Drive(**given | {name: given[name] + step}, **more))
+
+    compare(device(drive=Drive(**given, **more)), f"drive.{name}", changed)
+
+
+def test_keys_without_a_ratio_are_names() -> None:
+    pin = scanned(device())
+    times = np.linspace(0.0, pin.end - pin.begin, 200)
+    for key, name in (("drive.mass", "mass"), ("drive.damping", "damping")):
+        found = pin.sensitivity([key, name]).position(times)
+        np.testing.assert_array_equal(found[0], found[1])

@@ -179,14 +179,14 @@ def test_arrays_broadcast_as_in_numpy() -> None:
     friction = np.array([[0.0], [0.01], [0.02]])
     speed = np.array([0.05, 0.10])
     batch = batch_of(plate_kinetic=friction, mouse_velocity=speed)
-    assert batch.sizes == {"dim_0": 3, "dim_1": 2}
-    assert batch.plate_kinetic.dims == ("dim_0",)
-    assert batch.mouse_velocity.dims == ("dim_1",)
+    assert batch.sizes == {"plate_kinetic": 3, "mouse_velocity": 2}
+    assert batch.plate_kinetic.dims == ("plate_kinetic",)
+    assert batch.mouse_velocity.dims == ("mouse_velocity",)
     assert batch.mass.dims == ()
     for i in range(3):
         for j in range(2):
             point = {**PIN, "plate_kinetic": friction[i, 0], "mouse_velocity": speed[j]}
-            assert_same(batch.isel(dim_0=i, dim_1=j), alone(point))
+            assert_same(batch.isel(plate_kinetic=i, mouse_velocity=j), alone(point))
 
 
 def test_arrays_of_any_layout_and_number_type() -> None:
@@ -200,9 +200,9 @@ def test_arrays_of_any_layout_and_number_type() -> None:
 
 
 def test_an_axis_of_one_is_kept() -> None:
-    assert batch_of(mass=[0.01]).sizes == {"dim_0": 1}
+    assert batch_of(mass=[0.01]).sizes == {"mass": 1}
     both = batch_of(mass=[[0.01]], damping=[0.1, 0.2])
-    assert both.sizes == {"dim_0": 1, "dim_1": 2}
+    assert both.sizes == {"mass": 1, "damping": 2}
 
 
 @pytest.mark.parametrize("shape", [(0,), (3, 0), (0, 1)])
@@ -346,7 +346,7 @@ def test_end_stops_are_varied_as_all_else_is() -> None:
         for j, stiffness in enumerate((1e3, 1e5)):
             drive = replace(DRIVE, travel=travel, stop_stiffness=stiffness)
             motion = simulate(drive, replace(RELEASE, displacement=1.5e-3))
-            found = elastic.isel(dim_0=i, dim_1=j)
+            found = elastic.isel(travel=i, stop_stiffness=j)
             assert found.transient_settling_time == motion.transient.settling_time
             assert found.transient_peak_displacement == motion.transient.peak_displacement
             assert found.ending_position == motion.ending.position
@@ -370,7 +370,7 @@ def test_end_stops_are_varied_as_all_else_is() -> None:
         "bad_stop_stiffness",
     ]
     assert np.isnan(bad.transient_peak_displacement[1:]).all()
-    far, ended = float(rigid.isel(dim_0=2).ending_position), float(free.ending_position)
+    far, ended = float(rigid.isel(travel=2).ending_position), float(free.ending_position)
     assert far == pytest.approx(ended, rel=1e-12)
 
 
@@ -444,3 +444,15 @@ def test_ctrl_c_ends_a_batch() -> None:
             threads=2,
         )
     timer.join()
+
+
+def test_a_dimension_has_the_name_of_its_one_argument() -> None:
+    batch = batch_of(damping=[0.1, 0.2], outputs=["settling_time", "ending.position"])
+    assert {*batch.data_vars} == {"settling_time", "ending_position", "status"}
+    alone_at = alone({**PIN, "damping": 0.2})
+    settled = float(batch.settling_time.sel(damping=0.2))
+    assert settled == pytest.approx(alone_at.transient.settling_time, rel=1e-12)
+    together = batch_of(damping=[0.1, 0.2], mass=[0.01, 0.02])
+    assert together.sizes == {"dim_0": 2}
+    lasting = batch_of(duration=[0.05, 0.1])
+    assert lasting.sizes == {"dim_0": 2}

@@ -161,3 +161,15 @@ def test_commands_of_studies_report_in_one_line() -> None:
         assert done.stderr == ""
     study('[axes]\ndrive.stiffness = ["50 N/m", "100 N/m"]\n')
     assert "friction coefficient" not in run("sweep", "study.toml", "--force").output
+
+
+def test_doubtful_coefficient_is_written_with_the_digits_that_tell() -> None:
+    drive = Drive(
+        mass=0.01,
+        stiffness=100.0,
+        damping=0.1,
+        plate=Contact(coefficient=0.14999),
+        finger=Contact(0.005),
+    )
+    doubt = Coefficients.of(drive).doubt
+    assert doubt and "coefficient is 0.14999, outside the 0.15 to 0.30" in doubt

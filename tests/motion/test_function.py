@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import pickle
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -272,3 +273,38 @@ def test_phase_of_half_turns_is_a_sign(turns: int, name: str, kinetic: float) ->
         for each in (by_phase, by_sign)
     )
     assert np.abs(x - y).max() <= 1e-12 * np.abs(y).max()
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: pd.Function(None), "pieces must be a list of InputPiece, got None"),
+        (lambda: pd.Function([3.0]), r"pieces\[0\] must be an InputPiece, got 3.0"),
+        (
+            lambda: pd.Function([InputPiece(0.0, ("a", 1.0))]),
+            r"pieces\[0\].polynomial\[0\] must be a number, got 'a'",
+        ),
+        (lambda: pd.Function([InputPiece(0.0, 1.0)]), r"pieces\[0\].polynomial must be a tuple"),
+        (
+            lambda: pd.Function([InputPiece(0.0, (1.0,), ((1.0, 0.0, 0.0, 3.0),))]),
+            r"pieces\[0\].terms\[0\] must be an InputTerm, got \(1.0, 0.0, 0.0, 3.0\)",
+        ),
+        (
+            lambda: pd.minimum_jerk(0.1, 1e-300),
+            "minimum_jerk must be finite at all times, got distance = 0.1, duration = 1e-300",
+        ),
+    ],
+)
+def test_what_is_no_function_is_rejected_in_a_sentence(
+    make: Callable[[], object], message: str
+) -> None:
+    with pytest.raises(ValueError, match=message):
+        make()
+
+
+def test_value_of_a_function_at_no_time_is_nan() -> None:
+    for function in (pd.harmonic(0.0, 1.0, 3.0), pd.minimum_jerk(0.1, 1.0)):
+        assert math.isnan(function(math.nan))
+        found = function(np.array([0.1, math.nan, math.inf]))
+        assert np.isfinite(found[0])
+        assert np.isnan(found[1:]).all()

@@ -146,7 +146,7 @@ def test_a_batch_varies_a_base() -> None:
         assert batch.transient_plate_peak_force[i] == numbers["transient.plate.peak_force"]
     assert batch.plate_load == 2.0
     assert batch.plate_kinetic == 0.02
-    assert batch.damping.dims == ("dim_0",)
+    assert batch.damping.dims == ("damping",)
 
 
 def test_a_batch_varies_the_load_and_marks_one_that_is_bad() -> None:

@@ -133,3 +133,10 @@ def test_a_number_has_the_same_names_everywhere(place: str) -> None:
         OUTPUTS[place](name)
     with pytest.raises(ValueError, match="did you mean settling_time"):
         OUTPUTS[place]("setling_time")
+
+
+def test_stroke_is_a_word_for_the_swing() -> None:
+    from pindrive.motion.batch import _OUTPUT_NAMES
+
+    with pytest.raises(ValueError, match=r"unknown number stroke; did you mean swing"):
+        _OUTPUT_NAMES.find("stroke", "")

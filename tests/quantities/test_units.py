@@ -102,3 +102,12 @@ def test_a_usual_unit_imports_no_pint() -> None:
         "sys.exit('pint' in sys.modules)"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+@pytest.mark.parametrize("text", ["0", "0.0", "-0", "0e3"])
+def test_zero_needs_no_unit(text: str) -> None:
+    assert to_si(text, "N*s/m", "0.3 N*s/m") == 0.0
+    with pytest.raises(UnitError, match="a number with its unit"):
+        to_si("1", "N*s/m", "0.3 N*s/m")
+    with pytest.raises(UnitError, match="a number with its unit"):
+        to_si(text, "K", "20 K")

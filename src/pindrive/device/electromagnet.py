@@ -299,13 +299,29 @@ class Electromagnet:
             ValueError: The electromagnet was not given this key.
         """
         values = self._values
+        time = key.removeprefix("magnet.").replace("_time", "_constant")
+        if self.coil is None and time != key.removeprefix("magnet."):
+            if time not in _PLACES:
+                raise ValueError(refusal("parameter", f"one of {', '.join(values)}", repr(key)))
+            constant, given = getattr(self, time), getattr(self, key.removeprefix("magnet."))
+            slopes = [0.0] * len(self.core_numbers[0])
+            slopes[_PLACES[time]] = constant / given
+            return (slopes, []), given
         if key not in values:
             raise ValueError(refusal("parameter", f"one of {', '.join(values)}", repr(key)))
         numbers, levels = self.core_numbers
         size = abs(values[key]) or self.hold_force
         if self.coil is None:
             place = _PLACES[key.removeprefix("magnet.")]
-            return ([float(i == place) for i in range(len(numbers))], []), size
+            slopes = [float(i == place) for i in range(len(numbers))]
+            if key == "magnet.saturation":  # at the same times, as in a device file
+                rising, falling = self.saturation * sqrt(0.9), self.saturation * sqrt(0.1)
+                rises = rising / ((1.0 - rising) * log(1.0 - rising))
+                slopes[_PLACES["rise_constant"]] = self.rise_constant * rises / self.saturation
+                slopes[_PLACES["fall_constant"]] = -self.fall_constant / (
+                    self.saturation * log(falling)
+                )
+            return (slopes, []), size
         _, slopes = _core.magnet_numbers(values, key)
         # The levels are parts of the supply voltage.
         rate = -1.0 / self.coil.supply_voltage if key == "magnet.supply_voltage" else 0.0

@@ -216,9 +216,11 @@ class PinScan:
         Args:
             parameters: Names of the drive as for `Motion.sensitivity`, where `mass` and `preload`
                 also press on the plate; `magnet.turns` and all other numbers of `Coil` that the
-                device gives, or `magnet.hold_force`, `magnet.saturation`, `magnet.rise_constant`
-                and `magnet.fall_constant` of a magnet without a coil; `magnet.residual`,
-                `magnet.pwm_frequency`, `magnet.pwm_duty`; `control.latency`.
+                device gives, or `magnet.hold_force`, `magnet.saturation` (at the same times),
+                `magnet.rise_time`, `magnet.fall_time`, `magnet.rise_constant` and
+                `magnet.fall_constant` of a magnet without a coil; `magnet.residual`,
+                `magnet.pwm_frequency`, `magnet.pwm_duty`; `control.latency`. Keys of device files
+                are names, as there.
 
         Returns:
             Derivatives of position, velocity and events over the time since `begin`, with NaN and

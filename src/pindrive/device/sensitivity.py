@@ -37,8 +37,9 @@ def _direction(pin: PinScan, motion: Motion, name: str) -> tuple[CoreNumbers, fl
     elif of_magnet:
         magnet, size = device.magnet.core_derivative(name)
     else:
-        pressed = PRESSED_BY["plate"].get(name, 0.0)
-        if name == "preload" and drive.plate.coefficient is None:
+        own = "preload" if name == "plate.preload" else name.removeprefix("drive.")
+        pressed = PRESSED_BY["plate"].get(own, 0.0)
+        if own == "preload" and drive.plate.coefficient is None:
             size = drive.preload or drive.normal_force
         else:
             along, size = direction_of(motion, name)

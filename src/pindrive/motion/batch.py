@@ -159,12 +159,15 @@ def simulate_batch(
 
     Returns:
         Variables in the shape that the varied arguments have together, with unit and meaning in
-        their attributes and named as in `Motion.to_dataset`: the numbers of the transient and the
-        ending, and with `energy` those of the ledger; `ending`, how it ends, and `status`, both
-        with their values and meanings in the attributes `flag_values` and `flag_meanings`; and the
-        number of `events`. The coordinates are what was varied, and what drive and release have. A
-        point that `simulate` would refuse does not stop the others: its status says which argument
-        is bad (of a coefficient, the force that it makes), and its numbers are NaN.
+        their attributes, named as in `outputs` or as in `Motion.to_dataset`. A dimension along
+        which one argument varies, alone, has the name of that argument, so that
+        `.sel(damping=0.1)` selects by value; another is `dim_0`, `dim_1` and so on. There are the
+        numbers of the transient and the ending, and with `energy` those of the ledger; `ending`,
+        how it ends, and `status`, both with their values and meanings in the attributes
+        `flag_values` and `flag_meanings`; and the number of `events`. The coordinates are what was
+        varied, and what drive and release have. A point that `simulate` would refuse does not stop
+        the others: its status says which argument is bad (of a coefficient, the force that it
+        makes), and its numbers are NaN.
 
     Raises:
         ValueError: An argument is unknown or holds something else than numbers, shapes do not fit
@@ -181,7 +184,8 @@ def simulate_batch(
     for name, argument in (_constants(drive, release, varied) | varied).items():
         if argument is not None:
             _warn(name, argument, extremes.get(name, (nan, nan)))
-    return dataset
+    asked = {_OUTPUT_NAMES.find(name, "outputs"): name.replace(".", "_") for name in outputs or ()}
+    return dataset.rename({name: shown for name, shown in asked.items() if shown != name})
 
 
 def batched(
@@ -430,7 +434,23 @@ def _by_position(arrays: Mapping[str, NDArray[np.float64]]) -> Shared:
         spread = tuple(i for i, axis in enumerate(axes) if array.shape[i] < shape[axis])
         dims = [f"dim_{axis}" for i, axis in enumerate(axes) if i not in spread]
         variables[name] = xr.Variable(dims, array.squeeze(spread))
-    return sizes, variables, {}
+    names = _names_of_dimensions(variables)
+    variables = {k: xr.Variable([names.get(d, d) for d in v.dims], v) for k, v in variables.items()}
+    return {names.get(dim, dim): n for dim, n in sizes.items()}, variables, {}
+
+
+def _names_of_dimensions(variables: Mapping[str, xr.Variable]) -> dict[str, str]:
+    """Return the names of the dimensions along which a single argument varies, alone."""
+    along: dict[str, list[str]] = {}
+    for name, variable in variables.items():
+        for dim in variable.dims:
+            along.setdefault(str(dim), []).append(name)
+    # With `duration` varied, the column of that name holds what each motion took.
+    return {
+        dim: names[0]
+        for dim, names in along.items()
+        if len(names) == 1 and len(variables[names[0]].dims) == 1 and names != ["duration"]
+    }
 
 
 def _common_shape(arrays: Mapping[str, NDArray[np.float64]]) -> tuple[int, ...]:

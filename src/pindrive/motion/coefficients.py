@@ -67,8 +67,9 @@ class Coefficients:
                 over = QUANTITIES["normal_force"].text(self.normal_force)
                 how = "as it is given" if self.given else f"plate.{name} over {over}"
                 of = "" if self.given else f" of {self._presses}"
+                shown = next(s for n in range(3, 18) if float(s := f"{value:.{n}g}") not in range_)
                 return (
-                    f"the plate's {name} friction coefficient is {value:.3g}, outside the "
+                    f"the plate's {name} friction coefficient is {shown}, outside the "
                     f"{low:.2f} to {high:.2f} of steel on steel in handbooks: {how}{of}"
                 )
         return None

@@ -359,6 +359,7 @@ class Drive:
         put(self, "mass", check("mass", mass))
         put(self, "stiffness", check("stiffness", stiffness))
         put(self, "damping", self._damping_of(damping, damping_ratio))
+        put(self, "_by_ratio", damping is None)
         put(self, "plate", plate)
         put(self, "finger", finger)
         put(self, "preload", check("preload", preload))
@@ -405,6 +406,11 @@ class Drive:
         if "damping_ratio" in changes:
             del given["damping"]
         return Drive(**given | changes)
+
+    @property
+    def by_ratio(self) -> bool:
+        """True if the damping was given by its ratio."""
+        return bool(vars(self)["_by_ratio"])
 
     @property
     def normal_force(self) -> float:

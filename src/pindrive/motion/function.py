@@ -9,7 +9,8 @@ import cmath
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from math import inf, isfinite
+from math import inf, isfinite, nan
+from numbers import Real
 from typing import TYPE_CHECKING, Any, Final, NamedTuple, overload
 
 from pindrive import _core
@@ -91,8 +92,12 @@ class Function:
 
     def __init__(self, pieces: tuple[InputPiece, ...] | list[InputPiece], unit: str = "") -> None:
         """Validate, and keep tuples."""
-        _check(tuple(pieces))
-        object.__setattr__(self, "pieces", tuple(pieces))
+        try:
+            given = tuple(pieces)
+        except TypeError:
+            raise ValueError(refusal("pieces", "a list of InputPiece", repr(pieces))) from None
+        _check(given)
+        object.__setattr__(self, "pieces", given)
         object.__setattr__(self, "unit", unit)
         object.__setattr__(self, "kind", "")
         object.__setattr__(self, "numbers", ())
@@ -156,11 +161,15 @@ class Function:
     @overload
     def __call__(self, t: ArrayLike) -> NDArray[np.float64]: ...
     def __call__(self, t: ArrayLike) -> float | NDArray[np.float64]:
-        """Return the value at time t (s): a float for a float, else an array of equal shape."""
+        """Return the value at time t (s): a float for a float, else an array of equal shape.
+
+        NaN at a time that is not finite.
+        """
         import numpy as np
 
         times = np.asarray(t, dtype=np.float64)
         values = _core.function_at(self.core, np.ascontiguousarray(times.ravel()))
+        values[~np.isfinite(times.ravel())] = nan
         if not isinstance(t, (float, int)):
             return values.reshape(times.shape)
         return float(values[0])
@@ -275,7 +284,12 @@ def of_parameters(kind: str, given: Mapping[str, float | str]) -> Function:
     unit, values = in_si([*own.values()], " and ".join(own)) if own else ("m/s", [])
     si = {**given, **dict(zip(own, values, strict=True))}
     numbers = {name: part.check(name, value) for name, value in si.items()}
-    function = function_of(_pieces(kind, numbers), unit)
+    try:
+        function = function_of(_pieces(kind, numbers), unit)
+    except ValueError:  # a coefficient of its pieces is too large for a number
+        words = ", ".join(f"{name} = {value!r}" for name, value in numbers.items())
+        required = "finite at all times"
+        raise ValueError(refusal(kind, required, words)) from None
     object.__setattr__(function, "kind", kind)
     object.__setattr__(function, "numbers", tuple(numbers.items()))
     return function
@@ -388,23 +402,33 @@ def _check(pieces: tuple[InputPiece, ...]) -> None:
         raise ValueError(refusal("pieces", "at least one", "none"))
     before = -inf
     for i, piece in enumerate(pieces):
+        if not isinstance(piece, InputPiece):
+            raise ValueError(refusal(f"pieces[{i}]", "an InputPiece", repr(piece)))
         begin, polynomial, terms = piece
-        if not (isfinite(begin) and begin > before):
+        if not (_is_number(begin) and isfinite(begin) and begin > before):
             required = "finite" if before == -inf else f"greater than {before!r}: pieces overlap"
             raise ValueError(refusal(f"pieces[{i}].begin", required, repr(begin)))
         before = begin
+        for name, part in (("polynomial", polynomial), ("terms", terms)):
+            if not isinstance(part, (tuple, list)):
+                raise ValueError(refusal(f"pieces[{i}].{name}", "a tuple", repr(part)))
         if len(polynomial) > DEGREE + 1:
             required, given = f"at most {DEGREE + 1} coefficients", len(polynomial)
             raise ValueError(refusal(f"pieces[{i}].polynomial", required, given))
         for n, p in enumerate(polynomial):
-            if not isfinite(p):
-                raise ValueError(refusal(f"pieces[{i}].polynomial[{n}]", "finite", repr(p)))
+            if not (_is_number(p) and isfinite(p)):
+                required = "finite" if _is_number(p) else "a number"
+                raise ValueError(refusal(f"pieces[{i}].polynomial[{n}]", required, repr(p)))
         for j, term in enumerate(terms):
+            if not isinstance(term, InputTerm):
+                raise ValueError(refusal(f"pieces[{i}].terms[{j}]", "an InputTerm", repr(term)))
             for name, value in term._asdict().items():
                 lower, upper = _LIMITS.get(name, (-1e12, 1e12))
-                if not lower <= value <= upper:
-                    label, required = (
-                        f"pieces[{i}].terms[{j}].{name}",
-                        f"from {lower:g} to {upper:g}",
-                    )
+                if not (_is_number(value) and lower <= value <= upper):
+                    label = f"pieces[{i}].terms[{j}].{name}"
+                    required = f"from {lower:g} to {upper:g}"
                     raise ValueError(refusal(label, required, repr(value)))
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, Real) and not isinstance(value, bool)

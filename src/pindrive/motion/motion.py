@@ -473,7 +473,9 @@ class Motion(lazy.NotebookHtml):
                 `plate_load`, `force`, `across_velocity`, `finger_load` (all rows of a profile
                 together), `displacement`, `velocity`, `skin_stretch`; or one row:
                 `plate_curve[1].force`, `plate_curve[1].speed`, `mouse_velocity[2].value`,
-                `plate_load[2].time`.
+                `plate_load[2].time`. Keys of device files are names too; by `drive.mass`,
+                `drive.stiffness` and `drive.damping_ratio` the derivative includes the damping
+                that follows, where the drive was given a ratio.
 
         Returns:
             The derivatives of position, velocity, events and all numbers, with NaN and the reason

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Sequence
 from functools import cached_property, partial
 from itertools import pairwise
-from math import inf, isfinite, nan
+from math import inf, isfinite, nan, sqrt
 from typing import Any
 
 import numpy as np
@@ -307,8 +307,23 @@ def _numbers(
 
 
 def direction_of(motion: pindrive.Motion, given: str) -> tuple[CoreNumbers, float]:
-    """Return the derivative of the core's numbers by a parameter, and the size of the parameter."""
-    numbers = motion.core_numbers
+    """Return the derivative of the core's numbers by a parameter, and the size of the parameter.
+
+    By a key of a device file the derivative includes what follows from that key: the damping,
+    where a ratio gives it.
+    """
+    numbers, drive = motion.core_numbers, motion.drive
+    table, _, own = given.partition(".")
+    if given == "drive.damping_ratio":
+        critical = 2.0 * sqrt(drive.mass * drive.stiffness)
+        along = replaced(mapped(lambda _: 0.0, numbers), PLACES["damping"], critical)
+        return along, drive.damping_ratio or 1.0
+    if table in ("drive", "motion") and own:
+        along, size = direction_of(motion, own)
+        if drive.by_ratio and own in ("mass", "stiffness"):
+            follows = 0.5 * drive.damping / getattr(drive, own)
+            along = replaced(along, PLACES["damping"], follows)
+        return along, size
     if (name := _key_as_name(given)) in _COEFFICIENTS:
         return _along_friction(motion, name)
     if along := _along_function(motion, name):
@@ -403,9 +418,13 @@ def _law_coefficients(contact: Contact, i: int) -> list[tuple[Place, float]]:
     return [((i, 4, j), each) for j, each in coefficients if each is not None]
 
 
+_PRESSING = {QUANTITIES[name].key: name for name in ("preload", "touch_force")}
+"""Names of the forces that press on a contact, by their keys."""
+
+
 def _key_as_name(given: str) -> str:
     """A device file's key as the name of a parameter."""
-    return re.sub(r"^(plate|finger)\.", r"\1_", given)
+    return _PRESSING.get(given) or re.sub(r"^(plate|finger)\.", r"\1_", given)
 
 
 def _unit(given: str) -> str:

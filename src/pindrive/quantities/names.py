@@ -27,6 +27,7 @@ OTHER_WORDS: Final = {
     "damper": "damping",
     "weight": "mass",
     "mu": "coefficient",
+    "stroke": "swing",
 }
 """Words that people write for the words of names."""
 

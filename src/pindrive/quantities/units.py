@@ -67,7 +67,7 @@ def to_si(text: str, unit: str, example: str) -> float:
     """The number in `text`, a number and a unit, in the SI unit `unit`.
 
     Args:
-        text: "12 g", "1.5e-3 m", "20 %"; a bare number only where `unit` is "1".
+        text: "12 g", "1.5e-3 m", "20 %"; a bare number only where `unit` is "1", or zero.
         unit: SI unit, "1" for dimensionless.
         example: Example of such a quantity, for the message.
 
@@ -85,6 +85,8 @@ def to_si(text: str, unit: str, example: str) -> float:
         raise UnitError(f'{kind}, like "{example}"')
     number, written = match["number"], match["unit"].strip().replace("%", "percent")
     if not written and unit != "1":
+        if unit != "K" and float(number) == 0.0:  # zero needs no unit
+            return float(number)
         raise UnitError(f'a number with its unit (give a unit, like "{example}")')
     try:
         return float(Decimal(number) * _factor(written, unit))
