@@ -54,7 +54,7 @@ def of(part: str, name: str) -> Callable[[Device, float], Device]:
 
 
 def of_saturation(device: Device, by: float) -> Device:
-    """Return the device with another saturation and the same times, as in a device file."""
+    """Change the saturation at constant times of the magnet, as in a device file."""
     before = device.magnet
     names = ("hold_force", "rise_time", "fall_time", "residual", "pwm_frequency", "pwm_duty")
     given = {name: getattr(before, name) for name in names}
@@ -195,7 +195,7 @@ def test_keys_of_a_magnet_hold_the_times_of_the_file(key: str, change: str) -> N
 
 @pytest.mark.parametrize("name", ["mass", "stiffness", "damping_ratio"])
 def test_keys_of_a_drive_include_the_damping_of_its_ratio(name: str) -> None:
-    given = {"mass": 0.01, "stiffness": 100.0, "damping_ratio": 0.2}
+    given: dict[str, Any] = {"mass": 0.01, "stiffness": 100.0, "damping_ratio": 0.2}
     more: dict[str, Any] = {"plate": Contact(0.02, 0.025), "finger": Contact(0.005)}
 
     def changed(to: Device, step: float) -> Device:

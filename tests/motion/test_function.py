@@ -275,18 +275,23 @@ def test_phase_of_half_turns_is_a_sign(turns: int, name: str, kinetic: float) ->
     assert np.abs(x - y).max() <= 1e-12 * np.abs(y).max()
 
 
+FREELY: Any = pd.Function
+PIECE: Any = InputPiece
+"""Without the checks of types."""
+
+
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: pd.Function(None), "pieces must be a list of InputPiece, got None"),
-        (lambda: pd.Function([3.0]), r"pieces\[0\] must be an InputPiece, got 3.0"),
+        (lambda: FREELY(None), "pieces must be a list of InputPiece, got None"),
+        (lambda: FREELY([3.0]), r"pieces\[0\] must be an InputPiece, got 3.0"),
         (
-            lambda: pd.Function([InputPiece(0.0, ("a", 1.0))]),
+            lambda: FREELY([PIECE(0.0, ("a", 1.0))]),
             r"pieces\[0\].polynomial\[0\] must be a number, got 'a'",
         ),
-        (lambda: pd.Function([InputPiece(0.0, 1.0)]), r"pieces\[0\].polynomial must be a tuple"),
+        (lambda: FREELY([PIECE(0.0, 1.0)]), r"pieces\[0\].polynomial must be a tuple"),
         (
-            lambda: pd.Function([InputPiece(0.0, (1.0,), ((1.0, 0.0, 0.0, 3.0),))]),
+            lambda: FREELY([PIECE(0.0, (1.0,), ((1.0, 0.0, 0.0, 3.0),))]),
             r"pieces\[0\].terms\[0\] must be an InputTerm, got \(1.0, 0.0, 0.0, 3.0\)",
         ),
         (

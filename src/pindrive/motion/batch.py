@@ -435,7 +435,9 @@ def _by_position(arrays: Mapping[str, NDArray[np.float64]]) -> Shared:
         dims = [f"dim_{axis}" for i, axis in enumerate(axes) if i not in spread]
         variables[name] = xr.Variable(dims, array.squeeze(spread))
     names = _names_of_dimensions(variables)
-    variables = {k: xr.Variable([names.get(d, d) for d in v.dims], v) for k, v in variables.items()}
+    variables = {
+        k: xr.Variable([names.get(str(d), str(d)) for d in v.dims], v) for k, v in variables.items()
+    }
     return {names.get(dim, dim): n for dim, n in sizes.items()}, variables, {}
 
 
