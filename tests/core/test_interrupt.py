@@ -95,6 +95,16 @@ PUBLIC_CALLS = {
         "study = pd.load_study('tactile-mouse-study.toml')",
         "pd.robustness(study, count=1 << 20)",
     ),
+    "sobol": ("study = pd.load_study('tactile-mouse-study.toml')", "pd.sobol(study)"),
+    "optimise": ("", "pd.optimise(None, 'tactile-mouse-problem.toml')"),
+    "local_sensitivity": (
+        "study = pd.load_study('tactile-mouse-study.toml')",
+        "pd.local_sensitivity(study)",
+    ),
+    "speed limit": (
+        f"{MOUSE}\nfrom pindrive.evaluation.resolution import largest_speeds",
+        "largest_speeds(mouse.device, [0.004] * 50)",
+    ),
     "scan": (MOUSE, "pd.scan(mouse, pd.Page(grating=['4 mm']))"),
     "evaluation": (
         f"{MOUSE}\nscan = pd.scan(mouse, pd.Page(grating=['4 mm']))",

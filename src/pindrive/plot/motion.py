@@ -285,7 +285,7 @@ def _note_level(axes: Axes, level: float, text: str) -> None:
 def _mark_ends(motion: Motion, trace: Trace, axes: Axes) -> None:
     """Start and end of the portrait; a steady oscillation has no end."""
     ends = {0: "start"}
-    if motion.ending.kind in ("moving", "irregular") or trace.end < motion.duration:
+    if motion.ending.kind not in ("resting", "decaying", "steady") or trace.end < motion.duration:
         ends[-1] = duration(trace.end)
     elif motion.ending.kind in ("resting", "decaying"):
         ends[-1] = "end"
@@ -321,9 +321,14 @@ def _mark_settling(motion: Motion, trace: Trace, axes: Axes) -> None:
         return
     if motion.ending.kind in ("steady", "irregular"):
         axes.axhline(middle, color=GREY, lw=0.7, ls=":", zorder=1, gid="middle")
+    if motion.ending.kind == "drifting":
+        ends = np.array([0.0, trace.end])
+        line = middle + motion.ending.drift_velocity * ends * MM
+        axes.plot(ends * trace.scale, line, color=GREY, lw=0.7, ls=":", zorder=1, gid="drift")
     for level in {middle - _band(motion), middle + _band(motion)} - {middle}:
         axes.axhline(level, color=GREY, lw=0.7, ls=":", zorder=1, gid="band")
-    _note_level(axes, middle, r"$x_\mathrm{end}$")
+    if motion.ending.kind != "drifting":
+        _note_level(axes, middle, r"$x_\mathrm{end}$")
     if 0.0 < time <= trace.end:
         word = "steady from" if motion.ending.kind == "steady" else "settled at"
         axes.axvline(time * trace.scale, color=GREY, lw=0.7, zorder=1, gid="settling")
