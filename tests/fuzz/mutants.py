@@ -50,7 +50,8 @@ MUTANTS = (
         "a motion is steady from where its period was found on",
         "motion/steady_since.hpp",
         "for (T since = known_; since > last_breakpoint_ && go_on_();) {",
-        "for (T since = known_; since > last_breakpoint_ && go_on_();) {\n      if (known_ > 0) return known_;",
+        "for (T since = known_; since > last_breakpoint_ && go_on_();) {\n"
+        "      if (known_ > 0) return known_;",
     ),
     Mutant(
         "breaks away and crosses to the wrong side",

@@ -11,7 +11,7 @@ from pindrive import Contact, Drive, Function, InputPiece, Release, Stribeck, si
 
 NONE = Contact(kinetic=0.0)
 WEIGHT = 98.1
-"""Of the block of Mathematica.SE 141707, N."""
+"""Weight of the block of Mathematica.SE 141707, N."""
 
 pytestmark = pytest.mark.filterwarnings("ignore::pindrive.ImplausibleValueWarning")
 
@@ -35,7 +35,7 @@ def test_block_pulled_through_a_spring_has_the_period_of_stick_slip() -> None:
 
 
 def test_block_pulled_by_the_force_of_the_spring_moves_alike() -> None:
-    """The same block in the frame of the ground, under the force k v t: its elongation is x − v t."""
+    """In the frame of the ground the block has the force k v t, and the elongation v t − x."""
     drive = Drive(
         mass=10.0,
         stiffness=4000.0,
