@@ -58,41 +58,23 @@ FunctionPiece<T> piece_from(const FunctionPieces<T>& pieces, const T& time) {
   return found;
 }
 
-/// Sum of two functions.
+/// Sum of two functions, each with begins that increase.
 template <class T>
 FunctionPieces<T> sum_of(const FunctionPieces<T>& one, const FunctionPieces<T>& other) {
-  std::vector<T> begins;
-  for (const FunctionPieces<T>* pieces : {&one, &other})
-    for (const FunctionPiece<T>& piece : *pieces) begins.push_back(piece.begin);
-  std::sort(begins.begin(), begins.end(), [](const T& a, const T& b) { return a < b; });
-  const auto same = [](const T& a, const T& b) { return a == b; };
-  begins.erase(std::unique(begins.begin(), begins.end(), same), begins.end());
   FunctionPieces<T> sum;
-  for (const T& begin : begins) {
+  for (std::size_t i = 0, j = 0; i < one.size() || j < other.size();) {
+    const bool first = j == other.size() || (i < one.size() && one[i].begin < other[j].begin);
+    const T begin = first ? one[i].begin : other[j].begin;
+    while (i < one.size() && !(begin < one[i].begin)) ++i;
+    while (j < other.size() && !(begin < other[j].begin)) ++j;
     FunctionPiece<T> piece = piece_from(one, begin);
     const FunctionPiece<T> added = piece_from(other, begin);
     for (std::size_t n = 0; n < piece.polynomial.size(); ++n)
       piece.polynomial[n] += added.polynomial[n];
-    piece.terms.insert(piece.terms.end(), added.terms.begin(), added.terms.end());
+    for (const auto& term : added.terms) piece.terms.push_back(term);
     sum.push_back(std::move(piece));
   }
   return sum;
-}
-
-/// Rows (time, value) as a function; of two rows at one time, the later value holds.
-template <class T>
-FunctionPieces<T> function_of(const std::vector<std::pair<T, T>>& rows) {
-  FunctionPieces<T> pieces;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const bool last = i + 1 == rows.size();
-    const auto& [time, value] = rows[i];
-    if (!last && rows[i + 1].first == time) continue;
-    FunctionPiece<T>& piece = pieces.emplace_back();
-    piece.begin = time;
-    piece.polynomial[0] = value;
-    if (!last) piece.polynomial[1] = (rows[i + 1].second - value) / (rows[i + 1].first - time);
-  }
-  return pieces;
 }
 
 /// The derivative of a function times a factor; zero before the first piece.

@@ -222,25 +222,48 @@ struct OwnedContact {
   static constexpr T unlimited = std::numeric_limits<T>::infinity();
 };
 
-/// An input as a function.
+/// An input as a function; of two rows at one time, the later value holds.
 template <class T>
 FunctionPieces<T> function_of(const InputNumbers& at, const InputNumbers& along) {
   if (!at.pieces.empty()) return pieces_of<T>(at, along);
-  std::vector<std::pair<T, T>> rows;
-  for (std::size_t i = 0; i < at.rows.size(); ++i)
-    rows.emplace_back(number<T>(at.rows[i].first, along.rows[i].first),
-                      number<T>(at.rows[i].second, along.rows[i].second));
-  return function_of<T>(rows);
+  FunctionPieces<T> pieces;
+  const auto time = [&](std::size_t i) { return number<T>(at.rows[i].first, along.rows[i].first); };
+  const auto value = [&](std::size_t i) {
+    return number<T>(at.rows[i].second, along.rows[i].second);
+  };
+  for (std::size_t i = 0; i < at.rows.size(); ++i) {
+    const bool last = i + 1 == at.rows.size();
+    if (!last && at.rows[i + 1].first == at.rows[i].first) continue;
+    FunctionPiece<T>& piece = pieces.emplace_back();
+    piece.begin = time(i);
+    piece.polynomial[0] = value(i);
+    if (!last) piece.polynomial[1] = (value(i + 1) - value(i)) / (time(i + 1) - time(i));
+  }
+  return pieces;
 }
 inline Pieces as_function(const InputNumbers& input) { return function_of<double>(input, input); }
 
 /// The force on a pin whose spring stands on the ground: the given force less the inertial force of an
-/// accelerating mouse, which the core includes.
-template <class T>
-FunctionPieces<T> force_on_ground(const Numbers& at, const Numbers& along) {
-  const T mass = number<T>(at.mass, along.mass);
-  return sum_of(function_of<T>(at.force, along.force),
-                derivative_of(function_of<T>(at.mouse_velocity, along.mouse_velocity), T(-mass)));
+/// accelerating mouse, which the core includes. Sets the values, and the derivatives along a direction.
+inline void set_force_on_ground(const Numbers& at, const Numbers& along, InputNumbers& value,
+                                InputNumbers& slope) {
+  using Dual = pindrive::Dual<double>;
+  const Dual mass = number<Dual>(at.mass, along.mass);
+  const auto sum =
+      sum_of(function_of<Dual>(at.force, along.force),
+             derivative_of(function_of<Dual>(at.mouse_velocity, along.mouse_velocity), -mass));
+  value = slope = {};
+  for (const FunctionPiece<Dual>& piece : sum) {
+    PieceNumbers &values = value.pieces.emplace_back(), &slopes = slope.pieces.emplace_back();
+    values.begin = piece.begin.value, slopes.begin = piece.begin.slope;
+    for (std::size_t n = 0; n < piece.polynomial.size(); ++n)
+      values.polynomial[n] = piece.polynomial[n].value,
+      slopes.polynomial[n] = piece.polynomial[n].slope;
+    for (const auto& [cosine, sine, decay, frequency] : piece.terms) {
+      values.terms.push_back({cosine.value, sine.value, decay.value, frequency.value});
+      slopes.terms.push_back({cosine.slope, sine.slope, decay.slope, frequency.slope});
+    }
+  }
 }
 
 /// Inputs of a motion with the arrays to which they refer.
@@ -256,9 +279,7 @@ struct OwnedInputs {
         finger(at.finger, along.finger),
         mouse_velocity(at.mouse_velocity, along.mouse_velocity),
         plate_load(at.plate_load, along.plate_load),
-        force(at.support == 0 || at.mouse_velocity.constant()
-                  ? OwnedInput<T>(at.force, along.force)
-                  : OwnedInput<T>(force_on_ground<T>(at, along))),
+        force(force_of(at, along)),
         across_velocity(at.across_velocity, along.across_velocity),
         finger_load(at.finger_load, along.finger_load),
         core_drive{number<T>(at.mass, along.mass),
@@ -279,6 +300,15 @@ struct OwnedInputs {
                     at.support != 0} {}
   OwnedInputs(const OwnedInputs&) = delete;
   OwnedInputs& operator=(const OwnedInputs&) = delete;
+
+ private:
+  static OwnedInput<T> force_of(const Numbers& at, const Numbers& along) {
+    if (at.support == 0 || at.mouse_velocity.constant())
+      return OwnedInput<T>(at.force, along.force);
+    InputNumbers value, slope;
+    set_force_on_ground(at, along, value, slope);
+    return OwnedInput<T>(value, slope);
+  }
 };
 
 /// Motion with its segments. Refers to the rows of its inputs and the branches of its friction curves,

@@ -5,7 +5,7 @@ import { deflateRawSync } from "node:zlib";
 import { build } from "esbuild";
 
 const [wasm, page] = process.argv.slice(2);
-const LARGEST = 590_000; // bytes of the whole page
+const LARGEST = 595_000; // bytes of the whole page
 
 async function bundle(entry, format) {
   const { outputFiles } = await build({

@@ -493,7 +493,7 @@ NB_MODULE(_core, m) {
       },
       "pieces"_a, "time"_a, "The piece of a function from a time on (s), in a list.");
   m.def(
-      "function_of_rows", [](Rows rows) { return numbers_of(pd::function_of<double>(rows)); },
+      "function_of_rows", [](Rows rows) { return numbers_of(pd::as_function({std::move(rows)})); },
       "rows"_a, "The pieces of rows (time, value); the later value holds at a step.");
   m.def("function_pieces", &pieces_of<double, double>, "kind"_a, "numbers"_a,
         "The pieces of a named function; four numbers, of which the last may have no effect.");

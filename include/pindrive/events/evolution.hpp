@@ -201,10 +201,11 @@ class Evolution {
   bool begins_period() const { return begins_period_; }
   /// State exactly at the begin of the period of the inputs, whose time is rounded.
   State<T> state_at_begin_of_period() const {
-    using std::fma;
     State<T> exact = pin.state;
-    const Real<T> time = plain(pin.time), since = plain(repetition_.since);
-    const Real<T> late = -(fma(Real<T>(periods_ - 1), plain(repetition_.period), -time) + since);
+    const Real<T> time = plain(pin.time), period = plain(repetition_.period);
+    // A product of half the digits of the period is exact, and so is its difference from the time.
+    const Real<T> count(periods_ - 1), half(static_cast<float>(period));
+    const Real<T> late = time - count * half - plain(repetition_.since) - count * (period - half);
     exact.x -= late * exact.v;
     if (!pin.held()) exact.v -= late * selected.acceleration;
     return exact;

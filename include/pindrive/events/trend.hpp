@@ -8,6 +8,7 @@
 #include "pindrive/events/irregularity.hpp"
 #include "pindrive/law/state.hpp"
 #include "pindrive/model/model.hpp"
+#include "pindrive/numbers/functions.hpp"
 #include "pindrive/numbers/limits.hpp"
 
 namespace pindrive::detail {
@@ -52,7 +53,7 @@ class Trend {
     const bool limited = ratio_ < 1 - alike;
     const Real factor = limited ? ratio_ : length_ / (length_ - change_);
     outcome.end = change_ > 0 && !limited ? End::growing : End::approaching;
-    outcome.growth = std::pow(factor, in_period_ / trend_block);
+    outcome.growth = exp(log(factor) * in_period_ / trend_block);
     outcome.period = period_;
     return true;
   }
@@ -90,7 +91,7 @@ class Trend {
     if (change_ < 0 && -change_ * ratio_ > 2 * (1 - ratio_) * length_) return length_ / -change_;
     if (std::abs(ratio_ - 1) <= alike && change_ > 0) return std::numeric_limits<Real>::infinity();
     if (ratio_ >= 1) return Real(0);
-    return std::log(approach_step * widest_ / std::abs(change_)) / std::log(ratio_);
+    return log(approach_step * widest_ / std::abs(change_)) / log(ratio_);
   }
 
   Extent<T> block_;

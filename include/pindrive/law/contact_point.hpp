@@ -291,7 +291,8 @@ struct ContactPoint {
     const ObliqueSlip<T> speed = oblique_slip(s.v, surface.rate + first);
     const T closing = speed.closing(), known = speed.rounding_of(surface.value);
     const T parting = speed.parting(second, across.second());
-    const bool turns = closing == 0 || grazes(closing, parting, known);
+    const bool turns =
+        closing == 0 || grazes(closing, parting, known) || grazes(-closing, -parting, known);
     T faster = closing;
     if (turns) faster = parting != 0 ? parting : speed.velocity() * third;
     if (faster == 0) faster = second * second;  // the pin starts to turn

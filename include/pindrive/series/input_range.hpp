@@ -37,7 +37,8 @@ inline double growing_after(const InputPiece<double>& piece) {
     terms += 2 * (std::abs(piece.terms[j].cosine) + std::abs(piece.terms[j].sine));
   for (int n = 0; n < order; ++n) {
     const double size = n == 0 ? terms : std::max(-piece.polynomial[n], 0.0);
-    time = std::max(time, std::pow(order * size / leading, 1.0 / (order - n)));
+    if (size > 0)
+      time = std::max(time, detail::exp(detail::log(order * size / leading) / (order - n)));
   }
   return time;
 }
