@@ -303,7 +303,8 @@ OTHERS = (
     GOOD.replace('kinetic = "5 mN"', 'curve = [["0 m/s", "5 mN"], ["0.1 m/s", "4 mN"]]').replace(
         '"10 g"', '"10 g"\ntravel = "3 mm"\nstop_damping = "0 N*s/m"'
     )
-    + 'plate_load = [["0 s", 2], ["5 ms", 1]]\nvelocity = "1 m/s"\nduration = "0.2 s"\n',
+    + 'plate_load = [["0 s", 2], ["5 ms", 1]]\nvelocity = "1 m/s"\nduration = "0.2 s"\n'
+    + 'support = "ground"\n',
     GOOD.replace(
         'kinetic = "5 mN"',
         'coefficient_curve = [["0 m/s", 0.5], ["0.1 m/s", 0.4]]\ntouch_force = "10 mN"',
@@ -345,6 +346,7 @@ def as_core(device: DeviceFile) -> dict[str, Any]:
         if isinstance(profile, Profile) and not profile.changes:
             given["profiles"][name] = [(0.0, rows[0][1])]
     own = {"skin_stretch": device.release.skin_stretch, "duration": device.duration}
+    own["support"] = float(SUPPORTS.index(device.release.support))
     given["release"] |= {name: value for name, value in own.items() if value is not None}
     return given
 
