@@ -16,6 +16,7 @@ from pindrive import Profile, simulate
 from pindrive.files.device import DeviceFile, load_device
 from pindrive.files.keys import DRIVE, NUMERIC_KEYS, template
 from pindrive.files.overrides import ConfigError
+from pindrive.quantities.drive import SUPPORTS
 from studio_cases import Ask, as_input, doubles
 
 EXAMPLES = [
