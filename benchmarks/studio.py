@@ -34,8 +34,8 @@ MAPS = """async count => {
   const { map } = pindrive.page, took = [];
   for (let i = 0; i < count; ++i) {
     const last = map.last;
-    const { values } = pindrive.page.state.designs[0];
-    pindrive.page.setValues({...values, "drive.mass": 0.008 + 2e-5 * i}, "bench");
+    const { values } = pindrive.release.state.designs[0];
+    pindrive.release.setValues({...values, "drive.mass": 0.008 + 2e-5 * i}, "bench");
     while (map.last === last) await new Promise(done => setTimeout(done, 1));
     took.push(map.last.took);
   }

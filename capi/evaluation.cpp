@@ -41,6 +41,28 @@ pindrive_line line_of(const device::EvaluatedLine& line) {
           line.contrast};
 }
 
+/// A false line has the time, the place and the height of its swing.
+pindrive_line line_of(const device::FalseLine& line) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  const pindrive_line_edge missing{none, none, none, none, none, none, none, PINDRIVE_NO_CUE};
+  pindrive_line_edge begin = missing;
+  begin.time = line.time;
+  begin.x = line.spot.x;
+  begin.y = line.spot.y;
+  return {static_cast<std::size_t>(line.pin),
+          PINDRIVE_FALSE,
+          begin,
+          missing,
+          none,
+          line.height,
+          none,
+          none,
+          none,
+          none,
+          none,
+          none};
+}
+
 /// Refuses a scan that was advanced, or without a second row of the hand.
 pindrive_error check_begin(const pindrive_scan& scan) {
   const device::LiveHand& hand = scan.stream->hand();
@@ -62,11 +84,9 @@ constexpr std::size_t unlimited = std::numeric_limits<std::size_t>::max();
 extern "C" {
 
 pindrive_error pindrive_scan_lines(const pindrive_scan* scan, pindrive_go_on go_on, void* context,
-                                   pindrive_line* lines, size_t capacity, size_t* count,
-                                   size_t* false_lines) {
+                                   pindrive_line* lines, size_t capacity, size_t* count) {
   if (!scan) return null_pointer("scan");
   if (!count) return null_pointer("count");
-  if (!false_lines) return null_pointer("false_lines");
   if (capacity > 0 && !lines) return null_pointer("lines");
   if (const pindrive_error error = check_begin(*scan)) return error;
   return guarded([&]() -> pindrive_error {
@@ -88,12 +108,14 @@ pindrive_error pindrive_scan_lines(const pindrive_scan* scan, pindrive_go_on go_
       evaluation.add(pin, run, run.motion(inputs, begin),
                      page.lines(reader.spots[pin], unlimited, edges), found);
     }
-    *count = found.lines.size();
-    *false_lines = found.false_lines.size();
-    const std::size_t fitting = std::min(capacity, found.lines.size());
-    std::transform(found.lines.begin(), found.lines.begin() + static_cast<std::ptrdiff_t>(fitting),
-                   lines, line_of);
-    return fitting < found.lines.size() ? PINDRIVE_MORE : PINDRIVE_OK;
+    *count = found.lines.size() + found.false_lines.size();
+    std::size_t written = 0;
+    const auto write = [&](const auto& line) {
+      if (written < capacity) lines[written++] = line_of(line);
+    };
+    for (const device::EvaluatedLine& line : found.lines) write(line);
+    for (const device::FalseLine& line : found.false_lines) write(line);
+    return written < *count ? PINDRIVE_MORE : PINDRIVE_OK;
   });
 }
 

@@ -6,6 +6,10 @@ import { build } from "esbuild";
 
 const [wasm, page] = process.argv.slice(2);
 const LARGEST = 595_000; // bytes of the whole page
+/** Characters of packed bytes: printable ASCII without those that end or escape anything in HTML. */
+const DIGITS = Array.from({ length: 94 }, (_, i) => String.fromCharCode(33 + i))
+  .filter((digit) => !"<&\\".includes(digit))
+  .join("");
 
 async function bundle(entry, format) {
   const { outputFiles } = await build({
@@ -18,6 +22,7 @@ async function bundle(entry, format) {
     charset: "utf8",
     legalComments: "eof",
     loader: { ".css": "text" },
+    define: { DIGITS: JSON.stringify(DIGITS) },
   });
   // A script must not hold what ends it.
   return outputFiles[0].text.trim().replaceAll("</script", "<\\/script");
@@ -33,7 +38,25 @@ async function style(...entries) {
 }
 
 function packed(bytes) {
-  return deflateRawSync(bytes, { level: 9 }).toString("base64");
+  return text(deflateRawSync(bytes, { level: 9 }));
+}
+
+/** Bytes as text: their number, then 13 or 14 bits, a number below 91 * 91, in two characters; base64 takes a twelfth more. */
+function text(bytes) {
+  const pairs = [];
+  let [bits, width] = [0, 0];
+  const write = (pair) => pairs.push(DIGITS[pair % 91] + DIGITS[Math.floor(pair / 91)]);
+  for (const byte of bytes) {
+    bits |= byte << width;
+    width += 8;
+    if (width <= 13) continue;
+    const taken = (bits & 8191) > 88 ? 13 : 14;
+    write(bits & ((1 << taken) - 1));
+    bits >>>= taken;
+    width -= taken;
+  }
+  if (width) write(bits);
+  return `${bytes.length} ${pairs.join("")}`;
 }
 
 const parts = {

@@ -39,7 +39,8 @@ from pindrive.quantities.results import CHANNELS, MOTION, OUTPUTS
 from pindrive.quantities.table import QUANTITIES
 from pindrive.quantities.units import DEFINITIONS
 
-READER = Path(__file__).resolve().parents[1] / "examples" / "tactile-reader.toml"
+EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
+RECORDINGS = ("release-recording.csv", "skin-recording.csv")
 PARTS = [name for pair in COLUMNS.values() for name in pair]
 """Quantities of a drive's parts in its rows."""
 UNITS = {"1": "", OWN_UNIT: "{unit}"}
@@ -184,12 +185,15 @@ def tables() -> dict[str, Any]:
             for kind in EVENT_SHAPE
         },
         "template": template(),
-        "reader": without_remarks(READER.read_text("utf-8")),
+        "reader": without_remarks((EXAMPLES / "tactile-reader.toml").read_text("utf-8")),
+        "recordings": {
+            name: without_remarks((EXAMPLES / name).read_text("utf-8")) for name in RECORDINGS
+        },
     }
 
 
 def without_remarks(text: str) -> str:
-    """A device file without its comments."""
+    """A file without its comments."""
     kept = [line for line in text.splitlines() if not line.startswith("#")]
     return "\n".join(kept).strip() + "\n"
 

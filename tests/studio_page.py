@@ -12,10 +12,10 @@ FRAMES = """async () => {
   const frames = () => new Promise(
     done => requestAnimationFrame(() => requestAnimationFrame(done)));
   await frames();
-  await window.pindrive.page?.settled();
+  await window.pindrive.release?.settled();
   await frames();
 }"""
-VALUES = "pindrive.page.state.designs[pindrive.page.state.current].values"
+VALUES = "pindrive.release.state.designs[pindrive.release.state.current].values"
 
 
 def settled(page: Any) -> None:
@@ -41,8 +41,8 @@ def opened(page: Any, *files: Path) -> None:
 def saved(page: Any, kind: str, folder: Path) -> Path:
     """Saves by the menu; the file."""
     with page.expect_download() as download:
-        page.locator("header .menu summary").first.click()
-        page.locator(f"header .menu [data-name={kind}]").first.click()
+        page.locator("header .menu summary").last.click()
+        page.locator(f"header .menu [data-name={kind}]").click()
     path = folder / str(download.value.suggested_filename)
     download.value.save_as(path)
     return path
@@ -50,7 +50,7 @@ def saved(page: Any, kind: str, folder: Path) -> Path:
 
 def numbers_shown(page: Any) -> dict[str, float | None]:
     found: dict[str, float | None] = page.evaluate(
-        "Object.fromEntries(Object.entries(pindrive.page.view.lines[0].result.curves.numbers)"
+        "Object.fromEntries(Object.entries(pindrive.release.view.lines[0].result.curves.numbers)"
         ".map(([k, v]) => [k, Number.isFinite(v) ? v : null]))"
     )
     return found

@@ -10,7 +10,7 @@ export class Canvas {
   constructor(
     className: string,
     label: string,
-    private readonly ratio: number,
+    private ratio: number,
     private readonly redraw: () => void,
     private readonly high: number | null = null,
   ) {
@@ -26,6 +26,11 @@ export class Canvas {
     context.clearRect(0, 0, this.width, this.height);
     context.font = font;
     return context;
+  }
+
+  setRatio(ratio: number): void {
+    this.ratio = ratio;
+    this.resize();
   }
 
   private resize(): void {

@@ -326,8 +326,9 @@ function series(line: Line, name: QuantityName, place: number, look: Look): uPlo
 
 /** The samples of the recording that a panel shows, in its units. */
 function overlayOf(view: View, panel: Panel): { times: Float64Array; values: Float64Array } | null {
-  if (!view.overlay || !panel.channel) return null;
-  const { recording, offset } = view.overlay;
+  const { overlay } = view.state;
+  if (!overlay || !panel.channel) return null;
+  const { recording, offset } = overlay;
   const values = recording.channels[panel.channel];
   if (!values) return null;
   const step = Math.max(1, Math.ceil(values.length / POINTS));

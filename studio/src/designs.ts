@@ -1,6 +1,6 @@
 // The named designs: tabs, one of them current; which others are drawn; the ghost.
 import { button, h, refill } from "./dom";
-import { currentDesign, type State, type Step, withDesign } from "./state";
+import { currentDesign, type ReleaseState, type Step, withDesign } from "./state";
 import type { Look } from "./theme";
 
 export class Designs {
@@ -9,7 +9,7 @@ export class Designs {
 
   constructor(private readonly change: (step: Step) => void) {}
 
-  update(state: State, look: Look): void {
+  update(state: ReleaseState, look: Look): void {
     const structure = JSON.stringify([
       state.current,
       state.ghost !== null,
@@ -78,7 +78,7 @@ export class Designs {
     ]);
   }
 
-  private removal(state: State): HTMLButtonElement {
+  private removal(state: ReleaseState): HTMLButtonElement {
     const found = button("Delete", "Delete this design", () =>
       this.change((now) => ({
         ...now,

@@ -1,10 +1,11 @@
 // Help for each view: a dialog with a line for each thing that can be done.
 import { button, h } from "./dom";
+import type { ViewName } from "./keeper";
 import { TABLES } from "./table";
 
 type Line = readonly [string, string];
 
-const HELP: Readonly<Record<"release" | "read", readonly Line[]>> = {
+const HELP: Readonly<Record<ViewName, readonly Line[]>> = {
   release: [
     ["Slider, or field with its unit", "changes a parameter; the motion follows at once"],
     ["Drag the pin", "lets it go from another deflection"],
@@ -16,28 +17,37 @@ const HELP: Readonly<Record<"release" | "read", readonly Line[]>> = {
     ["Drop a file", "opens a device file (TOML), or lays a recording (CSV) over the curves"],
   ],
   read: [
-    ["Move over the page", "moves the device; on a touch screen a finger drags it like a mouse"],
-    ["Arrow keys on the page", "move the hand at a set speed"],
+    [
+      "Move over the page, or drag a finger",
+      "moves the device; a reading ends where the pointer leaves the page or the finger lifts",
+    ],
+    [
+      "Press on the page",
+      "begins the next reading; with the button held down the hand follows beyond the edge",
+    ],
+    ["Arrow keys on the page", "move the hand at a set speed; Escape ends the reading"],
     ["Type, draw, drop a picture", "makes another page"],
     ["Click a pin", "shows it from the side; its motion opens in the other view"],
     ["10× slower", "time runs slower than your hand: a release lasts some milliseconds"],
-    ["Sliders", "change the device under the hand; the reading begins anew"],
-    ["Replay", "repeats the reading four times slower; its slider moves through it"],
+    ["Number of pins, sliders", "change the device under the hand; the next reading is of the new one"],
+    ["Play, Pause, the slider of time", "show the reading again, at any speed"],
+    ["Missed, merged, false", "marks on the page and a list: choose one to see its moment"],
+    ["Ctrl+Z, Ctrl+Shift+Z", "undo and redo"],
   ],
 };
 
-/** A button that opens the help of a view. */
-export function help(view: keyof typeof HELP): HTMLElement {
+/** Shows the help of a view until it is closed. */
+export function showHelp(view: ViewName): void {
   const close = button("Close", "Close the help", () => dialog.close());
   const rows = HELP[view].flatMap(([what, does]) => [h("dt", {}, what), h("dd", {}, does)]);
   const dialog = h(
     "dialog",
-    { class: "help", "aria-labelledby": `help-${view}` },
-    h("h2", { id: `help-${view}` }, view === "read" ? "Read" : "One release"),
+    { class: "help", "aria-labelledby": "help-title", onclose: () => dialog.remove() },
+    h("h2", { id: "help-title" }, view === "read" ? "Read" : "One release"),
     h("dl", {}, ...rows),
     h("p", { class: "note" }, `pindrive ${TABLES.version}. Nothing leaves this page: it makes no request.`),
     close,
   );
-  const open = button("Help", "Explanations of this view", () => dialog.showModal());
-  return h("span", {}, open, dialog);
+  document.body.append(dialog);
+  dialog.showModal();
 }

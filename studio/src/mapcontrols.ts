@@ -1,7 +1,7 @@
 // Controls of map and bars: number, parameters, and specification.
 import { button, h, option, refill } from "./dom";
 import { nameOf } from "./results";
-import type { Limit, State, Step } from "./state";
+import type { Limit, ReleaseState, Step } from "./state";
 import { DRIVE, label, NUMBERS, type Quantity, text, unitOf } from "./table";
 import { toSi } from "./units";
 import { fieldText } from "./write";
@@ -15,7 +15,7 @@ export function mapNumbers(): Quantity[] {
 }
 
 /** Keys of a map: given single numbers, without the displayed ones. */
-export function mapKeys(state: State): string[] {
+export function mapKeys(state: ReleaseState): string[] {
   const { values } = state.designs[state.current]!;
   return [...DRIVE.keys()].filter((key) => {
     const value = values[key];
@@ -32,7 +32,7 @@ export class MapControls {
 
   constructor(private readonly change: (step: Step) => void) {}
 
-  update(state: State): void {
+  update(state: ReleaseState): void {
     const structure = JSON.stringify([mapKeys(state), state.map, state.number, state.specification]);
     if (structure === this.shown) return;
     this.shown = structure;
@@ -66,7 +66,7 @@ export class MapControls {
     this.limits(state);
   }
 
-  private limits(state: State): void {
+  private limits(state: ReleaseState): void {
     const set = (name: string, limit: Limit | null): void =>
       this.change((now) => {
         const { [name]: _, ...rest } = now.specification;

@@ -3,7 +3,7 @@
 import { axesOf, mapTask } from "./map";
 import type { MapResult, MapTask } from "./mapgrid";
 import { MapView } from "./mapview";
-import { currentDesign, type State } from "./state";
+import { currentDesign, type ReleaseState } from "./state";
 import type { Look } from "./theme";
 import { Newest, type Program, Thread } from "./thread";
 
@@ -14,7 +14,7 @@ export class MapRunner {
   task: MapTask | null = null;
   private readonly view: MapView;
   readonly newest: Newest<"map">;
-  private state: State | null = null;
+  private state: ReleaseState | null = null;
 
   constructor(program: Program, look: Look, choose: (point: Readonly<Record<string, number>>) => void) {
     this.view = new MapView(look, (x, y) => {
@@ -32,7 +32,7 @@ export class MapRunner {
     this.view.setLook(look);
   }
 
-  update(state: State): void {
+  update(state: ReleaseState): void {
     this.state = state;
     const { values } = currentDesign(state);
     const { x, y } = state.map;

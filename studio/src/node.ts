@@ -5,6 +5,7 @@ import { answerOf, bits } from "./answers";
 import { Core, type Input } from "./core";
 import { coreInput, direction, withValue } from "./design";
 import { DeviceError, decodeText, readDevice } from "./device";
+import { fit } from "./fit";
 import type { Values } from "./friction";
 import { axesOf, gridValues, mapTask } from "./map";
 import { expanded, SIZE } from "./mapgrid";
@@ -40,8 +41,15 @@ type Question =
   | Follow
   | { readonly simulate: Input; readonly duration: number | null }
   | Device
-  | { readonly recording: string; readonly file: string }
+  | { readonly recording: string; readonly file: string; readonly fit?: Fitted }
   | { readonly si: string; readonly unit: string };
+
+/** A device that is fitted to a recording, with the keys that are free. */
+interface Fitted {
+  readonly device: string;
+  readonly keys: readonly string[];
+  readonly freeOffset: boolean;
+}
 
 /** Device file, and the requested result. */
 interface Device {
@@ -88,7 +96,7 @@ function ofReading(core: Core, { device, page, pixel, hand: saved, pictures }: R
   const design = readDevice(core, device, "the device");
   const input = deviceInput(core, design);
   const grey = Uint8Array.from(Buffer.from(page.grey, "base64"));
-  const hand = Hand.of(saved);
+  const hand = Hand.of(saved, 10);
   const open = { device: input, page: { ...page, grey, pixel }, start: hand.start };
   const engine = new Engine(core);
   const problem = engine.answer({ open });
@@ -120,8 +128,7 @@ function ofReading(core: Core, { device, page, pixel, hand: saved, pictures }: R
 function answer(core: Core, asked: Question): unknown {
   if ("read" in asked) return ofReading(core, asked.read);
   if ("follow" in asked) {
-    const hand = new Hand(asked.follow.aims[0]!);
-    hand.slowness = asked.follow.slowness;
+    const hand = new Hand(asked.follow.aims[0]!, asked.follow.slowness);
     for (const aim of asked.follow.aims) hand.follow(aim, asked.follow.straight);
     return hand.saved;
   }
@@ -129,7 +136,13 @@ function answer(core: Core, asked: Question): unknown {
   try {
     if ("device" in asked) return ofDevice(core, asked);
     if ("recording" in asked) {
-      const { times, channels } = readRecording(asked.recording, asked.file);
+      const recording = readRecording(asked.recording, asked.file);
+      const { times, channels } = recording;
+      if (asked.fit) {
+        const { device, keys, freeOffset } = asked.fit;
+        const { values } = readDevice(core, device, "the device");
+        return fit(core, recording, values, keys, Math.max(0, times[0]!), freeOffset);
+      }
       return {
         times: bits(times),
         channels: Object.fromEntries(Object.entries(channels).map(([k, v]) => [k, bits(v)])),

@@ -90,6 +90,8 @@ interface Tables {
   readonly template: string;
   /** Device file with which a page is read first. */
   readonly reader: string;
+  /** Recordings among the examples, by the names of their files. */
+  readonly recordings: Readonly<Record<string, string>>;
 }
 
 export const TABLES = generated as unknown as Tables;

@@ -11,6 +11,9 @@ export interface Look {
   readonly muted: string;
   readonly grid: string;
   readonly surface: string;
+  readonly accent: string;
+  /** Colour of a printed page. */
+  readonly paper: string;
   readonly curves: readonly { readonly color: string; readonly dash: readonly number[] }[];
   readonly ghost: string;
   readonly recording: string;
@@ -29,32 +32,49 @@ function faded(color: string, opacity: number): string {
   return `rgb(${channels.join(" ")} / ${opacity})`;
 }
 
+const listeners: (() => void)[] = [];
+const dark = (): MediaQueryList => matchMedia("(prefers-color-scheme: dark)");
+
+/** The scheme that was chosen; the system's unless there is one. */
+export function currentScheme(): Scheme {
+  return (document.documentElement.dataset.scheme ?? "auto") as Scheme;
+}
+
 export function setScheme(scheme: Scheme): void {
   document.documentElement.dataset.scheme = scheme;
+  for (const listener of listeners) listener();
+}
+
+/** Calls `listener` when the colours of the page have changed. */
+export function onLook(listener: () => void): void {
+  listeners.push(listener);
+  dark().addEventListener("change", listener);
 }
 
 export function currentLook(): Look {
-  const chosen = document.documentElement.dataset.scheme ?? "auto";
-  const dark = chosen === "dark" || (chosen === "auto" && matchMedia("(prefers-color-scheme: dark)").matches);
+  const chosen = currentScheme();
+  const isDark = chosen === "dark" || (chosen === "auto" && dark().matches);
   const style = getComputedStyle(document.documentElement);
   const own = (name: string): string => style.getPropertyValue(`--${name}`).trim();
   const { palette, curves } = TABLES;
   const shade = (color: string): string =>
-    dark ? lightened(color, color === "#000000" ? 0.85 : 0.35) : color;
+    isDark ? lightened(color, color === "#000000" ? 0.85 : 0.35) : color;
   return {
-    dark,
+    dark: isDark,
     font: `${Math.round(0.86 * parseFloat(style.fontSize))}px system-ui, sans-serif`,
     text: own("text"),
     muted: own("muted"),
     grid: own("grid"),
     surface: own("surface"),
+    accent: own("accent"),
+    paper: own("paper"),
     curves: curves.map(({ color, dash }) => ({ color: shade(color), dash })),
     ghost: own("ghost"),
     recording: shade(palette.gripping!),
     phases: {
-      carried: faded(palette.carried!, dark ? 0.3 : 0.28),
-      resting: faded(palette.resting!, dark ? 0.24 : 0.22),
-      gripping: faded(palette.gripping!, dark ? 0.3 : 0.26),
+      carried: faded(palette.carried!, isDark ? 0.3 : 0.28),
+      resting: faded(palette.resting!, isDark ? 0.24 : 0.22),
+      gripping: faded(palette.gripping!, isDark ? 0.3 : 0.26),
     },
     events: Object.fromEntries(Object.keys(TABLES.events).map((kind) => [kind, shade(palette[kind]!)])),
   };

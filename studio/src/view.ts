@@ -1,8 +1,7 @@
 // View of the page: its state and the computed results.
 import type { Values } from "./friction";
-import type { Recording } from "./recording";
 import type { ContactName, Curves, EventKind, Simulated, Span } from "./sample";
-import { currentDesign, type State } from "./state";
+import { currentDesign, type ReleaseState } from "./state";
 
 /** Curve of the plots: the current design first, the ghost, then all other shown designs. */
 export interface Line {
@@ -14,19 +13,13 @@ export interface Line {
   readonly index: number;
 }
 
-export interface Overlay {
-  readonly recording: Recording;
-  readonly offset: number;
-}
-
 export interface View {
-  readonly state: State;
+  readonly state: ReleaseState;
   readonly lines: readonly Line[];
   /** The end of the motions, s. */
   readonly end: number;
   /** Shown span of the time axis, s. */
   readonly span: Span;
-  readonly overlay: Overlay | null;
 }
 
 export function curvesOf(line: Line | undefined): Curves | null {

@@ -26,8 +26,8 @@ export function fieldText(quantity: Quantity, value: number): string {
   return general(value * quantity.displayScale, 6);
 }
 
-/** Device file of a design: its keys, each with its meaning. */
-export function deviceFile(design: Design): string {
+/** Device file of a design: its keys, each with its meaning if they are explained. */
+export function deviceFile(design: Design, explained = true): string {
   const lines = ["[device]", `name = ${JSON.stringify(design.name)}`];
   if (design.description) lines.push(`description = ${JSON.stringify(design.description)}`);
   let table = "device";
@@ -37,7 +37,7 @@ export function deviceFile(design: Design): string {
     const [own, name] = key.split(".") as [string, string];
     if (own !== table) lines.push("", `[${own}]`);
     table = own;
-    lines.push(`# ${quantity.symbol}: ${quantity.meaning}`);
+    if (explained) lines.push(`# ${quantity.symbol}: ${quantity.meaning}`);
     const shown = isFunction(value)
       ? functionText(quantity, value)
       : isRows(value)

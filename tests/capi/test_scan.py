@@ -304,13 +304,19 @@ def test_lines_are_those_of_evaluate(seed: int, c_library: Path) -> None:
     for row in reading.rows():
         c("scan_move", begun, *map(c_double, row))
     expected = reading.scan().evaluate(criteria)
-    buffer, count, false = (Line * 3)(), c_size_t(), c_size_t()
-    assert c("scan_lines", begun, None, None, buffer, c_size_t(3), byref(count), byref(false)) == 1
-    assert (count.value, false.value) == (len(expected.lines), len(expected.false_lines))
+    buffer, count = (Line * 3)(), c_size_t()
+    assert c("scan_lines", begun, None, None, buffer, c_size_t(3), byref(count)) == 1
+    assert count.value == len(expected.lines) + len(expected.false_lines)
     buffer = (Line * count.value)()
-    arguments = begun, None, None, buffer, count, byref(count), byref(false)
-    assert c("scan_lines", *arguments) == 0
-    for found, line in zip(buffer, expected.lines, strict=True):
+    assert c("scan_lines", begun, None, None, buffer, count, byref(count)) == 0
+    printed, false = buffer[: len(expected.lines)], buffer[len(expected.lines) :]
+    for found, swing in zip(false, expected.false_lines, strict=True):
+        assert (found.pin, found.outcome) == (swing.pin, len(FATES))
+        begin = found.begin
+        assert (begin.time, begin.x, begin.y) == (swing.time, swing.x, swing.y)
+        assert found.height == swing.stroke
+        assert np.isnan([begin.lag, found.end.time, found.stroke, found.contrast]).all()
+    for found, line in zip(printed, expected.lines, strict=True):
         assert (found.pin, FATES[found.outcome]) == (line.pin, line.fate)
         for edge, of in ((found.begin, line.begin), (found.end, line.end)):
             assert CUES[edge.cue] == of.cue
@@ -326,7 +332,7 @@ def test_lines_are_those_of_evaluate(seed: int, c_library: Path) -> None:
         assert [piece.numbers for piece in pieces] == pin.core.load(pin.number)
     c("scan_advance", begun, c_double(p.times[1]), None, None)
     lines = c.library.pindrive_scan_lines
-    assert lines(begun, None, None, buffer, count, byref(count), byref(false)) > 1
+    assert lines(begun, None, None, buffer, count, byref(count)) > 1
     assert b"not be advanced yet" in c.library.pindrive_last_error()
     c.free(scan=begun)
     c.free(scan=unused, device=device)

@@ -115,7 +115,7 @@ def browser(page_file: Path) -> Iterator[Any]:
 
 @pytest.fixture
 def page(browser: Any, page_file: Path) -> Iterator[Any]:
-    """The page, opened from disk; whatever it asks of the network, or logs as wrong, fails."""
+    """The view "One release", opened from disk; a request or an error that is logged fails."""
     context = browser.new_context(viewport={"width": 1440, "height": 900}, accept_downloads=True)
     opened = context.new_page()
     wrong: list[str] = []
@@ -129,7 +129,7 @@ def page(browser: Any, page_file: Path) -> Iterator[Any]:
             else None
         ),
     )
-    opened.goto(page_file.as_uri())
+    opened.goto(f"{page_file.as_uri()}#release")
     opened.wait_for_selector("html[data-ready]")
     yield opened
     context.close()

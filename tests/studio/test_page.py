@@ -96,7 +96,7 @@ def test_two_changes_before_a_drawing_are_both_kept(page: Any) -> None:
         }"""
     )
     settled(page)
-    state = page.evaluate("pindrive.page.state")
+    state = page.evaluate("pindrive.release.state")
     assert state["map"] == {"x": "drive.mass", "y": "drive.stiffness"}
     assert state["designs"][0]["name"] == "two"
     assert (value(page, "drive.mass"), value(page, "drive.stiffness")) == (0.003, 200)
@@ -126,9 +126,9 @@ def test_displayed_values_equal_python(
     device = device if isinstance(device, Path) else device(tmp_path)
     opened(page, device)
     motion = motion_of(pd.load_device(device))
-    curves = "pindrive.page.view.lines[0].result.curves"
+    curves = "pindrive.release.view.lines[0].result.curves"
     phases = page.evaluate(f"{curves}.phases.map(({{kind, begin, end}}) => [kind, begin, end])")
-    window = page.evaluate("pindrive.page.view.end")
+    window = page.evaluate("pindrive.release.view.end")
     last = motion.segments[-1].end  # from where on a cycle goes on, of which Python keeps one round
     for kind in ("carried", "resting"):
         shown_ends = {end for name, *ends in phases if name == kind for end in ends if end <= last}
@@ -142,7 +142,7 @@ def test_displayed_values_equal_python(
         assert shown[name] == (
             pytest.approx(expected, rel=1e-12, abs=1e-15) if np.isfinite(expected) else None
         ), name
-    events = page.evaluate("pindrive.page.view.lines[0].result.curves.events")
+    events = page.evaluate("pindrive.release.view.lines[0].result.curves.events")
     assert [(e["contact"], e["kind"]) for e in events] == [
         (event.contact, event.kind) for event in motion.events
     ]
@@ -206,16 +206,18 @@ def test_every_file_goes_out_and_in_again(
     toml = saved(page, "toml", tmp_path)
     assert pd.load_device(toml).values() == pd.load_device(SKIN).values()
     opened(page, toml)
-    assert page.evaluate("JSON.stringify(pindrive.page.state.designs[1].values)") == page.evaluate(
-        "JSON.stringify(pindrive.page.state.designs[2].values)"
-    )
+    assert page.evaluate(
+        "JSON.stringify(pindrive.release.state.designs[1].values)"
+    ) == page.evaluate("JSON.stringify(pindrive.release.state.designs[2].values)")
     csv = saved(page, "csv", tmp_path)
     recording = read_recording(csv)
     motion = motion_of(pd.load_device(SKIN))
     expected = motion.position(recording.time)
     np.testing.assert_allclose(recording.channels["position"], expected, rtol=0, atol=1e-17)
     opened(page, csv)
-    assert page.evaluate("pindrive.page.view.overlay.recording.times.length") == len(recording.time)
+    assert page.evaluate("pindrive.release.state.overlay.recording.times.length") == len(
+        recording.time
+    )
     events = CsvTable.read(saved(page, "events", tmp_path), "events", "")
     times = events.column("time", SERIES["time"])
     assert times == pytest.approx([event.time for event in motion.events], rel=1e-14)
@@ -226,11 +228,11 @@ def test_every_file_goes_out_and_in_again(
         assert picture.format == "PNG"
         assert picture.width == 3 * 640
         assert len(picture.convert("RGB").getcolors(1 << 24) or ()) > 20
-    link = page.evaluate("pindrive.page.link()")
+    link = page.evaluate("pindrive.studio.link()")
     other = browser.new_context().new_page()
     other.goto(link)
     other.wait_for_selector("html[data-ready]")
-    state = "JSON.stringify({...pindrive.page.state, cursor: 0})"
+    state = "JSON.stringify({...pindrive.release.state, cursor: 0})"
     assert other.evaluate(state) == page.evaluate(state)
     other.context.close()
 
@@ -274,7 +276,7 @@ def test_a_recording_is_dropped_and_shifted_by_hand(page: Any) -> None:
     page.fill("#offset", "7.5")
     page.keyboard.press("Enter")
     settled(page)
-    assert page.evaluate("pindrive.page.view.overlay.offset") == 0.0075
+    assert page.evaluate("pindrive.release.state.overlay.offset") == 0.0075
 
 
 @pytest.mark.parametrize(
@@ -323,9 +325,9 @@ def test_help_explains_the_view_and_closes(page: Any) -> None:
 
 def test_the_time_axis_zooms_and_pans(page: Any, tmp_path: Path) -> None:
     """A zoom samples the shown span as finely as the whole motion."""
-    span = "pindrive.page.view.span"
+    span = "pindrive.release.view.span"
     samples = (
-        "(() => { const {view: {span: [from, to], lines}} = pindrive.page;"
+        "(() => { const {view: {span: [from, to], lines}} = pindrive.release;"
         " return lines[0].result.curves.times.filter(t => t >= from && t <= to).length; })()"
     )
     axis = page.get_by_role("group", name="time axis")
@@ -336,7 +338,7 @@ def test_the_time_axis_zooms_and_pans(page: Any, tmp_path: Path) -> None:
 
     begin, end = page.evaluate(span)
     assert begin == 0
-    page.evaluate("pindrive.page.setCursor(0.05)")
+    page.evaluate("pindrive.release.setCursor(0.05)")
     for _ in range(7):
         click("+")
     left, right = page.evaluate(span)
@@ -403,9 +405,9 @@ def test_typed_text_outlasts_a_drawing_of_the_page(page: Any) -> None:
     """A field keeps its text while the page is redrawn in the next frame."""
     page.locator("#drive-stiffness").select_text()
     page.keyboard.type("15")
-    page.evaluate("pindrive.page.render()")
+    page.evaluate("pindrive.release.render()")
     page.keyboard.type("0")
-    page.evaluate("pindrive.page.render()")
+    page.evaluate("pindrive.release.render()")
     assert page.input_value("#drive-stiffness") == "150"
     assert value(page, "drive.stiffness") == 100
     page.keyboard.press("Enter")
@@ -423,7 +425,7 @@ def test_designs_ghost_and_delete(page: Any) -> None:
     page.fill("#drive-stiffness", "150")
     page.keyboard.press("Enter")
     settled(page)
-    kinds = "pindrive.page.view.lines.map(line => [line.kind, line.values['drive.stiffness']])"
+    kinds = "pindrive.release.view.lines.map(line => [line.kind, line.values['drive.stiffness']])"
     assert page.evaluate(kinds) == [["current", 150], ["ghost", 100]]
     page.get_by_role("button", name="Copy").click()
     settled(page)
@@ -445,7 +447,7 @@ def test_designs_ghost_and_delete(page: Any) -> None:
 def test_the_map_holds_the_numbers_of_python_and_its_dot_moves(page: Any) -> None:
     page.wait_for_selector(".map-holder[data-took]")
     found = page.evaluate(
-        "(() => { const r = pindrive.page.map; return {values: [...r.last.values],"
+        "(() => { const r = pindrive.release.map; return {values: [...r.last.values],"
         " met: [...r.last.met],"
         " x: [...r.task.varied.mouse_velocity.x], y: [...r.task.varied['plate.kinetic'].y]}; })()"
     )
@@ -458,7 +460,7 @@ def test_the_map_holds_the_numbers_of_python_and_its_dot_moves(page: Any) -> Non
         assert found["values"][64 * j + i] == pytest.approx(time, rel=1e-9)
         assert found["met"][64 * j + i] == (time <= 0.1)
     alpha = page.evaluate(
-        "(() => { const {image} = pindrive.page.map.view;"
+        "(() => { const {image} = pindrive.release.map.view;"
         " const {data} = image.getContext('2d').getImageData(0, 0, 64, 64);"
         " return Array.from({length: 4096}, (_, i) => data[4 * i + 3]); })()"
     )
@@ -484,7 +486,8 @@ def recorded(path: Path, rows: int, offset: float, **drive: Any) -> None:
     """Writes a recording of a release of the template's drive with other values, in ms and mm."""
     motion = motion_of(pd.load_device(EXAMPLE, drive))
     t = np.linspace(0, 0.2, rows)
-    x = motion.position(np.clip(t - offset, 0, None))
+    since = t - offset
+    x = motion.position(np.maximum(since, 0)) + float(motion.velocity(0.0)) * np.minimum(since, 0)
     np.savetxt(
         path,
         np.column_stack([1e3 * t, 1e3 * x]),
@@ -503,27 +506,27 @@ def test_a_recording_of_a_hundred_thousand_rows_is_fitted(page: Any, tmp_path: P
     assert "100000 samples of position" in page.locator("#recording-words").inner_text()
     page.get_by_role("button", name="by least squares").click()
     settled(page)
-    assert page.evaluate("pindrive.page.view.overlay.offset") == pytest.approx(0.012, abs=5e-3)
+    assert page.evaluate("pindrive.release.state.overlay.offset") == pytest.approx(0.012, abs=5e-3)
     for box in ("#fit-drive-mass", "#fit-drive-damping_ratio", "#fit-offset"):
         page.check(box)
     page.get_by_role("button", name="Fit", exact=True).click()
     settled(page)
     assert value(page, "drive.mass") == pytest.approx(0.0125, rel=1e-4)
     assert value(page, "drive.damping_ratio") == pytest.approx(0.11, rel=1e-3)
-    assert page.evaluate("pindrive.page.view.overlay.offset") == pytest.approx(0.012, abs=1e-5)
+    assert page.evaluate("pindrive.release.state.overlay.offset") == pytest.approx(0.012, abs=1e-5)
 
 
 def test_the_device_moves_with_the_cursor_and_can_be_heard(page: Any) -> None:
     picture = "document.querySelector('canvas.animation').toDataURL()"
     before = page.evaluate(picture)
-    page.evaluate("pindrive.page.setCursor(0.03)")
+    page.evaluate("pindrive.release.setCursor(0.03)")
     assert page.locator(".player output").inner_text() == "30.00 ms"
     assert page.evaluate(picture) != before
     positions = page.evaluate("document.querySelector('.u-cursor-x').style.transform")
     page.get_by_role("button", name="Play").click()
     page.wait_for_timeout(250)
     page.get_by_role("button", name="Pause").click()
-    assert page.evaluate("pindrive.page.state.cursor") > 0.03
+    assert page.evaluate("pindrive.release.state.cursor") > 0.03
     assert page.evaluate("document.querySelector('.u-cursor-x').style.transform") != positions
     page.get_by_role("button", name="Listen").click()
     page.get_by_role("button", name="Stop").click()
@@ -573,7 +576,9 @@ def test_the_command_opens_a_device(browser: Any, page_file: Path) -> None:
     opened = browser.new_context().new_page()
     opened.goto(Path(said.stdout.strip()).as_uri())
     opened.wait_for_selector("html[data-ready]")
-    name, mass = opened.evaluate(f"[pindrive.page.state.designs[0].name, {VALUES}['drive.mass']]")
+    name, mass = opened.evaluate(
+        f"[pindrive.release.state.designs[0].name, {VALUES}['drive.mass']]"
+    )
     assert (name, mass) == ("tactile mouse", 0.01)
     assert (
         json.loads(opened.evaluate("document.getElementById('device').textContent"))["rows"] == {}
@@ -581,20 +586,71 @@ def test_the_command_opens_a_device(browser: Any, page_file: Path) -> None:
     opened.context.close()
 
 
-def test_presets_show_what_they_say(page: Any) -> None:
-    buttons = page.locator(".presets button")
-    assert buttons.count() == 5
-    summaries = []
-    for i in range(buttons.count()):
-        buttons.nth(i).click()
+def example(page: Any, name: str) -> None:
+    """Choose an example of the view that is shown."""
+    page.locator("header .menu summary").first.click()
+    page.locator("header .menu").first.get_by_role("button", name=name, exact=True).click()
+
+
+def test_examples_show_what_they_say(page: Any) -> None:
+    names = page.locator("header .menu").first.locator("li button").all_text_contents()
+    assert len(names) == 7
+    summaries = {}
+    for name in names:
+        example(page, name)
         settled(page)
         assert page.locator("#problem").is_hidden()
         assert len(page.locator(".introduction [role=status]").inner_text()) > 60
-        summaries.append(page.locator("#summary").inner_text())
-    assert len(set(summaries)) == 5
-    assert "stick-slip" in summaries[4]
-    period = numbers_shown(page)["ending.period"]
-    assert period == pytest.approx(0.671239, rel=1e-5)
+        summaries[name] = page.locator("#summary").inner_text()
+        if name == "The paper's Figure 4":
+            shown = page.evaluate("pindrive.release.view.lines.map(line => line.name)")
+            assert shown == [f"damping ratio {ratio}" for ratio in (0.04, 0.16, 0.32)]
+        if name == "Stick-slip on a belt":
+            assert numbers_shown(page)["ending.period"] == pytest.approx(0.671239, rel=1e-5)
+    assert len(set(summaries.values())) == 5  # a recording is over the first motion
+    assert "stick-slip" in summaries["Stick-slip on a belt"]
+
+
+def test_a_recording_among_the_examples_is_fitted(page: Any) -> None:
+    """Values as printed by `pindrive fit` in docs/fitting.md."""
+    example(page, "A recording to be fitted")
+    page.get_by_role("button", name="Fit", exact=True).click()
+    settled(page)
+    found = {
+        key: value(page, key)
+        for key in ("drive.stiffness", "drive.damping_ratio", "plate.kinetic", "finger.kinetic")
+    }
+    assert list(found.values()) == pytest.approx([118.07, 0.12487, 18.527e-3, 6.1624e-3], rel=1e-4)
+    assert value(page, "motion.displacement") == pytest.approx(2.1021e-3, rel=1e-4)
+    words = page.locator("#fit-words").inner_text()
+    assert "converged: " in words and "release at 6.000 ms" in words
+    assert "2.0 % of the recording is left (root mean square), and its noise is 1.9 %." in words
+    assert "times the noise" not in words
+    for box in page.locator(".fit [type=checkbox]").all():
+        box.check()
+    page.get_by_role("button", name="Fit", exact=True).click()
+    settled(page)
+    words = page.locator("#fit-words").inner_text()
+    assert re.search(r"does not determine stiffness, plate kinetic, .*mass", words), words
+    page.get_by_role("button", name="Undo", exact=True).click()
+    settled(page)
+    assert value(page, "drive.stiffness") == found["drive.stiffness"]
+
+
+def test_a_fit_of_the_wrong_model_says_so(page: Any) -> None:
+    example(page, "A recording that needs skin")
+    page.get_by_role("button", name="Fit", exact=True).click()
+    settled(page)
+    words = page.locator("#fit-words").inner_text()
+    left = float(re.search(r"That is ([\d.]+) times the noise", words)[1])  # type: ignore[index]
+    assert left > 2.0
+    page.check("#finger-stiffness-given")
+    page.check("#fit-finger-stiffness")
+    page.get_by_role("button", name="Fit", exact=True).click()
+    settled(page)
+    assert "times the noise" not in page.locator("#fit-words").inner_text()
+    assert value(page, "finger.stiffness") == pytest.approx(300.0, rel=0.1)
+    assert value(page, "finger.kinetic") == pytest.approx(12e-3, rel=0.05)
 
 
 def test_the_pin_is_dragged_in_the_drawing(page: Any) -> None:
@@ -640,7 +696,7 @@ def test_curves_follow_a_decay_of_1600_turns(page: Any, tmp_path: Path) -> None:
     opened(page, path)
     times, position = page.evaluate(
         "(({times, columns}) => [Array.from(times), Array.from(columns.position)])"
-        "(pindrive.page.view.lines[0].result.curves)"
+        "(pindrive.release.view.lines[0].result.curves)"
     )
     x, t = np.asarray(position), np.asarray(times)
     for begin in np.arange(0.0, 99.0, 0.5):
@@ -660,7 +716,7 @@ def test_all_events_are_counted_and_written(page: Any, tmp_path: Path) -> None:
     )
     opened(page, path)
     expected = len(motion_of(pd.load_device(path)).core.events(0.0, 100.0, 100_000)[0])
-    events = page.evaluate("pindrive.page.view.lines[0].result.curves.events.length")
+    events = page.evaluate("pindrive.release.view.lines[0].result.curves.events.length")
     assert events == expected > 2000
     count = f"{expected:,}".replace(",", " ")
     assert f"of {count} events" in page.locator("section.events").inner_text()

@@ -27,7 +27,7 @@ def test_end_stops_are_given_and_left_out(page: Any, tmp_path: Path) -> None:
     drive = pd.load_device(path).drive
     assert (drive.travel, drive.stop_stiffness, drive.stop_damping) == (0.0012, 1e4, 4.0)
     opened(page, path)
-    link = page.evaluate("pindrive.page.link()")
+    link = page.evaluate("pindrive.studio.link()")
     assert value(page, "drive.travel") == 0.0012
     assert "stop" in saved(page, "events", tmp_path).read_text("utf-8")
     page.uncheck("#drive-stop_stiffness-given")  # a release beyond rigid stops
@@ -61,7 +61,7 @@ def test_derivatives_and_maps_of_end_stops_are_those_of_python(page: Any, tmp_pa
     page.select_option("#map-x", "drive.travel")
     page.select_option("#map-y", "drive.stop_stiffness")
     drawn = (
-        "(() => { const {newest, task} = pindrive.page.map;"
+        "(() => { const {newest, task} = pindrive.release.map;"
         " return !newest.busy && Boolean(task?.varied.travel && task.varied.stop_stiffness); })()"
     )
     for _ in range(1200):  # its policy forbids it to wait by itself
@@ -69,7 +69,7 @@ def test_derivatives_and_maps_of_end_stops_are_those_of_python(page: Any, tmp_pa
             break
         page.wait_for_timeout(50)
     found = page.evaluate(
-        "(() => { const r = pindrive.page.map; const {travel, stop_stiffness} = r.task.varied;"
+        "(() => { const r = pindrive.release.map; const {travel, stop_stiffness} = r.task.varied;"
         " return {values: [...r.last.values], x: [...travel.x], y: [...stop_stiffness.y]}; })()"
     )
     for i, j in ((0, 0), (63, 5), (31, 40), (20, 63)):

@@ -1,7 +1,8 @@
-// Sliders of the device under the hand.
+// Controls of the device under the hand: the number of its pins, and sliders.
 import type { Design } from "../design";
 import { withValue } from "../design";
-import { h } from "../dom";
+import { h, option } from "../dom";
+import type { Values } from "../friction";
 import { DRIVE, INPUTS } from "../table";
 import { fieldText, written } from "../write";
 import { valuesOf } from "./device";
@@ -18,30 +19,52 @@ const SLIDERS = [
 ] as const;
 /** Factor from a value to the ends of its slider. */
 const RANGE = 8;
+const PINS = [1, 2, 3, 4, 5]; // in a row or a column
 
 export class Controls {
   readonly element = h("div", { class: "sliders" });
+  private design: Design | null = null;
 
-  constructor(
-    private design: Design,
-    private readonly changed: (design: Design) => void,
-  ) {
-    this.fill();
-  }
+  /** `changed` gets another design, and what was changed. */
+  constructor(private readonly changed: (design: Design, kind: string) => void) {}
 
-  setDesign(design: Design): void {
+  /** Shows a design, unless it is the one that was set here last. */
+  update(design: Design): void {
+    if (design === this.design) return;
     this.design = design;
-    this.fill();
-  }
-
-  private fill(): void {
-    const values = valuesOf(this.design);
+    const values = valuesOf(design);
     this.element.replaceChildren(
+      ...this.pins(values),
       ...SLIDERS.flatMap(([key, words]) => {
         const value = values[key];
         return typeof value === "number" && value > 0 ? [this.slider(key, words, value)] : [];
       }),
     );
+  }
+
+  /** The numbers of columns and rows of pins; none for pins at places of their own. */
+  private pins(values: Values): HTMLElement[] {
+    if ("array.places" in values) return [];
+    const select = (key: string, label: string): HTMLElement => {
+      const now = (values[key] as number | undefined) ?? 1;
+      const counts = PINS.includes(now) ? PINS : [...PINS, now];
+      const made = h(
+        "select",
+        { "aria-label": label },
+        ...counts.map((count) => option(String(count), String(count), count === now)),
+      );
+      made.addEventListener("change", () => this.set(key, Number(made.value), ""));
+      return made;
+    };
+    const columns = select("array.columns", "columns of pins");
+    const rows = select("array.rows", "rows of pins");
+    return [h("p", { class: "pins" }, h("span", {}, "Pins"), h("span", {}, columns, " × ", rows))];
+  }
+
+  private set(key: string, value: number, kind: string): void {
+    const next = withSetting(this.design!, key, value);
+    if (kind) this.design = next; // the slider that is dragged stays
+    this.changed(next, kind);
   }
 
   private slider(key: string, words: string, value: number): HTMLElement {
@@ -55,8 +78,7 @@ export class Controls {
       const now = Number((value * RANGE ** Number(input.value)).toPrecision(3));
       shown.textContent = said(now);
       input.setAttribute("aria-valuetext", said(now));
-      this.design = withSetting(this.design, key, now);
-      this.changed(this.design);
+      this.set(key, now, key);
     });
     return h("label", {}, h("span", {}, words), input, shown);
   }

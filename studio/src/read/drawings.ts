@@ -9,6 +9,7 @@ import { type Drawn, drawFingertip, pinAt } from "./fingertip";
 import { drawFelt, drawPage } from "./pagedrawing";
 import { HEIGHT, type Paper } from "./paper";
 import type { Picture } from "./picture";
+import type { Line } from "./scan";
 import type { Sample } from "./session";
 import { drawSide } from "./side";
 
@@ -21,7 +22,12 @@ export interface Scene {
   readonly samples: readonly Sample[];
   /** Luminance below which the control block sees a line. */
   readonly threshold: number;
-  readonly demonstration: boolean;
+  /** Words over the page; empty: none. */
+  readonly notice: string;
+  /** Lines of the reading until now. */
+  readonly lines: readonly Line[];
+  /** True while the pen draws. */
+  readonly pen: boolean;
   /** Speed of the hand and its peak, mm/s. */
   readonly speed: number;
   readonly peak: number;
@@ -44,7 +50,7 @@ export class Drawings {
     choose: (pin: number) => void,
   ) {
     const ratio = HEIGHT / paper.width;
-    const page = "The page. Move the pointer over it, or hold the arrow keys, to read.";
+    const page = "The page. Move the pointer over it, drag a finger, or hold the arrow keys, to read.";
     this.sheet = new Canvas("sheet", page, ratio, redraw);
     this.sheet.element.setAttribute("role", "application");
     this.sheet.element.tabIndex = 0;
@@ -66,8 +72,14 @@ export class Drawings {
     });
   }
 
+  /** The page, or the window, has another width. */
+  reshape(narrow: boolean): void {
+    for (const canvas of [this.sheet, this.image]) canvas.setRatio(HEIGHT / this.paper.width);
+    this.fingertip.setRatio(narrow ? 1 : 0.66);
+  }
+
   /** The cards of the fingertip and of the chosen pin; `pins` chooses one by its number. */
-  cards(pins: HTMLElement): HTMLElement[] {
+  cards(pins: HTMLElement): [HTMLElement, HTMLElement] {
     const words =
       "Orange: the magnet is on. Blue: the skin is being moved. Choose a pin to see it from the side.";
     const tip = this.fingertip.element;
@@ -81,8 +93,8 @@ export class Drawings {
     const { picture, look } = scene;
     const { sheet, image, fingertip, side, dial, paper } = this;
     const pen = sheet.begin(look.font);
-    drawPage(pen, sheet.width, paper, picture);
-    if (scene.demonstration && picture) this.drawNotice(pen);
+    drawPage(pen, sheet.width, paper, look.paper, picture, scene.lines, scene.pen);
+    if (scene.notice) this.drawNotice(pen, scene.notice, look);
     drawFelt(image.begin(look.font), image.width, paper, this.felt, picture);
     if (!picture) return;
     const { width, height } = fingertip;
@@ -93,15 +105,13 @@ export class Drawings {
     drawDial(dial.begin(look.font), dial.width, speed, peak, limits, look, picture.colors);
   }
 
-  private drawNotice(pen: CanvasRenderingContext2D): void {
-    const narrow = innerWidth < 600;
-    const words = `Demonstration: ${narrow ? "drag" : "move over the page"} to take the hand`;
+  private drawNotice(pen: CanvasRenderingContext2D, words: string, look: Look): void {
     const { width, height } = this.sheet;
     pen.font = `600 ${pen.font}`;
     const wide = pen.measureText(words).width;
-    pen.fillStyle = "rgb(255 255 255 / 0.9)";
+    [pen.fillStyle, pen.globalAlpha] = [look.surface, 0.92];
     pen.fillRect(width / 2 - wide / 2 - 8, height - 27, wide + 16, 22);
-    [pen.fillStyle, pen.textAlign] = ["#00486f", "center"];
+    [pen.fillStyle, pen.globalAlpha, pen.textAlign] = [look.accent, 1, "center"];
     pen.fillText(words, width / 2, height - 11);
   }
 }

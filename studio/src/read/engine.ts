@@ -39,7 +39,6 @@ export interface Samples {
 }
 export interface Verdict {
   readonly lines: readonly Line[];
-  readonly falseLines: number;
 }
 export interface Limits {
   /** Largest speeds by pitch, in the order of the task. */
@@ -67,7 +66,7 @@ export class Engine {
     try {
       if ("open" in task) this.open(task.open);
       else if ("until" in task) return this.advance(task);
-      else if ("judge" in task) return this.withHand(task.judge, (scan) => scan.lines());
+      else if ("judge" in task) return this.withHand(task.judge, (scan) => ({ lines: scan.lines() }));
       else if ("load" in task)
         return this.withHand(task.load, (scan) => ({ load: scan.load(task.load.pin) }));
       else return this.limits(task.limits);

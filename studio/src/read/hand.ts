@@ -39,7 +39,6 @@ export interface Motion extends Place {
 }
 
 export class Hand {
-  slowness: Slowness = 10;
   private ticks = 0;
   /** Time of the last row with a velocity, in units. */
   private moved = 0;
@@ -48,14 +47,17 @@ export class Hand {
   /** Place at each row, m; the first is the start. */
   private places: Place[];
 
-  constructor(start: Place) {
+  constructor(
+    start: Place,
+    readonly slowness: Slowness,
+  ) {
     this.startUnits = [Math.round(start.x * PLACES), Math.round(start.y * PLACES)];
     this.places = [this.start];
   }
 
   /** The hand that was saved, from its begin. */
-  static of(saved: HandRows): Hand {
-    const hand = new Hand({ x: saved.start[0] / PLACES, y: saved.start[1] / PLACES });
+  static of(saved: HandRows, slowness: Slowness): Hand {
+    const hand = new Hand({ x: saved.start[0] / PLACES, y: saved.start[1] / PLACES }, slowness);
     for (const [time, vx, vy] of saved.rows) hand.add(time, vx, vy);
     return hand;
   }

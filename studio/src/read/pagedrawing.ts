@@ -1,20 +1,48 @@
 // The page with the device on it, at the scale of the page: a clamped pin stays on the print.
 import type { Felt } from "./felt";
+import { drawOutcomes } from "./outcomes";
 import type { Paper } from "./paper";
 import { disc, magnetRing, offsetOf, type Pen, type Picture, pullOf, ring } from "./picture";
+import type { Line } from "./scan";
 
 const PIN = 0.46e-3; // m, radius of a pin
 const ROOM = 1.6e-3; // m of the housing around the spots
-const SHEET = "#fffdf8";
 
-export function drawPage(pen: Pen, width: number, paper: Paper, picture: Picture | null): void {
+/** The page in the colour of its paper, until either is another. */
+class Tinted {
+  private readonly canvas = new OffscreenCanvas(1, 1);
+  private of: unknown[] = [];
+
+  at(paper: Paper, color: string): OffscreenCanvas {
+    const of = [paper.raster, color];
+    if (of.every((one, i) => one === this.of[i])) return this.canvas;
+    this.of = of;
+    const { width, height } = paper.canvas;
+    [this.canvas.width, this.canvas.height] = [width, height];
+    const pen = this.canvas.getContext("2d")!;
+    pen.drawImage(paper.canvas, 0, 0);
+    pen.globalCompositeOperation = "multiply";
+    pen.fillStyle = color;
+    pen.fillRect(0, 0, width, height);
+    return this.canvas;
+  }
+}
+const tinted = new Tinted();
+
+/** The page with the device and the marks of lines; `live` while the pen draws on it. */
+export function drawPage(
+  pen: CanvasRenderingContext2D,
+  width: number,
+  paper: Paper,
+  sheet: string,
+  picture: Picture | null,
+  lines: readonly Line[],
+  live: boolean,
+): void {
   const scale = width / (paper.width * 1e-3);
   const height = (width * paper.canvas.height) / paper.canvas.width;
-  pen.drawImage(paper.canvas, 0, 0, width, height);
-  pen.globalCompositeOperation = "multiply";
-  pen.fillStyle = SHEET;
-  pen.fillRect(0, 0, width, height);
-  pen.globalCompositeOperation = "source-over";
+  pen.drawImage(live ? paper.canvas : tinted.at(paper, sheet), 0, 0, width, height);
+  drawOutcomes(pen, scale, lines);
   if (picture) drawDevice(pen, scale, picture);
 }
 
@@ -60,8 +88,6 @@ function drawPin(pen: Pen, x: number, y: number, scale: number, picture: Picture
 /** The tactile image in the place and at the scale of the page, with the print in outline. */
 export function drawFelt(pen: Pen, width: number, paper: Paper, felt: Felt, picture: Picture | null): void {
   const height = (width * paper.canvas.height) / paper.canvas.width;
-  pen.fillStyle = "#fff";
-  pen.fillRect(0, 0, width, height);
   pen.drawImage(felt.canvas, 0, 0, width, height);
   pen.drawImage(paper.outline, 0, 0, width, height);
   if (!picture) return;

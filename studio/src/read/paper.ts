@@ -1,5 +1,6 @@
 // The page under the hand: text, drawing, picture or lines, as a raster of luminance.
 import type { Raster } from "./scan";
+import type { PrintedLine, Stroke } from "./state";
 
 /** Pixels to the millimetre. */
 export const RESOLUTION = 22;
@@ -17,26 +18,23 @@ export interface Spot {
 const LARGEST = 4e7; // pixels of a picture, as of a page in Python
 
 export class Paper {
-  readonly canvas: OffscreenCanvas;
+  readonly canvas = new OffscreenCanvas(1, 1);
   /** The print in outline. */
-  readonly outline: OffscreenCanvas;
-  private readonly pen: OffscreenCanvasRenderingContext2D;
-  raster: Raster;
+  readonly outline = new OffscreenCanvas(1, 1);
+  private readonly pen = this.canvas.getContext("2d", { willReadFrequently: true })!;
+  raster!: Raster;
   /** Description for reports and screen readers. */
   title = "blank paper";
+  /** Width, mm. */
+  width = 0;
 
-  constructor(readonly width: number) {
-    const [columns, rows] = [Math.round(width * RESOLUTION), Math.round(HEIGHT * RESOLUTION)];
-    this.canvas = new OffscreenCanvas(columns, rows);
-    this.outline = new OffscreenCanvas(columns, rows);
-    this.pen = this.canvas.getContext("2d", { willReadFrequently: true })!;
-    this.clear();
-    this.raster = this.read();
+  constructor(readonly usual: number) {
+    this.text("");
   }
 
   text(words: string): void {
     const { pen } = this;
-    this.clear();
+    this.clear(this.usual);
     this.title = `the text “${words}”`;
     pen.save();
     pen.scale(RESOLUTION, RESOLUTION);
@@ -54,8 +52,8 @@ export class Paper {
   }
 
   /** Vertical lines at places with widths, mm. */
-  lines(lines: readonly (readonly [number, number])[]): void {
-    this.clear();
+  lines(lines: readonly PrintedLine[]): void {
+    this.clear(this.usual);
     this.title = lines.length === 1 ? "one line" : `${lines.length} lines`;
     for (const [x, width] of lines) {
       this.pen.fillRect(x * RESOLUTION, RESOLUTION, width * RESOLUTION, (HEIGHT - 2) * RESOLUTION);
@@ -63,34 +61,18 @@ export class Paper {
     this.printed();
   }
 
-  /** A picture in shades of grey, as large as the page allows. */
-  async picture(file: Blob, name: string): Promise<void> {
-    const picture = await createImageBitmap(file).catch(() => {
-      throw new Error("is no picture that this browser shows");
-    });
-    if (picture.width * picture.height > LARGEST) {
-      throw new Error(
-        `must have at most ${LARGEST / 1e6} megapixels, got ${picture.width} × ${picture.height}`,
-      );
-    }
-    const { width, height } = this.canvas;
-    const scale = Math.min(width / picture.width, height / picture.height);
-    const [w, h] = [picture.width * scale, picture.height * scale];
-    this.clear();
-    this.title = name;
-    this.pen.filter = "grayscale(1)";
-    this.pen.drawImage(picture, (width - w) / 2, (height - h) / 2, w, h);
-    this.pen.filter = "none";
-    this.printed();
-  }
-
-  /** Blank paper to draw on. */
-  blank(): void {
-    this.clear();
+  /** A drawing of strokes. */
+  drawing(strokes: readonly Stroke[]): void {
+    this.clear(this.usual);
     this.title = "a drawing";
+    for (const stroke of strokes) {
+      stroke.forEach((to, i) => {
+        this.draw(stroke[Math.max(0, i - 1)]!, to);
+      });
+    }
     this.printed();
   }
-  /** Draws from one spot to another; `printed` ends a stroke. */
+  /** Draws from one spot to another, mm; the raster stays as it was. */
   draw(from: Spot, to: Spot): void {
     const { pen } = this;
     [pen.lineWidth, pen.lineCap] = [PEN * RESOLUTION, "round"];
@@ -100,22 +82,27 @@ export class Paper {
     pen.stroke();
   }
 
-  /** A page that was saved. */
+  /** A raster that was saved, at its size. */
   show(raster: Raster, title: string): void {
-    this.clear();
+    this.clear(raster.columns * raster.pixel * 1e3);
     this.title = title;
-    const picture = this.pen.createImageData(raster.columns, raster.rows);
-    raster.grey.forEach((grey, i) => {
-      picture.data.set([grey, grey, grey, 255], 4 * i);
+    const { rows, columns, grey, pixel } = raster;
+    const [own, pen] = canvasOf(columns, rows);
+    const picture = pen.createImageData(columns, rows);
+    grey.forEach((shade, i) => {
+      picture.data.set([shade, shade, shade, 255], 4 * i);
     });
-    this.pen.putImageData(picture, 0, 0);
-    this.printed();
+    pen.putImageData(picture, 0, 0);
+    const scale = pixel * 1e3 * RESOLUTION;
+    this.pen.drawImage(own, 0, 0, columns * scale, rows * scale);
+    this.printed(raster);
   }
 
-  /** Reads the raster, and draws the outline of the print. */
-  printed(): void {
-    this.raster = this.read();
-    const { grey, rows, columns } = this.raster;
+  /** Keeps a raster, which is that of the canvas unless it is given, and draws the outline of the print. */
+  private printed(given?: Raster): void {
+    const drawn = rasterOfCanvas(this.pen);
+    this.raster = given ?? drawn;
+    const { grey, rows, columns } = drawn;
     const pen = this.outline.getContext("2d")!;
     const picture = pen.createImageData(columns, rows);
     const dark = (i: number): boolean => grey[i]! < 128;
@@ -129,17 +116,48 @@ export class Paper {
     pen.putImageData(picture, 0, 0);
   }
 
-  private clear(): void {
-    const { pen, canvas } = this;
+  /** Blank paper of a width, mm. */
+  private clear(width: number): void {
+    const { pen, canvas, outline } = this;
+    this.width = width;
+    const [columns, rows] = [Math.round(width * RESOLUTION), Math.round(HEIGHT * RESOLUTION)];
+    for (const one of [canvas, outline]) [one.width, one.height] = [columns, rows];
     pen.fillStyle = "#fff";
-    pen.fillRect(0, 0, canvas.width, canvas.height);
+    pen.fillRect(0, 0, columns, rows);
     [pen.fillStyle, pen.strokeStyle] = ["#000", "#000"];
   }
+}
 
-  private read(): Raster {
-    const { width: columns, height: rows } = this.canvas;
-    const { data } = this.pen.getImageData(0, 0, columns, rows);
-    const grey = Uint8Array.from({ length: rows * columns }, (_, i) => data[4 * i]!);
-    return { grey, rows, columns, pixel: 1e-3 / RESOLUTION };
+/** A picture in shades of grey, as large as a page of a width, mm, allows. Throws an error in words. */
+export async function rasterOfPicture(file: Blob, wide: number): Promise<Raster> {
+  const picture = await createImageBitmap(file).catch(() => {
+    throw new Error("is no picture that this browser shows");
+  });
+  if (picture.width * picture.height > LARGEST) {
+    throw new Error(
+      `must have at most ${LARGEST / 1e6} megapixels, got ${picture.width} × ${picture.height}`,
+    );
   }
+  const [width, height] = [wide, HEIGHT].map((size) => Math.round(size * RESOLUTION)) as [number, number];
+  const [, pen] = canvasOf(width, height);
+  const scale = Math.min(width / picture.width, height / picture.height);
+  const [w, h] = [picture.width * scale, picture.height * scale];
+  pen.fillStyle = "#fff";
+  pen.fillRect(0, 0, width, height);
+  pen.filter = "grayscale(1)";
+  pen.drawImage(picture, (width - w) / 2, (height - h) / 2, w, h);
+  return rasterOfCanvas(pen);
+}
+
+function canvasOf(columns: number, rows: number): [OffscreenCanvas, OffscreenCanvasRenderingContext2D] {
+  const canvas = new OffscreenCanvas(columns, rows);
+  return [canvas, canvas.getContext("2d", { willReadFrequently: true })!];
+}
+
+/** Luminance of a canvas in shades of grey. */
+export function rasterOfCanvas(pen: OffscreenCanvasRenderingContext2D): Raster {
+  const { width: columns, height: rows } = pen.canvas;
+  const { data } = pen.getImageData(0, 0, columns, rows);
+  const grey = Uint8Array.from({ length: rows * columns }, (_, i) => data[4 * i]!);
+  return { grey, rows, columns, pixel: 1e-3 / RESOLUTION };
 }

@@ -14,7 +14,6 @@ type Count = (typeof COUNTS)[number];
 export class Readouts {
   readonly now = h("p", { class: "now" });
   readonly spoken = h("p", { class: "visually-hidden", role: "status" });
-  readonly problem = h("p", { class: "problem", role: "alert", hidden: true });
   private readonly speed = h("output", { class: "speed" }, "0");
   private readonly yours = h("span", { class: "note yours" });
   private readonly merging = h("p", { class: "note merging" });
@@ -43,14 +42,9 @@ export class Readouts {
     );
   }
 
-  say(problem: string): void {
-    this.problem.textContent = problem;
-    this.problem.hidden = problem === "";
-  }
-
-  /** Describes the present event; `waiting` stands in while there is none. */
-  tell(picture: Picture | null, waiting: string): void {
-    const words = happening(picture, waiting);
+  /** Describes the present event; `waiting` stands in while there is none, and nobody has moved the hand. */
+  tell(picture: Picture | null, waiting: string, moved: boolean): void {
+    const words = happening(picture, waiting, moved);
     const plain = words.map((part) => (typeof part === "string" ? part : part[1])).join("");
     if (plain === this.now.textContent) return;
     this.now.replaceChildren(
@@ -83,13 +77,13 @@ export class Readouts {
     this.finest.textContent = `Two lines ${closest.pitch} mm apart are felt as two ${fastest(closest)}${other}.`;
   }
 
-  showLines(lines: readonly Line[], falseLines: number): void {
+  showLines(lines: readonly Line[]): void {
     const of = (outcome: string): number => lines.filter((line) => line.outcome === outcome).length;
     const lags = lines.map(({ lag }) => 1e3 * lag).filter((lag) => !Number.isNaN(lag));
     lags.sort((a, b) => a - b);
     const lag = lags.length ? lags[lags.length >> 1]!.toFixed(1) : "–";
-    const missed = of("unseen") + of("faint");
-    const numbers = [lines.length, of("shown"), of("merged"), missed, falseLines, lag];
+    const crossed = lines.length - of("false");
+    const numbers = [crossed, of("shown"), of("merged"), of("unseen") + of("faint"), of("false"), lag];
     COUNTS.forEach((name, i) => {
       this.counts[name].textContent = String(numbers[i]);
     });

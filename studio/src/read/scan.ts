@@ -27,15 +27,18 @@ export interface Start {
 export const SHOWN = { position: 0, stretch: 5, pull: 8, command: 11, luminance: 12 } as const;
 export type Shown = keyof typeof SHOWN;
 
-const OUTCOMES = ["shown", "unseen", "merged", "faint"] as const;
+const OUTCOMES = ["shown", "unseen", "merged", "faint", "false"] as const;
 export type Outcome = (typeof OUTCOMES)[number];
 
-/** A printed line under a pin. */
+/** A printed line under a pin, or a swing of a pin that feels like one. */
 export interface Line {
   readonly pin: number;
   readonly outcome: Outcome;
-  /** Time of its begin under the spot, s. */
+  /** Time at which its begin is under the spot, or of the swing, s. */
   readonly time: number;
+  /** Place of the spot then, m. */
+  readonly x: number;
+  readonly y: number;
   /** Way of the hand until the response, m. */
   readonly lag: number;
   /** Displacement of the pin, m. */
@@ -158,22 +161,21 @@ export class Scan {
     });
   }
 
-  /** Lines under the hand as given so far, before the first advance; and the number of false lines. */
-  lines(): { lines: Line[]; falseLines: number } {
+  /** Lines under the hand as given so far, and false lines, before the first advance. */
+  lines(): Line[] {
     const { core, handle } = this;
-    const ask = (lines: number, capacity: number): [number, number] =>
+    const ask = (lines: number, capacity: number): number =>
       core.borrowed(8, (at) => {
         core.call("scan_lines", handle, 0, 0, lines, capacity, at, at + 4);
-        return [core.view().getUint32(at, true), core.view().getUint32(at + 4, true)];
+        return core.view().getUint32(at, true);
       });
     let capacity = 128;
     for (;;) {
       const found = core.borrowed(capacity * LINE_BYTES, (at) => {
-        const [count, falseLines] = ask(at, capacity);
+        const count = ask(at, capacity);
         if (count > capacity) return count;
         const view = core.view();
-        const lines = Array.from({ length: count }, (_, i) => lineAt(view, at + i * LINE_BYTES));
-        return { lines, falseLines };
+        return Array.from({ length: count }, (_, i) => lineAt(view, at + i * LINE_BYTES));
       });
       if (typeof found !== "number") return found;
       capacity = found;
@@ -187,6 +189,8 @@ function lineAt(view: DataView, at: number): Line {
     pin: view.getUint32(at, true),
     outcome: OUTCOMES[view.getInt32(at + 4, true)]!,
     time: number(8),
+    x: number(16),
+    y: number(24),
     lag: number(48),
     stroke: number(136),
   };

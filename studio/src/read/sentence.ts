@@ -12,8 +12,10 @@ function pins(count: number): string {
   return count === 1 ? "the pin" : `${count} pins`;
 }
 
-export function happening(picture: Picture | null, waiting: string): Words {
+/** The event in a picture; `waiting` stands in while a hand that nobody moves is at rest. */
+export function happening(picture: Picture | null, waiting: string, moved: boolean): Words {
   if (!picture) return ["The device is being prepared."];
+  if (!moved && speedOf(picture.hand) < SLOW) return [waiting];
   const { sample, hand } = picture;
   const every = Array.from(sample.values.position, (_, pin) => pin);
   const held = every.filter((pin) => pullOf(picture, pin) > 0.3);

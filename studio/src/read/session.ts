@@ -2,13 +2,13 @@
 
 import type { Thread } from "../thread";
 import { type Answer, type Load, SAMPLED, type Samples, type Verdict } from "./engine";
-import { Hand, type HandRows, type Motion, TICK } from "./hand";
+import { Hand, type HandRows, type Motion, type Slowness, TICK } from "./hand";
 import type { Pins } from "./pins";
 import type { DeviceInput, Line, Raster, Shown } from "./scan";
 
 const MM = 1e-3;
 const KEPT = 0.3; // s of the device for which samples are kept
-const LONGEST = 30_000; // rows of a reading, after which another begins
+const LONGEST = 30_000; // rows of a reading
 const LATE = 25; // ms of the wall clock between two pictures beyond which time stands still
 const JUDGED = 300; // ms between two evaluations of the lines at least
 const REST = 3; // times that the evaluation rests as long as it took, for the threads of the pins
@@ -22,17 +22,18 @@ export interface Sample {
 export interface Listener {
   /** Samples since the last picture, in order; the last one is shown now. */
   sampled(samples: readonly Sample[], hand: Hand): void;
-  judged(lines: readonly Line[], falseLines: number): void;
+  /** Lines of the hand so far, or of a whole reading that is repeated. */
+  judged(lines: readonly Line[]): void;
   began(): void;
   failed(words: string): void;
 }
 
 export class Session {
-  hand = new Hand({ x: 4 * MM, y: 6.25 * MM });
+  hand = new Hand({ x: 4 * MM, y: 6.25 * MM }, 10);
   samples: Sample[] = [];
   /** Times that the pictures took in the threads of the pins, ms, for tests. */
   readonly took: number[] = [];
-  private replay: HandRows | null = null;
+  private replayed = false;
   private shown = 0;
   private sent = 0;
   private wall = 0;
@@ -72,48 +73,63 @@ export class Session {
   }
 
   /** Begins a reading at a place, m, with pins at rest. */
-  begin(x: number, y: number): void {
-    const { slowness } = this.hand;
-    this.hand = new Hand({ x, y });
-    this.hand.slowness = slowness;
-    this.replay = null;
+  begin(x: number, y: number, slowness: Slowness): void {
+    this.hand = new Hand({ x, y }, slowness);
+    [this.replayed, this.judgedRows] = [false, 0];
     this.open();
   }
 
   /** Begins to repeat a reading. */
-  repeat(saved: HandRows): void {
-    const { slowness } = this.hand;
-    this.hand = Hand.of(saved);
-    this.hand.slowness = slowness;
-    this.replay = saved;
+  repeat(saved: HandRows, slowness: Slowness): void {
+    this.hand = Hand.of(saved, slowness);
+    [this.replayed, this.judgedRows] = [true, 0];
     this.open();
+    this.evaluate(0);
   }
   get repeating(): boolean {
-    return this.replay !== null;
+    return this.replayed;
+  }
+
+  /** Repeats from now on the reading that was just made, at whose end it stands. */
+  keep(): void {
+    this.replayed = true;
+    this.judgeFrom = 0;
+    this.evaluate(0);
+  }
+
+  /** True for a reading with the largest number of rows. */
+  get full(): boolean {
+    return this.hand.count >= LONGEST;
+  }
+  /** True if an answer of the pins or of the evaluation is awaited. */
+  get waits(): boolean {
+    return this.pending || !this.judge.idle;
   }
 
   private open(): void {
     ++this.epoch;
     [this.shown, this.sent, this.wall, this.pending] = [0, 0, 0, false];
-    [this.samples, this.judgedRows] = [[], 0];
+    this.samples = [];
     this.listener.began();
     void this.live.open(this.opening).then((answer) => this.checked(answer));
   }
 
-  /** The hand follows an aim, m, until now (ms), and the pins follow the hand. */
-  follow(now: number, aim: (wall: number) => { x: number; y: number }, straight: () => boolean): void {
-    if (this.pending) return; // time waits for a thread that is late
+  /** The hand follows an aim, m, until now (ms), and the pins follow the hand; false if the hand rests at its aim. */
+  follow(now: number, aim: (wall: number) => { x: number; y: number }, straight: () => boolean): boolean {
+    if (this.pending) return true; // time waits for a thread that is late
     if (!this.wall) this.wall = now - TICK;
     this.wall = Math.max(this.wall, now - LATE);
+    let moves = false;
     while (this.wall < now) {
       const at = aim(this.wall);
-      if (!this.hand.rests(at, straight())) this.hand.follow(at, straight());
+      moves = !this.hand.rests(at, straight()) && !this.full;
+      if (moves) this.hand.follow(at, straight());
       this.wall += TICK;
     }
-    const ahead = ((this.wall - now) * 1e-3) / this.hand.slowness;
+    const ahead = moves ? ((this.wall - now) * 1e-3) / this.hand.slowness : 0;
     this.advance(Math.max(this.shown, this.hand.end - ahead));
-    if (this.hand.count > LONGEST) this.begin(this.hand.last.x, this.hand.last.y);
     this.evaluate(now);
+    return moves || this.shown < this.hand.end || this.hand.count !== this.judgedRows;
   }
 
   /** Shows another time of a reading that is repeated, s of the device. */
@@ -168,19 +184,19 @@ export class Session {
     return answer && "load" in answer ? answer.load : null;
   }
 
-  /** Has the lines evaluated now and then, in the other thread. */
+  /** Evaluates the lines from time to time, in the other thread. */
   private evaluate(now: number): void {
-    const { hand, epoch } = this;
-    if (!this.judge.idle || now < this.judgeFrom || hand.count === this.judgedRows) return;
-    if (hand.count < 2) return;
+    const { hand } = this;
+    const began = performance.now();
+    const waits = !this.replayed && (!this.judge.idle || now < this.judgeFrom);
+    if (waits || hand.count === this.judgedRows || hand.count < 2) return;
     this.judgedRows = hand.count;
     const task = { judge: { ...this.opening, rows: hand.rowsFrom(0) } };
     void this.judge.ask("read", task).then((answer) => {
-      const took = performance.now() - now;
-      this.judgeFrom = now + took + Math.max(JUDGED, REST * took);
-      if (epoch !== this.epoch || !answer || !("lines" in answer)) return;
-      const { lines, falseLines } = answer as Verdict;
-      this.listener.judged(lines, falseLines);
+      const took = performance.now() - began;
+      this.judgeFrom = began + took + Math.max(JUDGED, REST * took);
+      if (hand !== this.hand || !answer || !("lines" in answer)) return;
+      this.listener.judged((answer as Verdict).lines);
     });
   }
 

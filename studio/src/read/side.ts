@@ -202,8 +202,8 @@ function drawTrace(
   for (const [text, down, color] of [
     ["black", 9, look.text],
     ["magnet", 23, colors.magnet],
-    ["pin", 48, colors.dragged],
-    ["last 0.15 s", 70, look.muted],
+    ["pin", 44, colors.dragged],
+    ["last 0.15 s", 74, look.muted],
   ] as const) {
     pen.fillStyle = color;
     pen.fillText(text, 2, y + down);
@@ -223,7 +223,7 @@ function drawTrace(
   };
   bars(0, look.text, dark);
   bars(14, colors.magnet, ({ values }) => values.pull[chosen]! > 0.02 * picture.hold);
-  const zero = y + 54;
+  const zero = y + 46;
   [pen.strokeStyle, pen.lineWidth] = [look.grid, 1];
   pen.beginPath();
   pen.moveTo(left, zero);
@@ -232,7 +232,7 @@ function drawTrace(
   [pen.strokeStyle, pen.lineWidth] = [colors.dragged, 2];
   pen.beginPath();
   samples.forEach(({ time, values }, i) => {
-    const height = Math.sign(picture.hand.vx || 1) * values.position[chosen]! * 1e3 * 24;
+    const height = values.position[chosen]! * 1e3 * 18;
     if (i) pen.lineTo(across(time), zero - height);
     else pen.moveTo(across(time), zero - height);
   });

@@ -2,13 +2,23 @@
 
 import type { Limit } from "./dial";
 import type { Hand } from "./hand";
-import type { Line } from "./scan";
+import type { Line, Outcome } from "./scan";
 import type { Sample } from "./session";
+import type { Print } from "./state";
 
-/** Reading so far: its lines, the hand, and the limits of the device. */
+/** A printed line that a hand has crossed: its outcome, the speed of the hand, mm/s, and the angle, degrees. */
+export interface Crossing {
+  readonly outcome: Outcome;
+  readonly time: number;
+  readonly stroke: number;
+  readonly speed: number;
+  readonly angle: number;
+}
+
+/** Reading so far, what was read of the task before, and the limits of the device. */
 export interface Read {
-  readonly lines: readonly Line[];
-  readonly hand: Hand;
+  readonly lines: readonly Crossing[];
+  readonly before: readonly Crossing[];
   readonly limits: readonly Limit[];
   /** The last samples, and the pin that is looked at. */
   readonly samples: readonly Sample[];
@@ -20,22 +30,28 @@ export interface Read {
 export interface Task {
   readonly name: string;
   readonly what: string;
-  /** Print of a page of a width, mm: a text, or lines at places with widths, mm. */
-  readonly page: (width: number) => string | readonly (readonly [number, number])[];
+  /** Print of a page of a width, mm. */
+  readonly page: (width: number) => Print;
   /** Verdict on a reading, in words; null: none yet. */
   readonly verdict: (read: Read) => string | null;
 }
 
 const PITCH = 2; // mm, of the two lines
-const ENOUGH = 24; // lines after which a word is judged
+const ENOUGH = 8; // lines after which a word is judged
+const CROSSED = 0.6; // s of the device within which both lines are crossed
 const STRAIGHT = 6; // degrees
 const SWUNG = 0.03; // s after a release until its swing is told
 const DRAGGED = 1e-4; // m that a pin is dragged at the least
 
-/** Speed of the hand at a line, mm/s, and its angle to the drive, degrees. */
-function handAt(hand: Hand, line: Line): { speed: number; angle: number } {
-  const { vx, vy } = hand.at(line.time);
-  return { speed: 1e3 * Math.hypot(vx, vy), angle: (Math.atan2(Math.abs(vy), Math.abs(vx)) * 180) / Math.PI };
+/** The printed lines that a hand has crossed. */
+export function crossings(lines: readonly Line[], hand: Hand): Crossing[] {
+  return lines
+    .filter(({ outcome }) => outcome !== "false")
+    .map(({ outcome, time, stroke }) => {
+      const { vx, vy } = hand.at(time);
+      const angle = (Math.atan2(Math.abs(vy), Math.abs(vx)) * 180) / Math.PI;
+      return { outcome, time, stroke: 1e3 * stroke, speed: 1e3 * Math.hypot(vx, vy), angle };
+    });
 }
 
 function mean(values: readonly number[]): number {
@@ -49,22 +65,20 @@ function readTheWord({ lines }: Read): string | null {
 }
 
 /** The last crossing of both lines: felt apart, or as one. */
-function howFast({ lines, hand, limits }: Read): string | null {
-  if (lines.length < 8) return null;
+function howFast({ lines, limits }: Read): string | null {
   const last = Math.max(...lines.map(({ time }) => time));
-  const crossing = lines.filter(({ time }) => time > last - 0.6);
+  const crossing = lines.filter(({ time }) => time > last - CROSSED);
+  if (crossing.length < 2) return null;
   const merged = crossing.filter(({ outcome }) => outcome !== "shown").length;
-  const speed = Math.round(mean(crossing.map((line) => handAt(hand, line).speed)));
+  const speed = Math.round(mean(crossing.map((line) => line.speed)));
   if (merged < crossing.length / 4) return `Still two at ${speed} mm/s. Faster!`;
   const own = limits.find(({ pitch }) => pitch === PITCH)?.speed;
   const known = own ? ` The device's own limit: ${Math.round(own)} mm/s.` : "";
   return `At ${speed} mm/s they became one.${known}`;
 }
 
-function whyAskew({ lines, hand }: Read): string | null {
-  const strokes = lines
-    .filter(({ stroke }) => stroke > 0)
-    .map((line) => ({ stroke: 1e3 * line.stroke, ...handAt(hand, line) }));
+function whyAskew({ lines, before }: Read): string | null {
+  const strokes = [...before, ...lines].filter(({ stroke }) => stroke > 0);
   const straight = strokes.filter(({ angle }) => angle < STRAIGHT);
   const askew = strokes.filter(({ angle }) => angle >= STRAIGHT);
   const told = (of: typeof strokes): string => `${mean(of.map(({ stroke }) => stroke)).toFixed(2)} mm`;
@@ -99,28 +113,31 @@ export const TASKS: readonly Task[] = [
   {
     name: "Read the word",
     what: "Cross it in one slow stroke. Every letter should appear in blue.",
-    page: () => "Hello",
+    page: () => ({ kind: "text", text: "Hello" }),
     verdict: readTheWord,
   },
   {
     name: "How fast is too fast?",
     what: "Cross the two lines, each time faster, until the finger gets only one.",
-    page: (width) => [
-      [width / 2 - PITCH, PITCH / 2],
-      [width / 2, PITCH / 2],
-    ],
+    page: (width) => ({
+      kind: "lines",
+      lines: [
+        [width / 2 - PITCH, PITCH / 2],
+        [width / 2, PITCH / 2],
+      ],
+    }),
     verdict: howFast,
   },
   {
     name: "Why askew feels less",
     what: "Cross the line straight, then slanting. How far is a pin dragged?",
-    page: (width) => [[width / 2 - 0.75, 1.5]],
+    page: (width) => ({ kind: "lines", lines: [[width / 2 - 0.75, 1.5]] }),
     verdict: whyAskew,
   },
   {
     name: "The paper's Figure 4",
     what: "Cross the line. Behind it the pin springs back, and swings: how far, at damping ratios 0.04, 0.16 and 0.32? The slider sets them; “Open its motion” shows the curve.",
-    page: (width) => [[width / 2 - 1, 2]],
+    page: (width) => ({ kind: "lines", lines: [[width / 2 - 1, 2]] }),
     verdict: figure4,
   },
 ];

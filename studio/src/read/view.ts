@@ -1,13 +1,9 @@
 // The view "Read": a page, a hand that the person moves, and what the pins do under it.
 import type { Core, Row } from "../core";
-import { type Design, dampingRatio, designOf } from "../design";
-import { DeviceError } from "../device";
-import { button, card, download, fileName, h, menu, option } from "../dom";
-import { choose } from "../files";
-import { help } from "../help";
-import { navigation } from "../navigation";
-import { TABLES } from "../table";
-import { currentLook } from "../theme";
+import { type Design, dampingRatio } from "../design";
+import { card, download, fileName, h, option } from "../dom";
+import type { Store } from "../store";
+import { currentLook, onLook } from "../theme";
 import { type Program, Thread } from "../thread";
 import { deviceFile } from "../write";
 import { Controls } from "./controls";
@@ -15,33 +11,46 @@ import { deviceInput, spotsOf, valuesOf } from "./device";
 import type { Limit } from "./dial";
 import { Drawings } from "./drawings";
 import type { Limits } from "./engine";
-import { Feedback, VIBRATES } from "./feedback";
+import { Feedback } from "./feedback";
 import { Felt } from "./felt";
-import { type Hand, SLOWNESS, type Slowness } from "./hand";
+import type { Hand, HandRows } from "./hand";
 import { HandControl } from "./handcontrol";
-import { Paper } from "./paper";
+import { Outcomes } from "./outcomes";
+import { Paper, type Spot } from "./paper";
 import { colorsOf, type Picture } from "./picture";
 import { Pins } from "./pins";
+import { Playback } from "./playback";
 import { Demonstration } from "./pointer";
 import { Readouts } from "./readouts";
 import { pinDesign } from "./release";
-import { readingHash, readingOf, readingOfHash, readingText, type SavedReading } from "./saved";
+import { FORMAT, packedRaster, rasterOf } from "./saved";
 import type { DeviceInput, Line } from "./scan";
 import { speedOf } from "./sentence";
 import { type Sample, Session } from "./session";
 import { Skin } from "./skin";
+import type { Print, ReadState } from "./state";
+import { TaskCard } from "./taskcard";
 import { TASKS } from "./tasks";
+import { Toolbar } from "./toolbar";
 
 const [WIDE, NARROW] = [44, 36]; // mm of page on a screen, and on a telephone
 const PITCHES = [1, 2, 3, 4]; // mm, on the dial
-const REPEATED = 4; // times that a repeated reading is slower than the reading
 const SETTLED = 200; // ms after which changed sliders have new limits
+const SHORTEST = 5e-3; // m of way of a reading that is kept
+
+/** Owner of the hand: nobody yet, a demonstration, a person; or nobody, after a reading, while the pins come to rest;
+ * "kept" is a finished reading, which can be shown again. */
+type Phase = "waiting" | "demonstration" | "reading" | "ending" | "kept";
 
 export class ReadView {
   readonly element: HTMLElement;
   readonly session: Session;
+  readonly paper = new Paper(isNarrow() ? NARROW : WIDE);
   limits: Limit[] = [];
-  private readonly paper = new Paper(innerWidth < 600 ? NARROW : WIDE);
+  phase: Phase = "waiting";
+  private last: ReadState | null = null;
+  /** The hand of the reading that is shown, if it is a finished one. */
+  private kept: HandRows | null = null;
   private readonly felt: Felt;
   private readonly skin: Skin;
   private readonly judge: Thread;
@@ -49,7 +58,12 @@ export class ReadView {
   private readonly readouts = new Readouts();
   private readonly feedback = new Feedback();
   private readonly controls: Controls;
+  private readonly tasks: TaskCard;
+  private readonly outcomes: Outcomes;
+  private readonly playback: Playback;
+  private readonly toolbar: Toolbar;
   private readonly hand: HandControl;
+  private readonly pins = h("select", { "aria-label": "pin from the side" });
   private input: DeviceInput;
   private lines: readonly Line[] = [];
   private picture: Picture | null = null;
@@ -57,48 +71,33 @@ export class ReadView {
   private chosen: number;
   private speed = 0;
   private peak = 0;
-  private task = -1;
-  private repeatFrom = 0;
   private limitsAsked = 0;
   private limitsTimer = 0;
   private frame = 0;
-  private readonly text = h("input", {
-    type: "text",
-    value: "Hello",
-    maxlength: 12,
-    "aria-label": "text on the page",
-  });
-  private readonly again = button("Replay", "Repeat this reading, slower", () => this.repeat());
-  private readonly scrub = h("input", {
-    type: "range",
-    min: 0,
-    max: 1000,
-    step: "any",
-    "aria-label": "time of the reading",
-    hidden: true,
-  });
-  private readonly pins = h("select", { "aria-label": "pin from the side" });
-  private readonly tasks: HTMLElement[];
 
   constructor(
     private readonly core: Core,
     program: Program,
-    private design: Design,
-    private readonly showRelease: (design: Design) => void,
+    private readonly store: Store<ReadState>,
+    private readonly say: (problem: string) => void,
+    private readonly openRelease: (design: Design) => void,
   ) {
-    this.paper.text("Hello");
-    this.input = deviceInput(this.core, design);
+    this.input = deviceInput(core, store.now.device);
     this.chosen = middleOf(this.input.spots);
     this.felt = new Felt(this.paper.width, this.input.spots);
+    this.felt.setDark(this.look.dark);
     this.skin = new Skin(this.input.spots.length);
     this.judge = new Thread(program);
     this.session = new Session(new Pins(program), this.judge, this.input, this.paper.raster, {
       sampled: (samples, hand) => this.sampled(samples, hand),
-      judged: (lines, falseLines) => this.judged(lines, falseLines),
+      judged: (lines) => this.judged(lines),
       began: () => this.began(),
-      failed: (words) => this.readouts.say(words),
+      failed: (words) => this.say(words),
     });
-    this.controls = new Controls(design, (changed) => this.setDesign(changed));
+    this.controls = new Controls((device, kind) => this.change({ device, hand: null }, kind));
+    this.tasks = new TaskCard((task) => this.change({ task, print: this.printOf(task), hand: null }));
+    this.outcomes = new Outcomes((line) => this.showLine(line));
+    this.playback = new Playback(() => this.wake());
     this.drawings = new Drawings(
       this.paper,
       this.felt,
@@ -106,76 +105,212 @@ export class ReadView {
       (pin) => this.choosePin(pin),
     );
     this.hand = this.handControl();
-    this.tasks = TASKS.map((task, i) =>
-      h(
-        "button",
-        { type: "button", "aria-pressed": "false", onclick: () => this.setTask(i) },
-        h("b", {}, `${i + 1} · ${task.name}`),
-        h("span", {}, task.what),
-        h("em", { role: "status" }),
-      ),
-    );
+    this.toolbar = new Toolbar({
+      text: (text) => this.change({ print: { kind: "text", text }, task: 0, hand: null }, "text"),
+      pen: (on) => this.setPen(on),
+      clear: () => this.change({ print: { kind: "drawing", strokes: [] }, hand: null }),
+      ruler: (on) => {
+        this.hand.ruler = on;
+      },
+      slowness: (slowness) => this.change({ slowness, hand: null }),
+      feedback: this.feedback,
+    });
+    this.element = h("div", { class: "read", hidden: true }, this.layout());
+    this.pins.addEventListener("change", () => this.choosePin(Number(this.pins.value)));
     this.fillPins();
-    this.element = h("div", { class: "read" }, this.header(), this.layout());
-    this.listen();
+    store.listen(() => void this.update());
+    onLook(() => this.setLook());
+    addEventListener("resize", () => this.reshape());
+    this.reshape();
   }
 
-  /** Begins: a demonstration runs until someone takes the hand. */
-  start(): void {
-    if (this.frame) return;
-    const step = (now: number): void => {
-      this.frame = requestAnimationFrame(step);
-      this.step(now);
-    };
-    this.frame = requestAnimationFrame(step);
-    if (!this.session.hand.count) this.demonstrate();
+  get state(): ReadState {
+    return this.store.now;
+  }
+  private get hidden(): boolean {
+    return this.element.hidden === true;
+  }
+
+  show(): void {
+    this.element.hidden = false;
+    document.title = "Read – pindrive studio";
+    void this.update();
+    this.wake();
+  }
+
+  hide(): void {
+    this.element.hidden = true;
+    if (this.phase === "reading") this.ended();
+    if (this.phase === "demonstration") this.setPhase("waiting");
+  }
+
+  private change(change: Partial<ReadState>, kind = ""): void {
+    this.store.change({ ...this.state, ...change }, kind);
+  }
+
+  // ---- the state is shown ------------------------------------------------------------------------
+
+  /** Shows what is another in the state. */
+  private async update(): Promise<void> {
+    if (this.hidden) return;
+    const [before, now] = [this.last, this.state];
+    this.last = now;
+    if (before === now) return;
+    this.toolbar.update(now);
+    this.tasks.show(now.task);
+    this.controls.update(now.device);
+    if (before?.print !== now.print) {
+      await this.setPrint(now.print);
+      if (this.state !== now) return; // another call shows what has changed meanwhile
+    }
+    if (before?.device !== now.device) this.setDevice(now.device);
+    const same =
+      before && (["print", "device", "slowness"] as const).every((key) => before[key] === now[key]);
+    if (now.hand && now.hand === this.kept && same) this.draw();
+    else if (now.hand) this.keep(now.hand);
+    else if (!same || before.hand) this.restart();
+  }
+
+  private async setPrint(print: Print): Promise<void> {
+    const { paper } = this;
+    switch (print.kind) {
+      case "text":
+        paper.text(print.text || " ");
+        break;
+      case "lines":
+        paper.lines(print.lines);
+        break;
+      case "drawing":
+        paper.drawing(print.strokes);
+        break;
+      case "picture":
+        try {
+          paper.show(await rasterOf(print.raster), print.raster.title);
+        } catch {
+          this.say("The page of the reading is spoiled.");
+        }
+    }
+    this.felt.setWidth(paper.width);
+    this.reshape();
+    this.session.setPage(paper.raster);
+  }
+
+  private reshape(): void {
+    this.drawings.reshape(isNarrow());
+  }
+
+  private setDevice(device: Design): void {
+    const pins = this.input.spots.length;
+    this.input = deviceInput(this.core, device);
+    this.session.setDevice(this.input);
+    this.felt.setSpots(this.input.spots);
+    if (this.input.spots.length !== pins) {
+      this.chosen = middleOf(this.input.spots);
+      this.fillPins();
+    }
+    this.picture = null;
     this.askLimits();
   }
 
-  stop(): void {
-    cancelAnimationFrame(this.frame);
-    this.frame = 0;
-  }
-
-  say(problem: string): void {
-    this.readouts.say(problem);
-  }
-
-  private demonstrate(): void {
+  /** Begins anew: with a demonstration, until there was a first reading, or with a hand that waits. */
+  private restart(): void {
+    this.playback.close();
+    this.kept = null;
     const { x, y } = Demonstration.start;
-    this.session.begin(1e-3 * x, 1e-3 * y);
+    this.session.begin(1e-3 * x, 1e-3 * y, this.state.slowness);
     const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
-    if (!still) this.hand.demonstrate(this.session.hand.slowness);
+    const shows = !still && !this.store.canUndo && this.phase !== "reading";
+    if (shows) this.hand.demonstrate(this.state.slowness);
+    this.setPhase(shows ? "demonstration" : "waiting");
   }
 
-  // ---- time ----------------------------------------------------------------------------------------
+  /** Shows a reading that was kept, at its end. */
+  private keep(hand: HandRows): void {
+    this.kept = hand;
+    this.session.repeat(hand, this.state.slowness);
+    this.setPhase("kept");
+    this.playback.open(this.session.hand.end, this.session.hand.end);
+  }
 
-  private step(now: number): void {
-    const { session, hand } = this;
-    if (session.repeating) {
-      if (!this.repeatFrom) return;
-      const time = ((now - this.repeatFrom) * 1e-3) / (REPEATED * session.hand.slowness);
-      session.seek(time);
-      this.scrub.value = String((1000 * time) / session.hand.end);
-      if (time >= session.hand.end) this.repeatFrom = 0;
-      return;
+  private setPhase(phase: Phase): void {
+    this.phase = phase;
+    if (phase !== "demonstration") this.hand.demonstration = null;
+    this.wake();
+    this.draw();
+    this.tell();
+  }
+
+  // ---- time --------------------------------------------------------------------------------------
+
+  /** Lets time go on until nothing moves. */
+  private wake(): void {
+    if (this.frame || this.hidden) return;
+    const step = (now: number): void => {
+      this.frame = !this.hidden && this.step(now) ? requestAnimationFrame(step) : 0;
+    };
+    this.frame = requestAnimationFrame(step);
+  }
+
+  /** Shows the time until now; false if nothing moves any more. */
+  private step(now: number): boolean {
+    const { session, hand, playback } = this;
+    const { slowness } = this.state;
+    if (this.phase === "kept") {
+      playback.step(now, slowness);
+      session.seek(playback.wanted);
+      return playback.playing || session.time !== playback.wanted;
     }
     const aim = (wall: number): { x: number; y: number } => {
-      const { x, y } = hand.aim(wall, session.hand.slowness);
+      const { x, y } = hand.aim(wall, slowness);
       return { x: 1e-3 * x, y: 1e-3 * y };
     };
-    session.follow(now, aim, () => hand.straight);
-    if (hand.demonstration?.ended(now)) this.demonstrate();
+    const moves = session.follow(now, aim, () => hand.straight);
+    if (hand.demonstration?.ended(now)) this.setPhase("waiting");
+    if (this.phase === "reading" && session.full) {
+      this.ended();
+      this.say("The reading is full, and was kept. Press on the page for the next one.");
+    }
+    if (this.phase === "ending" && !moves && !session.waits) this.finish();
+    return moves || session.waits || hand.driven || this.phase === "demonstration";
   }
 
-  // ---- what comes back -----------------------------------------------------------------------------
+  // ---- a reading ---------------------------------------------------------------------------------
+
+  private taken({ x, y }: Spot): void {
+    if (this.phase === "ending") this.finish();
+    this.playback.close();
+    this.say("");
+    this.kept = null;
+    this.session.begin(1e-3 * x, 1e-3 * y, this.state.slowness);
+    this.tasks.began();
+    this.setPhase("reading");
+  }
+
+  /** The hand is let go: the reading is finished when the pins are at rest. */
+  private ended(): void {
+    const { start, last } = this.session.hand;
+    const went = Math.hypot(last.x - start.x, last.y - start.y) > SHORTEST || this.lines.length > 0;
+    if (went) this.setPhase("ending");
+    else if (this.state.hand) this.keep(this.state.hand);
+    else this.setPhase("waiting");
+  }
+
+  /** Keeps the reading that was made. */
+  private finish(): void {
+    const { session } = this;
+    session.keep();
+    this.phase = "kept";
+    this.kept = session.hand.saved;
+    this.change({ hand: this.kept });
+    this.playback.open(session.hand.end, session.time);
+    this.draw();
+  }
 
   private began(): void {
     this.felt.clear();
     this.skin.begin(this.input.spots.length);
-    this.lines = [];
-    this.readouts.showLines([], 0);
-    this.readouts.say("");
+    if (!this.session.repeating) this.lines = [];
+    this.showLines();
   }
 
   private sampled(samples: readonly Sample[], hand: Hand): void {
@@ -187,7 +322,7 @@ export class ReadView {
     }
     this.felt.paint(samples, hand);
     const motion = hand.at(last.time);
-    const values = valuesOf(this.design);
+    const values = valuesOf(this.state.device);
     const axis = (values["array.axis"] as number | undefined) ?? 0;
     this.picture = {
       sample: last,
@@ -203,31 +338,71 @@ export class ReadView {
     const speed = 1e3 * speedOf(motion);
     this.speed += 0.25 * (speed - this.speed);
     this.peak = Math.max(0.985 * this.peak, speed);
+    if (this.session.repeating) this.showLines();
     this.draw();
-    this.readouts.tell(this.picture, this.waiting);
-    this.readouts.showSpeed(this.speed, this.session.hand.slowness, this.limits);
+    this.tell();
+    this.readouts.showSpeed(this.speed, this.state.slowness, this.limits);
   }
 
+  /** Says what happens now. */
+  private tell(): void {
+    const moved = this.phase === "reading" || this.phase === "demonstration" || this.playback.playing;
+    this.readouts.tell(this.picture, this.waiting, moved);
+  }
+
+  private judged(lines: readonly Line[]): void {
+    this.lines = lines;
+    this.showLines();
+    if (this.phase === "demonstration") return;
+    const { hand, samples } = this.session;
+    const { chosen, limits } = this;
+    this.tasks.judge(lines, hand, { limits, samples, chosen, ratio: dampingRatio(this.state.device.values) });
+    this.draw();
+  }
+
+  /** The lines until the time that is shown. */
+  get evaluated(): readonly Line[] {
+    const { session, lines } = this;
+    return session.repeating ? lines.filter(({ time }) => time <= session.time) : lines;
+  }
+
+  private showLines(): void {
+    this.readouts.showLines(this.evaluated);
+    this.outcomes.update(this.phase === "kept" ? this.lines : this.evaluated);
+  }
+
+  /** Shows the moment of a line. */
+  private showLine({ pin, time }: Line): void {
+    if (this.phase === "reading" || this.phase === "ending") this.finish();
+    this.choosePin(pin);
+    this.playback.goTo(time);
+  }
+
+  /** The sentence while nothing happens. */
   private get waiting(): string {
-    if (this.hand.demonstration) return "Watch one stroke, or take the hand: move the pointer over the page.";
-    return innerWidth < 600
-      ? "Drag a finger across here, from left to right: the hand moves as much as your finger, like a mouse."
+    if (this.phase === "demonstration") return "Watch one stroke, or take the hand.";
+    if (this.phase === "kept" || this.phase === "ending")
+      return "The reading is finished: Play shows it again, Save and Share keep it.";
+    return isNarrow()
+      ? "Drag a finger across the print, from left to right."
       : "Move across the print, from left to right.";
   }
 
-  private judged(lines: readonly Line[], falseLines: number): void {
-    this.lines = lines;
-    this.readouts.showLines(lines, falseLines);
-    const { hand, samples } = this.session;
-    const { chosen, limits } = this;
-    const ratio = dampingRatio(this.design.values);
-    const said = TASKS[this.task]?.verdict({ lines, hand, limits, samples, chosen, ratio });
-    if (said) this.tasks[this.task]!.querySelector("em")!.textContent = said;
-  }
-
-  /** Lines of the reading so far, as they were evaluated last. */
-  get evaluated(): readonly Line[] {
-    return this.lines;
+  /** Words over the page. */
+  private get notice(): string {
+    if (this.hand.pen) return this.paper.title === "a drawing" ? "" : "Draw here";
+    const narrow = isNarrow();
+    switch (this.phase) {
+      case "demonstration":
+        return `Demonstration: ${narrow ? "drag" : "move over the page"} to take the hand`;
+      case "waiting":
+        return narrow ? "Drag a finger across to read" : "Move across the page to read it";
+      case "kept":
+        if (this.playback.playing) return "";
+        return narrow ? "Finished. Drag to read again" : "Finished. Press on the page to read again";
+      default:
+        return "";
+    }
   }
 
   private askLimits(): void {
@@ -248,85 +423,67 @@ export class ReadView {
   }
 
   private draw(): void {
+    if (this.hidden) return;
     const { look, picture, speed, peak, limits } = this;
-    const { "array.spot_scale": _, ...places } = valuesOf(this.design);
+    const { "array.spot_scale": _, ...places } = valuesOf(this.state.device);
     this.drawings.draw({
       look,
-      picture: picture && { ...picture, chosen: this.chosen },
+      picture: picture && { ...picture, look, colors: colorsOf(look), chosen: this.chosen },
       places: spotsOf(this.core, places),
       samples: this.session.samples,
       threshold: this.input.numbers["control.threshold"] ?? 0.5,
-      demonstration: this.hand.demonstration !== null,
+      notice: this.notice,
+      lines: this.phase === "demonstration" ? [] : this.evaluated,
+      pen: this.hand.pen,
       speed,
       peak,
       limits,
     });
   }
 
-  // ---- changes -------------------------------------------------------------------------------------
-
-  /** Another device, or other values of this one: the reading begins anew where the hand is. */
-  private setDesign(design: Design): void {
-    const pins = this.input.spots.length;
-    this.design = design;
-    this.input = deviceInput(this.core, design);
-    this.session.setDevice(this.input);
-    this.felt.setSpots(this.input.spots);
-    if (this.input.spots.length !== pins) {
-      this.chosen = middleOf(this.input.spots);
-      this.fillPins();
-    }
-    this.picture = null;
-    this.restart();
-    this.askLimits();
-  }
-  /** The device of another view, or of a file. */
-  open(design: Design): void {
-    this.controls.setDesign(design);
-    this.setDesign(design);
+  private setLook(): void {
+    this.look = currentLook();
+    this.felt.setDark(this.look.dark);
+    this.draw();
   }
 
-  private restart(): void {
-    this.endReplay();
-    if (this.hand.demonstration) {
-      this.demonstrate();
-      return;
-    }
-    const { x, y } = this.session.hand.at(this.session.time);
-    this.session.begin(x, y);
-  }
+  // ---- what the person does ----------------------------------------------------------------------
 
-  private setPage(): void {
-    this.session.setPage(this.paper.raster);
-    this.restart();
-  }
-
-  private setTask(number: number): void {
-    this.task = number;
-    this.tasks.forEach((element, i) => {
-      element.setAttribute("aria-pressed", String(i === number));
-      element.querySelector("em")!.textContent = i === number ? "Move over the page." : "";
+  private handControl(): HandControl {
+    return new HandControl(this.drawings.sheet.element, {
+      width: () => this.paper.width,
+      place: () => {
+        const { x, y } = this.session.hand.last;
+        return { x: 1e3 * x, y: 1e3 * y };
+      },
+      reads: () => this.phase === "reading",
+      free: () => this.phase === "waiting" || this.phase === "demonstration",
+      taken: (at) => this.taken(at),
+      moved: () => this.wake(),
+      ended: () => this.ended(),
+      drawn: (from, to) => {
+        this.paper.draw(from, to);
+        this.draw();
+      },
+      printed: (stroke) => {
+        const { print } = this.state;
+        const strokes = print.kind === "drawing" ? print.strokes : [];
+        this.change({ print: { kind: "drawing", strokes: [...strokes, stroke] }, hand: null });
+      },
     });
-    const page = TASKS[number]!.page(this.paper.width);
-    if (typeof page === "string") {
-      this.text.value = page;
-      this.paper.text(page);
-    } else this.paper.lines(page);
-    this.setPage();
   }
 
-  private setSlowness(slowness: Slowness): void {
-    this.session.hand.slowness = slowness;
-    this.restart();
-  }
-
+  /** A pen draws on a blank page, or on the drawing that is there. */
   private setPen(on: boolean): void {
     this.hand.pen = on;
     this.drawings.sheet.element.classList.toggle("pen", on);
-    if (!on) return;
-    this.hand.demonstration = null;
-    this.paper.blank();
-    this.setPage();
+    if (on && this.state.print.kind !== "drawing")
+      this.change({ print: { kind: "drawing", strokes: [] }, task: 0, hand: null });
+    else this.draw();
+  }
+
+  private printOf(task: number): Print {
+    return TASKS[task]!.page(this.paper.usual);
   }
 
   /** Opens "One release" with the motion of the chosen pin. */
@@ -334,7 +491,7 @@ export class ReadView {
     const { hand } = this.session;
     const load = await this.session.load(this.chosen);
     if (load && this.picture) {
-      this.showRelease(pinDesign(this.design, hand, this.picture.axis, load, this.chosen));
+      this.openRelease(pinDesign(this.state.device, hand, this.picture.axis, load, this.chosen));
     }
   }
 
@@ -351,167 +508,23 @@ export class ReadView {
     this.pins.replaceChildren(...numbers);
   }
 
-  // ---- readings and files --------------------------------------------------------------------------
-
-  get reading(): SavedReading {
-    const { raster: page, title } = this.paper;
-    return { device: deviceFile(this.design), page, title, hand: this.session.hand.saved };
+  togglePlayer(): void {
+    if (this.phase === "kept") this.playback.toggle();
   }
 
-  /** Shows a reading that was saved, and repeats it. */
-  private show(reading: SavedReading, file: string): void {
-    const design = designOf(this.core, { text: reading.device, file, rows: {} });
-    this.paper.show(reading.page, reading.title);
-    this.session.setPage(this.paper.raster);
-    this.open(design);
-    this.replay(reading.hand);
-  }
-
-  private repeat(): void {
-    const { saved } = this.session.hand;
-    if (this.session.repeating) this.restart();
-    else if (saved.rows.length > 1) this.replay(saved);
-  }
-
-  private replay(hand: SavedReading["hand"]): void {
-    this.hand.demonstration = null;
-    this.session.repeat(hand);
-    this.scrub.hidden = false;
-    this.again.textContent = "End replay";
-    this.repeatFrom = performance.now();
-  }
-  private endReplay(): void {
-    this.scrub.hidden = true;
-    this.again.textContent = "Replay";
-    this.repeatFrom = 0;
-  }
-
-  /** Opens a device file, a saved reading or a picture; what is wrong is said in words. */
-  async takeFile(file: File): Promise<void> {
-    const { name } = file;
-    try {
-      if (/\.json$/i.test(name)) this.show(await readingOf(await file.text()), name);
-      else if (/\.toml$/i.test(name))
-        this.open(designOf(this.core, { text: await file.text(), file: name, rows: {} }));
-      else await this.takePicture(file);
-    } catch (error) {
-      this.say(error instanceof DeviceError ? error.message : `${name}: ${(error as Error).message}`);
-    }
-  }
-  /** Opens the reading of a link. */
-  async takeLink(packed: string): Promise<void> {
-    try {
-      this.show(await readingOfHash(packed), "the link");
-    } catch (error) {
-      this.say(error instanceof DeviceError ? error.message : "the link holds no reading, or is cut off");
+  async save(kind: string): Promise<void> {
+    const { paper, session, state } = this;
+    const device = deviceFile(state.device);
+    const name = fileName(paper.title);
+    if (kind === "device") download("device.toml", device, "application/toml");
+    if (kind === "file") {
+      const page = await packedRaster(paper.raster, paper.title);
+      const reading = { format: FORMAT, device, page, hand: session.hand.saved };
+      download(`${name}.json`, JSON.stringify(reading), "application/json");
     }
   }
 
-  private async takePicture(file: File): Promise<void> {
-    await this.paper.picture(file, file.name);
-    this.setPage();
-  }
-
-  private async save(kind: string): Promise<void> {
-    const { reading } = this;
-    const name = fileName(this.paper.title);
-    if (kind === "file") download(`${name}.json`, await readingText(reading), "application/json");
-    if (kind === "device") download("device.toml", reading.device, "application/toml");
-    if (kind === "link") {
-      history.replaceState(null, "", `#read=${await readingHash(reading)}`);
-      await navigator.clipboard?.writeText(location.href).catch(() => undefined);
-      this.readouts.spoken.textContent = "The link is in the address bar.";
-    }
-  }
-
-  // ---- the parts of the page -----------------------------------------------------------------------
-
-  private listen(): void {
-    this.scrub.addEventListener("input", () => {
-      this.repeatFrom = 0;
-      this.session.seek((Number(this.scrub.value) / 1000) * this.session.hand.end);
-    });
-    this.pins.addEventListener("change", () => this.choosePin(Number(this.pins.value)));
-    this.text.addEventListener("input", () => {
-      this.paper.text(this.text.value || " ");
-      this.setPage();
-    });
-    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
-      this.look = currentLook();
-    });
-  }
-
-  private handControl(): HandControl {
-    return new HandControl(this.drawings.sheet.element, {
-      width: this.paper.width,
-      shown: () => this.drawings.sheet.width,
-      place: () => {
-        const { x, y } = this.session.hand.last;
-        return { x: 1e3 * x, y: 1e3 * y };
-      },
-      repeating: () => this.session.repeating,
-      taken: ({ x, y }) => {
-        this.endReplay();
-        this.session.begin(1e-3 * x, 1e-3 * y);
-      },
-      drawn: (from, to) => {
-        this.paper.draw(from, to);
-        this.draw();
-      },
-      printed: () => {
-        this.paper.printed();
-        this.setPage();
-      },
-    });
-  }
-
-  private header(): HTMLElement {
-    const save = menu(
-      "Save as",
-      [
-        ["file", "Reading (JSON)"],
-        ["device", "Device file (TOML)"],
-      ],
-      (kind) => void this.save(kind),
-    );
-    const share = button("Share", "A link to this reading, in the clipboard", () => void this.save("link"));
-    const open = button(
-      "Open …",
-      "A picture of a page, a saved reading (JSON), or a device file (TOML)",
-      () => choose("image/*,.json,.toml", (file) => void this.takeFile(file)),
-    );
-    const buttons = h("div", { class: "buttons" }, open, save, share, help("read"));
-    return h(
-      "header",
-      {},
-      h("h1", { title: `pindrive ${TABLES.version}` }, "pindrive studio"),
-      navigation("read"),
-      buttons,
-    );
-  }
-
-  private toolbar(): HTMLElement {
-    const times = h("fieldset", { class: "group" }, h("legend", { class: "visually-hidden" }, "time runs"));
-    for (const slowness of SLOWNESS) {
-      const usual = slowness === this.session.hand.slowness;
-      const radio = h("input", { type: "radio", name: "slowness", value: slowness, checked: usual });
-      radio.addEventListener("change", () => this.setSlowness(slowness));
-      times.append(h("label", {}, radio, slowness === 1 ? "real time" : `${slowness}× slower`));
-    }
-    const pen = toggle("Draw", "Draw on the page", (on) => this.setPen(on));
-    const ruler = toggle("Along a ruler", "The hand keeps its height", (on) => {
-      this.hand.ruler = on;
-    });
-    const sound = toggle("Sound", "A short tone, on its side, for each pin that moves the skin", (on) => {
-      this.feedback.sound = on;
-    });
-    const vibration = toggle("Vibration", "A short vibration of this device when skin is moved", (on) => {
-      this.feedback.vibration = on;
-    });
-    vibration.hidden = !VIBRATES;
-    const text = h("label", {}, "Text ", this.text);
-    return h("div", { class: "toolbar" }, text, pen, ruler, this.again, sound, vibration, times);
-  }
+  // ---- the parts ---------------------------------------------------------------------------------
 
   private layout(): HTMLElement {
     const { drawings, readouts } = this;
@@ -520,19 +533,18 @@ export class ReadView {
       "Read with your own hand",
       h(
         "p",
-        { class: "what" },
+        { class: "what intro" },
         "Under your fingertip are pins. Where one crosses black, its ",
         h("span", { class: "magnet" }, "magnet"),
         " clamps it to the page, and the moving hand leaves it behind: ",
         h("span", { class: "dragged" }, "that is what you feel"),
         ".",
       ),
-      readouts.problem,
-      this.toolbar(),
+      this.toolbar.element,
       drawings.sheet.element,
       readouts.now,
       readouts.spoken,
-      this.scrub,
+      this.playback.element,
       drawings.image.element,
       h(
         "p",
@@ -543,40 +555,34 @@ export class ReadView {
         h("span", { class: "thrown" }, "thrown past its rest"),
         ", where its sensor was; the print in outline.",
       ),
+      this.outcomes.element,
     );
-    const openPin = button(
+    const openPin = h(
+      "button",
+      {
+        type: "button",
+        title: "The whole motion of this pin, in One release",
+        onclick: () => void this.openPin(),
+      },
       "Open its motion",
-      "The whole motion of this pin, in One release",
-      () => void this.openPin(),
     );
-    const tasks = card("tasks-card", "Tasks", h("div", { class: "choices" }, ...this.tasks));
+    const [tip, side] = drawings.cards(h("div", { class: "toolbar" }, this.pins, openPin));
+    const change = card("device-card", "Change the device under your hand", this.controls.element);
     return h(
       "main",
       { class: "reading" },
-      h("div", { class: "column" }, page, tasks),
-      h(
-        "div",
-        { class: "column" },
-        ...drawings.cards(h("div", { class: "toolbar" }, this.pins, openPin)),
-        readouts.card(drawings.dial.element),
-        card("device-card", "Change the device under your hand", this.controls.element),
-      ),
+      h("div", { class: "column" }, page, h("div", { class: "lower" }, side, change)),
+      h("div", { class: "column" }, this.tasks.element, tip, readouts.card(drawings.dial.element)),
     );
   }
+}
+
+function isNarrow(): boolean {
+  return innerWidth < 600;
 }
 
 /** The pin that is looked at first: the nearest to the middle. */
 function middleOf(spots: readonly Row[]): number {
   const apart = spots.map(([x, y]) => Math.hypot(x, y));
   return apart.indexOf(Math.min(...apart));
-}
-
-function toggle(text: string, title: string, change: (on: boolean) => void): HTMLButtonElement {
-  const made = button(text, title, () => {
-    const on = made.getAttribute("aria-pressed") !== "true";
-    made.setAttribute("aria-pressed", String(on));
-    change(on);
-  });
-  made.setAttribute("aria-pressed", "false");
-  return made;
 }
