@@ -233,9 +233,8 @@ pindrive_error pindrive_events(const pindrive_motion* motion, double from, doubl
   const pd::Motion<double> view = motion->values->view();
   pd::events(view, from, to, [&](double time, const pd::Segment<double>& s) {
     return filling.add([&](std::size_t i) {
-      // A rigid stop takes the velocity: what is told is that after it.
-      const bool at_stop = s.event.stop != pd::Transition::none;
-      const auto [segment, tau] = view.locate(s.end, at_stop ? pd::Side::right : pd::Side::left);
+      // After the event: a pin that turns or sticks has its velocity exactly, and a rigid stop takes it.
+      const auto [segment, tau] = view.locate(s.end, pd::Side::right);
       events[i] = {time,
                    pd::sampled_in(view, *segment, tau, pd::Sampled::position),
                    pd::sampled_in(view, *segment, tau, pd::Sampled::velocity),

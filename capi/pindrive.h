@@ -320,7 +320,7 @@ PINDRIVE_API pindrive_error pindrive_segment_of(const pindrive_motion* motion, s
 
 typedef struct pindrive_event {
   double time;               /* s */
-  double position, velocity; /* m, m/s; after it, where a rigid end stop takes the velocity */
+  double position, velocity; /* m, m/s; just after the event */
   pindrive_transition plate, finger, stop;
 } pindrive_event;
 

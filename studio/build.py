@@ -24,7 +24,7 @@ ROOT = STUDIO.parent
 BUILD = STUDIO / "build"
 PAGE = ROOT / "src" / "pindrive" / "studio.html"
 BIOME = "node_modules/@biomejs/biome/bin/biome"
-WRAPPERS = ("core.ts", "read/scan.ts")
+WRAPPERS = ("core.ts", "memory.ts", "motion.ts", "read/scan.ts")
 """The files that call the core."""
 BESIDE = ("malloc", "free")
 """What the page calls of the core beside pindrive.h."""

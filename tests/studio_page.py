@@ -5,6 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 import pindrive as pd
 from command import EXAMPLE
 
@@ -21,6 +23,21 @@ VALUES = "pindrive.release.state.designs[pindrive.release.state.current].values"
 def settled(page: Any) -> None:
     """After what was asked is drawn."""
     page.evaluate(FRAMES)
+
+
+def until(page: Any, expression: str, timeout: int = 10_000) -> None:
+    """Waits until an expression is true: the page allows no script of its watchers."""
+    for _ in range(timeout // 50):
+        if page.evaluate(f"Boolean({expression})"):
+            return
+        page.wait_for_timeout(50)
+    pytest.fail(f"not true in {timeout} ms: {expression}")
+
+
+def choose_example(page: Any, name: str) -> None:
+    """Choose an example of the view that is shown."""
+    page.locator("header .menu summary").first.click()
+    page.locator("header .menu").first.get_by_role("button", name=name, exact=True).click()
 
 
 def value(page: Any, key: str) -> Any:

@@ -1,5 +1,6 @@
 // Answers of the core as text, for tests in Node and in a browser.
-import type { Core, Input } from "./core";
+import type { Core } from "./core";
+import type { Input } from "./input";
 
 /** Doubles as hexadecimal digits: JSON has no NaN, and text could hide a rounding. */
 export function bits(values: Iterable<number>): string {

@@ -1,7 +1,7 @@
 // Curves over time, one below the other, with a common time axis, cursor, phases and events.
 import uPlot from "uplot";
-import type { QuantityName } from "./core";
 import { h } from "./dom";
+import type { QuantityName } from "./motion";
 import type { Channel } from "./recording";
 import { columnAt, type Span } from "./sample";
 import { SERIES, unitOf } from "./table";

@@ -1,5 +1,5 @@
 // A design: the values that a device file gives, what follows from them, and what the core is given.
-import type { Core, Input, Rows, TimeFunction } from "./core";
+import type { Core } from "./core";
 import { type Device, readDevice } from "./device";
 import type { Given } from "./files";
 import {
@@ -13,6 +13,7 @@ import {
   type Value,
   type Values,
 } from "./friction";
+import type { Input, Rows, TimeFunction } from "./input";
 import { integralUntil, valueAt } from "./pieces";
 import { DRIVE, TABLES } from "./table";
 

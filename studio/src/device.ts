@@ -1,8 +1,9 @@
 // Device files: TOML with units, read into the values of a drive and its release, and written again.
 // What is wrong is said in the lines that the command prints: file, key, value and bound.
-import type { Core, Rows } from "./core";
+import type { Core } from "./core";
 import type { Value, Values } from "./friction";
 import { isFunctionTable, readFunction } from "./functions";
+import type { Rows } from "./input";
 import { nearest, unknownInFile } from "./names";
 import { quoted } from "./numbertext";
 import { DRIVE, INPUTS, type Quantity, TABLES } from "./table";

@@ -1,7 +1,8 @@
 // Derivatives of a number of the motion by each given parameter.
-import { type Core, CoreError } from "./core";
+import type { Core } from "./core";
 import { coreInput, direction, settlingBand, variedKeys } from "./design";
 import type { Values } from "./friction";
+import { CoreError } from "./memory";
 
 export interface Effect {
   readonly key: string;

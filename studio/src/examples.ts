@@ -27,7 +27,7 @@ function printed(print: ReadState["print"]): Made {
 /** Lines of four pitches, each half as wide as its pitch, mm. */
 const gratings: Made = (core, kept, width) => {
   const lines: PrintedLine[] = [];
-  let x = 3.5;
+  let x = 3;
   for (const pitch of [4, 3, 2, 1.5, 1]) {
     for (let i = 0; i < 3 && x + pitch < width - 2; ++i, x += pitch) lines.push([x, pitch / 2]);
     x += 1;

@@ -1,7 +1,7 @@
 // The curves as a picture for a paper: SVG, and PNG made of it.
 
 import { ticks, tickText } from "./canvas";
-import type { QuantityName } from "./core";
+import type { QuantityName } from "./motion";
 import { columnAt } from "./sample";
 import { SERIES, TABLES, unitOf } from "./table";
 import { currentCurves, curvesOf, eventPath, isOpen, type View } from "./view";

@@ -1,8 +1,9 @@
 // Files that come in: chosen, dropped, or given with the page. One reader knows each kind of them.
-import type { Core, Rows } from "./core";
+import type { Core } from "./core";
 import { type Design, designOf } from "./design";
 import { DeviceError, decodeText } from "./device";
 import { h } from "./dom";
+import type { Rows } from "./input";
 import { readingOf, type SavedReading } from "./read/saved";
 import { type Recording, RecordingError, readRecording } from "./recording";
 

@@ -1,8 +1,10 @@
 // A recording fitted: its time offset, and parameters by least squares with exact derivatives, from many starts.
 
-import { type Core, CoreError, type Motion, type QuantityName } from "./core";
+import type { Core } from "./core";
 import { coreInput, direction, isFunction, isRows, withValue } from "./design";
 import type { Values } from "./friction";
+import { CoreError } from "./memory";
+import type { Motion, QuantityName } from "./motion";
 import type { Channel, Recording } from "./recording";
 import { DRIVE } from "./table";
 

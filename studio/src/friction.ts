@@ -1,5 +1,5 @@
 // Friction by forces or by coefficients: what presses on a contact, and the forces that follow.
-import type { Rows, TimeFunction } from "./core";
+import type { Rows, TimeFunction } from "./input";
 import { DRIVE, TABLES } from "./table";
 
 export type Value = number | Rows | TimeFunction;

@@ -1,5 +1,7 @@
 // Functions of time in device files: tables of parameters or of pieces, and their sums.
-import { type Core, CoreError, type Part, type Piece, type Term, type TimeFunction } from "./core";
+import type { Core } from "./core";
+import type { Part, Piece, Term, TimeFunction } from "./input";
+import { CoreError } from "./memory";
 import { unknown } from "./names";
 import { floatRepr, quoted } from "./numbertext";
 import { type Quantity, TABLES } from "./table";

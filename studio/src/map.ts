@@ -1,9 +1,9 @@
 // A number over two parameters: the points of a grid, as the core takes them.
 
-import type { Input } from "./core";
 import { coreInput, settlingBand, withValue } from "./design";
 import type { Values } from "./friction";
 import { byCoefficient } from "./friction";
+import type { Input } from "./input";
 import { type MapTask, type Product, SIZE } from "./mapgrid";
 import { type Range, rangeOf, valueAt } from "./range";
 import { DRIVE, TABLES } from "./table";

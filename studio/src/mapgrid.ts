@@ -1,5 +1,6 @@
 // A map computed: the numbers of each point, and whether they keep the limits.
-import type { Core, Input, Rows } from "./core";
+import type { Core } from "./core";
+import type { Input, Rows } from "./input";
 
 export const SIZE = 64;
 

@@ -23,7 +23,10 @@ export class MapView {
   private readonly canvas: Canvas;
   private readonly image = document.createElement("canvas");
   private readonly words = h("p", { class: "note", id: "map-words" });
+  /** Values at the point under the pointer. */
+  private readonly pointed = h("output", { class: "note pointed" });
   private shown: MapShown | null = null;
+  private result: MapResult | null = null;
   private range: readonly [number, number] = [NaN, NaN];
   private ends: readonly [string, string] = ["", ""];
 
@@ -38,7 +41,7 @@ export class MapView {
     element.setAttribute("aria-roledescription", "map");
     element.setAttribute("aria-describedby", "map-words");
     element.tabIndex = 0;
-    this.element.append(element, this.words);
+    this.element.append(element, this.pointed, this.words);
     this.image.width = this.image.height = SIZE;
     const drag = (event: PointerEvent): void => {
       if (event.type === "pointerdown") element.setPointerCapture(event.pointerId);
@@ -48,7 +51,29 @@ export class MapView {
     };
     element.addEventListener("pointerdown", drag);
     element.addEventListener("pointermove", drag);
+    element.addEventListener("pointermove", (event) => this.point(event));
+    element.addEventListener("pointerleave", () => {
+      this.pointed.textContent = "";
+    });
     element.addEventListener("keydown", (event) => this.key(event));
+  }
+
+  /** Tells the number at the point of the grid under the pointer. */
+  private point(event: PointerEvent): void {
+    const { shown, result } = this;
+    if (!shown || !result) return;
+    const { left, top } = this.canvas.element.getBoundingClientRect();
+    const { width, height } = this.box;
+    const column = Math.round(((event.clientX - left - LEFT) / width) * SIZE - 0.5);
+    const row = Math.round((1 - (event.clientY - top - TOP) / height) * SIZE - 0.5);
+    const inside = [column, row].every((place) => place >= 0 && place < SIZE);
+    const at = (range: Range, place: number, key: string): string =>
+      text(DRIVE.get(key)!, valueAt(range, (place + 0.5) / SIZE));
+    const { x, y, axes, number } = shown;
+    const quantity = NUMBERS.get(number)!;
+    this.pointed.textContent = inside
+      ? `${text(quantity, result.values[row * SIZE + column]!)} at ${at(axes.x, column, x)}, ${at(axes.y, row, y)}`
+      : "";
   }
 
   setLook(look: Look): void {
@@ -68,6 +93,7 @@ export class MapView {
   }
 
   setResult(result: MapResult): void {
+    this.result = result;
     const finite = result.values.filter(Number.isFinite).sort();
     const [least, most] = [finite[0] ?? NaN, finite[finite.length - 1] ?? NaN];
     // A few points far out would take all the colours: the scale ends before them.

@@ -2,11 +2,12 @@
 import { readFileSync } from "node:fs";
 import { createInterface } from "node:readline";
 import { answerOf, bits } from "./answers";
-import { Core, type Input } from "./core";
+import { Core } from "./core";
 import { coreInput, direction, withValue } from "./design";
 import { DeviceError, decodeText, readDevice } from "./device";
 import { fit } from "./fit";
 import type { Values } from "./friction";
+import type { Input } from "./input";
 import { axesOf, gridValues, mapTask } from "./map";
 import { expanded, SIZE } from "./mapgrid";
 import { deviceInput } from "./read/device";

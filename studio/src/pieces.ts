@@ -1,5 +1,5 @@
 // Functions of time in pieces: their values and integrals.
-import type { Part, Piece, Term, TimeFunction } from "./core";
+import type { Part, Piece, Term, TimeFunction } from "./input";
 
 /** The piece at a time, s; before the first, the first at its begin. */
 function pieceAt(pieces: readonly Piece[], t: number): [Piece, number] {

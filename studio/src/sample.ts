@@ -1,16 +1,10 @@
 // Samples of motions for plots: columns at common times, with both limits at each event.
 
-import {
-  type Core,
-  CoreError,
-  type Motion,
-  type QuantityName,
-  type Segment,
-  type StopTransition,
-  type Transition,
-} from "./core";
+import type { Core } from "./core";
 import { coreInput, plateVelocity, settlingBand, valueFor } from "./design";
 import type { Values } from "./friction";
+import { CoreError } from "./memory";
+import type { Motion, QuantityName, Segment, StopTransition, Transition } from "./motion";
 
 export type EventKind = Exclude<Transition | StopTransition, "none">;
 export type ContactName = "plate" | "finger" | "both" | "stop";

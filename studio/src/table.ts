@@ -1,6 +1,6 @@
 // The table of quantities, generated from the one of the Python package, and how values are written.
 import generated from "../build/tables.json";
-import type { Rows } from "./core";
+import type { Rows } from "./input";
 
 export interface Bounds {
   readonly lower?: number;

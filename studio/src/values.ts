@@ -1,5 +1,5 @@
 // Values of device files: text with units, rows of two columns, and what is refused.
-import type { Row, Rows } from "./core";
+import type { Row, Rows } from "./input";
 import { floatRepr, general, quoted } from "./numbertext";
 import { columnsOf, type Quantity, required, TABLES } from "./table";
 import type { TomlValue } from "./toml";

@@ -1,8 +1,8 @@
 // Files that the page writes: device files (TOML), samples and events (CSV).
 
-import type { QuantityName } from "./core";
 import { type Design, isFunction, isRows } from "./design";
 import { functionText } from "./functions";
+import type { QuantityName } from "./motion";
 import { floatRepr, general } from "./numbertext";
 import type { Curves } from "./sample";
 import { columnsOf, DRIVE, type Quantity, SERIES, TABLES } from "./table";

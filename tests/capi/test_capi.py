@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.testing import assert_array_equal
+from numpy.testing import assert_allclose, assert_array_equal
 
 import pindrive as pd
 from c_interface import QUANTITIES, Event, Interface, Outcome, Segment, doubles
@@ -309,6 +309,11 @@ def test_a_thousand_random_drives_have_the_bits_of_python(c: Interface) -> None:
             *(events, c_size_t(capacity), byref(count)),
         )
         same([e.time for e in events[: count.value]], core.events(0.0, until, capacity)[0], number)
+        instants = np.array([e.time for e in events[: count.value]])
+        for name in ("position", "velocity"):
+            told = [getattr(e, name) for e in events[: count.value]]
+            # Of a cycle an event is evaluated in the first round.
+            assert_allclose(told, getattr(core, name)(instants, True), rtol=1e-12, atol=1e-15)
         at_stops = [e.velocity for e in events[: count.value] if e.stop]
         assert not any(at_stops) or case.numbers["stop_stiffness"] < inf
         stops += len(at_stops)

@@ -23,6 +23,7 @@ from pindrive.quantities.results import SERIES
 from studio_cases import NAMES, Ask, questions
 from studio_page import (
     VALUES,
+    choose_example,
     elastic_stops,
     numbers_shown,
     opened,
@@ -149,7 +150,7 @@ def test_displayed_values_equal_python(
     for shown_event, event in zip(events, motion.events, strict=True):
         for quantity in ("time", "position", "velocity"):
             given = getattr(event, quantity)
-            assert shown_event[quantity] == pytest.approx(given, rel=1e-12, abs=1e-15), quantity
+            assert shown_event[quantity] == pytest.approx(given, rel=1e-12, abs=1e-17), quantity
     rows = page.locator("section.events tbody tr").count()
     assert rows == min(len(motion.events), 100)
     kinds = {event.kind for event in motion.events}
@@ -586,18 +587,12 @@ def test_the_command_opens_a_device(browser: Any, page_file: Path) -> None:
     opened.context.close()
 
 
-def example(page: Any, name: str) -> None:
-    """Choose an example of the view that is shown."""
-    page.locator("header .menu summary").first.click()
-    page.locator("header .menu").first.get_by_role("button", name=name, exact=True).click()
-
-
 def test_examples_show_what_they_say(page: Any) -> None:
     names = page.locator("header .menu").first.locator("li button").all_text_contents()
     assert len(names) == 7
     summaries = {}
     for name in names:
-        example(page, name)
+        choose_example(page, name)
         settled(page)
         assert page.locator("#problem").is_hidden()
         assert len(page.locator(".introduction [role=status]").inner_text()) > 60
@@ -613,7 +608,7 @@ def test_examples_show_what_they_say(page: Any) -> None:
 
 def test_a_recording_among_the_examples_is_fitted(page: Any) -> None:
     """Values as printed by `pindrive fit` in docs/fitting.md."""
-    example(page, "A recording to be fitted")
+    choose_example(page, "A recording to be fitted")
     page.get_by_role("button", name="Fit", exact=True).click()
     settled(page)
     found = {
@@ -638,7 +633,7 @@ def test_a_recording_among_the_examples_is_fitted(page: Any) -> None:
 
 
 def test_a_fit_of_the_wrong_model_says_so(page: Any) -> None:
-    example(page, "A recording that needs skin")
+    choose_example(page, "A recording that needs skin")
     page.get_by_role("button", name="Fit", exact=True).click()
     settled(page)
     words = page.locator("#fit-words").inner_text()

@@ -13,20 +13,11 @@ from PIL import Image
 import pindrive as pd
 from command import EXAMPLES
 from pindrive.files.reading import load_reading
-from studio_page import settled
+from studio_page import settled, until
 
 AXE = Path(__file__).parents[2] / "studio" / "node_modules" / "axe-core" / "axe.min.js"
 READER = EXAMPLES / "tactile-reader.toml"
 HAND = "pindrive.read.session.hand"
-
-
-def until(page: Any, expression: str, timeout: int = 10_000) -> None:
-    """Waits until an expression is true: the page allows no script of its watchers."""
-    for _ in range(timeout // 50):
-        if page.evaluate(f"Boolean({expression})"):
-            return
-        page.wait_for_timeout(50)
-    pytest.fail(f"not true in {timeout} ms: {expression}")
 
 
 @pytest.fixture
@@ -231,11 +222,11 @@ def test_hostile_files_and_links_are_rejected_in_a_line(read: Any, tmp_path: Pat
 
 
 def test_sliders_change_the_device_and_its_limits(read: Any, tmp_path: Path) -> None:
-    until(read, "pindrive.read.limits.length === 4")
-    before = read.evaluate("pindrive.read.limits[1].speed")
+    until(read, "pindrive.read.display.limits.length === 4")
+    before = read.evaluate("pindrive.read.display.limits[1].speed")
     slider = read.get_by_label("Magnet lets go in")
     slider.evaluate("e => { e.value = 0.8; e.dispatchEvent(new Event('input')) }")
-    until(read, f"pindrive.read.limits[1].speed < 0.8 * {before}")
+    until(read, f"pindrive.read.display.limits[1].speed < 0.8 * {before}")
     path = saved(read, "device", tmp_path)
     fall = pd.load_device(path, whole=True).values()["magnet.fall_time"]
     assert fall == pytest.approx(5e-3 * 8**0.8, rel=1e-2)

@@ -1,8 +1,9 @@
 // The device of a design as the core takes it: the values of its keys, and the spots of its pins.
-import type { Core, Row, Rows } from "../core";
+import type { Core } from "../core";
 import type { Design } from "../design";
 import { settingsOf } from "../device";
 import type { Value } from "../friction";
+import type { Row, Rows } from "../input";
 import type { DeviceInput } from "./scan";
 
 const OF_THE_DEVICE = ["drive", "plate", "finger", "magnet", "control", "criteria"];

@@ -1,7 +1,7 @@
 // The drawings of the view: page, tactile image, fingertip, the chosen pin, and the dial.
 import { Canvas } from "../canvas";
-import type { Row } from "../core";
 import { card, h } from "../dom";
+import type { Row } from "../input";
 import type { Look } from "../theme";
 import { DIAL_HEIGHT, drawDial, type Limit } from "./dial";
 import type { Felt } from "./felt";

@@ -1,5 +1,6 @@
 // The device of a page, simulated live: tasks of a worker, and its answers.
-import type { Core, Piece } from "../core";
+import type { Core } from "../core";
+import type { Piece } from "../input";
 import { Device, type DeviceInput, type Line, type Raster, Scan, type SpeedLimit, type Start } from "./scan";
 
 /** Quantities of each sample, in their order. */

@@ -1,5 +1,5 @@
 // Reading without eyes: a short tone on the side of each pin that moves the skin, and a short vibration.
-import type { Row } from "../core";
+import type { Row } from "../input";
 
 const FELT = 0.5; // part of a full change of skin stretch that is announced
 const TONE = 0.03; // s

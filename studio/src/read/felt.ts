@@ -1,7 +1,7 @@
 // The tactile image: each pin paints how far it was dragged where its spot was. A pin that friction holds off its
 // rest moves no skin, and paints nothing.
 
-import type { Row } from "../core";
+import type { Row } from "../input";
 import type { Hand } from "./hand";
 import { HEIGHT, RESOLUTION } from "./paper";
 import type { Sample } from "./session";
@@ -39,6 +39,8 @@ export class Felt {
   private positions: ArrayLike<number> = [];
   /** Side of its rest to which each pin was dragged last: 1, -1, or 0 before it was dragged. */
   private sides: number[] = [];
+  /** Place off its rest where friction holds each pin since it was dragged; NaN: it has not stopped yet. */
+  private bases: number[] = [];
   private forward: string[] = [];
   private back: string[] = [];
   /** Half the width of a stroke, mm. */
@@ -77,6 +79,7 @@ export class Felt {
     this.pen.clearRect(0, 0, this.canvas.width, this.canvas.height);
     this.last = null;
     this.sides = this.spots.map(() => 0);
+    this.bases = this.spots.map(() => 0);
   }
 
   paint(samples: readonly Sample[], hand: Hand): void {
@@ -101,11 +104,11 @@ export class Felt {
   private dragged(pin: number, values: Sample["values"], lasts: number): number {
     const position = values.position[pin]!;
     if (values.pull[pin]! > PULLED) {
-      this.sides[pin] = Math.sign(position);
+      [this.sides[pin], this.bases[pin]] = [Math.sign(position), NaN];
       return Math.abs(position);
     }
-    const still = Math.abs(position - this.positions[pin]!) < MOVING * lasts;
-    return still ? 0 : position * this.sides[pin]!;
+    if (Math.abs(position - this.positions[pin]!) < MOVING * lasts) this.bases[pin] = position;
+    return (position - (this.bases[pin] || 0)) * this.sides[pin]!;
   }
 
   private stroke(from: { x: number; y: number }, to: { x: number; y: number }, dragged: number): void {

@@ -1,5 +1,5 @@
 // The fingertip from above with the true pitch of its pins, each tinted by the change of its skin stretch.
-import type { Row } from "../core";
+import type { Row } from "../input";
 import { disc, magnetRing, offsetOf, type Pen, type Picture, ring } from "./picture";
 
 const PIN = 0.75e-3; // m

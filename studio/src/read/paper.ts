@@ -22,14 +22,15 @@ export class Paper {
   /** The print in outline. */
   readonly outline = new OffscreenCanvas(1, 1);
   private readonly pen = this.canvas.getContext("2d", { willReadFrequently: true })!;
-  raster!: Raster;
+  raster: Raster = { grey: new Uint8Array([255]), rows: 1, columns: 1, pixel: 1e-3 / RESOLUTION };
   /** Description for reports and screen readers. */
   title = "blank paper";
   /** Width, mm. */
   width = 0;
 
+  /** Blank paper of a usual width, mm. */
   constructor(readonly usual: number) {
-    this.text("");
+    this.clear(usual);
   }
 
   text(words: string): void {
@@ -89,9 +90,11 @@ export class Paper {
     const { rows, columns, grey, pixel } = raster;
     const [own, pen] = canvasOf(columns, rows);
     const picture = pen.createImageData(columns, rows);
-    grey.forEach((shade, i) => {
-      picture.data.set([shade, shade, shade, 255], 4 * i);
-    });
+    const { data } = picture;
+    for (let i = 0; i < grey.length; ++i) {
+      data[4 * i] = data[4 * i + 1] = data[4 * i + 2] = grey[i]!;
+      data[4 * i + 3] = 255;
+    }
     pen.putImageData(picture, 0, 0);
     const scale = pixel * 1e3 * RESOLUTION;
     this.pen.drawImage(own, 0, 0, columns * scale, rows * scale);
@@ -158,6 +161,7 @@ function canvasOf(columns: number, rows: number): [OffscreenCanvas, OffscreenCan
 export function rasterOfCanvas(pen: OffscreenCanvasRenderingContext2D): Raster {
   const { width: columns, height: rows } = pen.canvas;
   const { data } = pen.getImageData(0, 0, columns, rows);
-  const grey = Uint8Array.from({ length: rows * columns }, (_, i) => data[4 * i]!);
+  const grey = new Uint8Array(rows * columns);
+  for (let i = 0; i < grey.length; ++i) grey[i] = data[4 * i]!;
   return { grey, rows, columns, pixel: 1e-3 / RESOLUTION };
 }

@@ -1,5 +1,5 @@
 // Picture that all drawings show: the pins now, the hand, colours and marks.
-import type { Row } from "../core";
+import type { Row } from "../input";
 import type { Look } from "../theme";
 import type { Motion } from "./hand";
 import type { Sample } from "./session";

@@ -1,7 +1,8 @@
 // One pin of a reading as a release: its inputs over time, from springs at rest.
-import type { Piece, Row, Rows } from "../core";
+
 import type { Design } from "../design";
 import type { Values } from "../friction";
+import type { Piece, Row, Rows } from "../input";
 import type { Hand } from "./hand";
 
 /** Returns the design of a release with the motion of a pin: its drive, and inputs from hand and magnet. */

@@ -1,5 +1,7 @@
 // A device under a hand in the core: the functions of capi/pindrive.h for scans. SI units throughout.
-import { type Core, CoreError, PIECE_BYTES, type Piece, type Row, type Rows, TERM_BYTES } from "../core";
+import type { Core } from "../core";
+import type { Piece, Row, Rows } from "../input";
+import { CoreError, PIECE_BYTES, TERM_BYTES } from "../memory";
 
 /** A device by the keys of a device file, with the spots of its pins from the hand, m. */
 export interface DeviceInput {

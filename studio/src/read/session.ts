@@ -38,7 +38,8 @@ export class Session {
   private sent = 0;
   private wall = 0;
   private epoch = 0;
-  private pending = false;
+  /** True while an answer of the pins is awaited, and before there are any. */
+  private pending = true;
   /** Time that a repeated reading is to show. */
   private wanted = 0;
   private judgedRows = 0;

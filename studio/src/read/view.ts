@@ -1,33 +1,25 @@
 // The view "Read": a page, a hand that the person moves, and what the pins do under it.
-import type { Core, Row } from "../core";
+import type { Core } from "../core";
 import { type Design, dampingRatio } from "../design";
-import { card, download, fileName, h, option } from "../dom";
+import { card, download, fileName, h } from "../dom";
 import type { Store } from "../store";
-import { currentLook, onLook } from "../theme";
 import { type Program, Thread } from "../thread";
 import { deviceFile } from "../write";
 import { Controls } from "./controls";
-import { deviceInput, spotsOf, valuesOf } from "./device";
-import type { Limit } from "./dial";
-import { Drawings } from "./drawings";
+import { deviceInput } from "./device";
+import { Display, type Shown } from "./display";
 import type { Limits } from "./engine";
-import { Feedback } from "./feedback";
-import { Felt } from "./felt";
 import type { Hand, HandRows } from "./hand";
 import { HandControl } from "./handcontrol";
 import { Outcomes } from "./outcomes";
 import { Paper, type Spot } from "./paper";
-import { colorsOf, type Picture } from "./picture";
 import { Pins } from "./pins";
 import { Playback } from "./playback";
 import { Demonstration } from "./pointer";
-import { Readouts } from "./readouts";
 import { pinDesign } from "./release";
 import { FORMAT, packedRaster, rasterOf } from "./saved";
 import type { DeviceInput, Line } from "./scan";
-import { speedOf } from "./sentence";
 import { type Sample, Session } from "./session";
-import { Skin } from "./skin";
 import type { Print, ReadState } from "./state";
 import { TaskCard } from "./taskcard";
 import { TASKS } from "./tasks";
@@ -46,31 +38,20 @@ export class ReadView {
   readonly element: HTMLElement;
   readonly session: Session;
   readonly paper = new Paper(isNarrow() ? NARROW : WIDE);
-  limits: Limit[] = [];
   phase: Phase = "waiting";
   private last: ReadState | null = null;
   /** The hand of the reading that is shown, if it is a finished one. */
   private kept: HandRows | null = null;
-  private readonly felt: Felt;
-  private readonly skin: Skin;
+  readonly display: Display;
   private readonly judge: Thread;
-  private readonly drawings: Drawings;
-  private readonly readouts = new Readouts();
-  private readonly feedback = new Feedback();
   private readonly controls: Controls;
   private readonly tasks: TaskCard;
   private readonly outcomes: Outcomes;
   private readonly playback: Playback;
   private readonly toolbar: Toolbar;
   private readonly hand: HandControl;
-  private readonly pins = h("select", { "aria-label": "pin from the side" });
   private input: DeviceInput;
   private lines: readonly Line[] = [];
-  private picture: Picture | null = null;
-  private look = currentLook();
-  private chosen: number;
-  private speed = 0;
-  private peak = 0;
   private limitsAsked = 0;
   private limitsTimer = 0;
   private frame = 0;
@@ -83,10 +64,12 @@ export class ReadView {
     private readonly openRelease: (design: Design) => void,
   ) {
     this.input = deviceInput(core, store.now.device);
-    this.chosen = middleOf(this.input.spots);
-    this.felt = new Felt(this.paper.width, this.input.spots);
-    this.felt.setDark(this.look.dark);
-    this.skin = new Skin(this.input.spots.length);
+    this.display = new Display(
+      core,
+      this.paper,
+      () => this.session,
+      () => this.shown,
+    );
     this.judge = new Thread(program);
     this.session = new Session(new Pins(program), this.judge, this.input, this.paper.raster, {
       sampled: (samples, hand) => this.sampled(samples, hand),
@@ -98,12 +81,6 @@ export class ReadView {
     this.tasks = new TaskCard((task) => this.change({ task, print: this.printOf(task), hand: null }));
     this.outcomes = new Outcomes((line) => this.showLine(line));
     this.playback = new Playback(() => this.wake());
-    this.drawings = new Drawings(
-      this.paper,
-      this.felt,
-      () => this.draw(),
-      (pin) => this.choosePin(pin),
-    );
     this.hand = this.handControl();
     this.toolbar = new Toolbar({
       text: (text) => this.change({ print: { kind: "text", text }, task: 0, hand: null }, "text"),
@@ -113,15 +90,12 @@ export class ReadView {
         this.hand.ruler = on;
       },
       slowness: (slowness) => this.change({ slowness, hand: null }),
-      feedback: this.feedback,
+      feedback: this.display.feedback,
     });
     this.element = h("div", { class: "read", hidden: true }, this.layout());
-    this.pins.addEventListener("change", () => this.choosePin(Number(this.pins.value)));
-    this.fillPins();
     store.listen(() => void this.update());
-    onLook(() => this.setLook());
-    addEventListener("resize", () => this.reshape());
-    this.reshape();
+    addEventListener("resize", () => this.display.setPage(isNarrow()));
+    this.display.setPage(isNarrow());
   }
 
   get state(): ReadState {
@@ -190,25 +164,14 @@ export class ReadView {
           this.say("The page of the reading is spoiled.");
         }
     }
-    this.felt.setWidth(paper.width);
-    this.reshape();
+    this.display.setPage(isNarrow());
     this.session.setPage(paper.raster);
   }
 
-  private reshape(): void {
-    this.drawings.reshape(isNarrow());
-  }
-
   private setDevice(device: Design): void {
-    const pins = this.input.spots.length;
     this.input = deviceInput(this.core, device);
     this.session.setDevice(this.input);
-    this.felt.setSpots(this.input.spots);
-    if (this.input.spots.length !== pins) {
-      this.chosen = middleOf(this.input.spots);
-      this.fillPins();
-    }
-    this.picture = null;
+    this.display.setDevice(device, this.input);
     this.askLimits();
   }
 
@@ -237,7 +200,7 @@ export class ReadView {
     if (phase !== "demonstration") this.hand.demonstration = null;
     this.wake();
     this.draw();
-    this.tell();
+    this.display.tell();
   }
 
   // ---- time --------------------------------------------------------------------------------------
@@ -307,47 +270,14 @@ export class ReadView {
   }
 
   private began(): void {
-    this.felt.clear();
-    this.skin.begin(this.input.spots.length);
+    this.display.begin();
     if (!this.session.repeating) this.lines = [];
     this.showLines();
   }
 
   private sampled(samples: readonly Sample[], hand: Hand): void {
-    const last = samples[samples.length - 1];
-    if (!last) return;
-    for (const sample of samples) {
-      this.skin.follow(sample);
-      this.feedback.announce(this.skin.felt, this.input.spots);
-    }
-    this.felt.paint(samples, hand);
-    const motion = hand.at(last.time);
-    const values = valuesOf(this.state.device);
-    const axis = (values["array.axis"] as number | undefined) ?? 0;
-    this.picture = {
-      sample: last,
-      hand: motion,
-      spots: this.input.spots,
-      axis: [Math.cos(axis), Math.sin(axis)],
-      hold: (values["magnet.hold_force"] as number | undefined) ?? Math.max(...last.values.pull, 1e-9),
-      felt: this.skin.felt,
-      chosen: this.chosen,
-      look: this.look,
-      colors: colorsOf(this.look),
-    };
-    const speed = 1e3 * speedOf(motion);
-    this.speed += 0.25 * (speed - this.speed);
-    this.peak = Math.max(0.985 * this.peak, speed);
     if (this.session.repeating) this.showLines();
-    this.draw();
-    this.tell();
-    this.readouts.showSpeed(this.speed, this.state.slowness, this.limits);
-  }
-
-  /** Says what happens now. */
-  private tell(): void {
-    const moved = this.phase === "reading" || this.phase === "demonstration" || this.playback.playing;
-    this.readouts.tell(this.picture, this.waiting, moved);
+    this.display.show(samples, hand);
   }
 
   private judged(lines: readonly Line[]): void {
@@ -355,7 +285,7 @@ export class ReadView {
     this.showLines();
     if (this.phase === "demonstration") return;
     const { hand, samples } = this.session;
-    const { chosen, limits } = this;
+    const { chosen, limits } = this.display;
     this.tasks.judge(lines, hand, { limits, samples, chosen, ratio: dampingRatio(this.state.device.values) });
     this.draw();
   }
@@ -367,14 +297,14 @@ export class ReadView {
   }
 
   private showLines(): void {
-    this.readouts.showLines(this.evaluated);
+    this.display.readouts.showLines(this.evaluated);
     this.outcomes.update(this.phase === "kept" ? this.lines : this.evaluated);
   }
 
   /** Shows the moment of a line. */
   private showLine({ pin, time }: Line): void {
     if (this.phase === "reading" || this.phase === "ending") this.finish();
-    this.choosePin(pin);
+    this.display.choose(pin);
     this.playback.goTo(time);
   }
 
@@ -414,43 +344,34 @@ export class ReadView {
       void this.judge.ask("read", task).then((answer) => {
         if (number !== this.limitsAsked || !answer || !("limits" in answer)) return;
         const { limits } = answer as Limits;
-        const before = this.limits;
-        this.limits = limits.map(({ to }, i) => ({ pitch: PITCHES[i]!, speed: 1e3 * to }));
-        this.readouts.showLimits(this.limits, before);
+        const { display } = this;
+        const before = display.limits;
+        display.limits = limits.map(({ to }, i) => ({ pitch: PITCHES[i]!, speed: 1e3 * to }));
+        display.readouts.showLimits(display.limits, before);
         this.draw();
       });
     }, SETTLED);
   }
 
-  private draw(): void {
-    if (this.hidden) return;
-    const { look, picture, speed, peak, limits } = this;
-    const { "array.spot_scale": _, ...places } = valuesOf(this.state.device);
-    this.drawings.draw({
-      look,
-      picture: picture && { ...picture, look, colors: colorsOf(look), chosen: this.chosen },
-      places: spotsOf(this.core, places),
-      samples: this.session.samples,
-      threshold: this.input.numbers["control.threshold"] ?? 0.5,
+  private get shown(): Shown {
+    const demonstrates = this.phase === "demonstration";
+    return {
       notice: this.notice,
-      lines: this.phase === "demonstration" ? [] : this.evaluated,
+      waiting: this.waiting,
+      moved: this.phase === "reading" || demonstrates || this.playback.playing,
+      lines: demonstrates ? [] : this.evaluated,
       pen: this.hand.pen,
-      speed,
-      peak,
-      limits,
-    });
+    };
   }
 
-  private setLook(): void {
-    this.look = currentLook();
-    this.felt.setDark(this.look.dark);
-    this.draw();
+  private draw(): void {
+    if (!this.hidden) this.display.draw();
   }
 
   // ---- what the person does ----------------------------------------------------------------------
 
   private handControl(): HandControl {
-    return new HandControl(this.drawings.sheet.element, {
+    return new HandControl(this.display.drawings.sheet.element, {
       width: () => this.paper.width,
       place: () => {
         const { x, y } = this.session.hand.last;
@@ -476,7 +397,7 @@ export class ReadView {
   /** A pen draws on a blank page, or on the drawing that is there. */
   private setPen(on: boolean): void {
     this.hand.pen = on;
-    this.drawings.sheet.element.classList.toggle("pen", on);
+    this.display.drawings.sheet.element.classList.toggle("pen", on);
     if (on && this.state.print.kind !== "drawing")
       this.change({ print: { kind: "drawing", strokes: [] }, task: 0, hand: null });
     else this.draw();
@@ -489,23 +410,11 @@ export class ReadView {
   /** Opens "One release" with the motion of the chosen pin. */
   private async openPin(): Promise<void> {
     const { hand } = this.session;
-    const load = await this.session.load(this.chosen);
-    if (load && this.picture) {
-      this.openRelease(pinDesign(this.state.device, hand, this.picture.axis, load, this.chosen));
+    const { chosen, picture } = this.display;
+    const load = await this.session.load(chosen);
+    if (load && picture) {
+      this.openRelease(pinDesign(this.state.device, hand, picture.axis, load, chosen));
     }
-  }
-
-  private choosePin(pin: number): void {
-    this.chosen = pin;
-    this.pins.value = String(pin);
-    this.draw();
-  }
-
-  private fillPins(): void {
-    const numbers = this.input.spots.map((_, pin) =>
-      option(String(pin), `pin ${pin + 1}`, pin === this.chosen),
-    );
-    this.pins.replaceChildren(...numbers);
   }
 
   togglePlayer(): void {
@@ -527,7 +436,7 @@ export class ReadView {
   // ---- the parts ---------------------------------------------------------------------------------
 
   private layout(): HTMLElement {
-    const { drawings, readouts } = this;
+    const { drawings, readouts, pins } = this.display;
     const page = card(
       "read-page",
       "Read with your own hand",
@@ -566,7 +475,7 @@ export class ReadView {
       },
       "Open its motion",
     );
-    const [tip, side] = drawings.cards(h("div", { class: "toolbar" }, this.pins, openPin));
+    const [tip, side] = drawings.cards(h("div", { class: "toolbar" }, pins, openPin));
     const change = card("device-card", "Change the device under your hand", this.controls.element);
     return h(
       "main",
@@ -579,10 +488,4 @@ export class ReadView {
 
 function isNarrow(): boolean {
   return innerWidth < 600;
-}
-
-/** The pin that is looked at first: the nearest to the middle. */
-function middleOf(spots: readonly Row[]): number {
-  const apart = spots.map(([x, y]) => Math.hypot(x, y));
-  return apart.indexOf(Math.min(...apart));
 }
