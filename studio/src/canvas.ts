@@ -29,6 +29,7 @@ export class Canvas {
   }
 
   setRatio(ratio: number): void {
+    if (ratio === this.ratio) return;
     this.ratio = ratio;
     this.resize();
   }

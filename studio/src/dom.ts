@@ -98,6 +98,11 @@ export function download(name: string, content: BlobPart, type: string): void {
   setTimeout(() => URL.revokeObjectURL(url), 10_000);
 }
 
+/** Lets the browser answer before the next chunk of work. */
+export function pause(): Promise<void> {
+  return new Promise((go) => setTimeout(go));
+}
+
 /** A name of a file from a title. */
 export function fileName(title: string): string {
   return (

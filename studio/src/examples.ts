@@ -3,7 +3,7 @@ import type { Core } from "./core";
 import { type Design, designOf } from "./design";
 import type { Kept } from "./keep";
 import { HEIGHT, RESOLUTION, rasterOfCanvas } from "./read/paper";
-import { packedRaster } from "./read/saved";
+import { packedRaster } from "./read/raster";
 import type { PrintedLine, ReadState, Stroke } from "./read/state";
 import { readRecording } from "./recording";
 import type { ReleaseState } from "./state";
@@ -24,7 +24,11 @@ function printed(print: ReadState["print"]): Made {
   return (_, { read }) => ({ read: { ...read, print, task: 0, hand: null } });
 }
 
-/** Lines of four pitches, each half as wide as its pitch, mm. */
+function text(words: string): Made {
+  return (core, kept, width) => printed({ kind: "text", text: words, width })(core, kept, width);
+}
+
+/** Lines of five pitches, each half as wide as its pitch, mm. */
 const gratings: Made = (core, kept, width) => {
   const lines: PrintedLine[] = [];
   let x = 3;
@@ -32,7 +36,7 @@ const gratings: Made = (core, kept, width) => {
     for (let i = 0; i < 3 && x + pitch < width - 2; ++i, x += pitch) lines.push([x, pitch / 2]);
     x += 1;
   }
-  return printed({ kind: "lines", lines })(core, kept, width);
+  return printed({ kind: "lines", lines, width })(core, kept, width);
 };
 
 /** A wave over a ground line. */
@@ -43,7 +47,7 @@ const drawing: Made = (core, kept, width) => {
     at(5, width - 5, (part) => 5.5 - 3 * Math.sin(4 * Math.PI * part)),
     at(5, width - 5, () => 11),
   ];
-  return printed({ kind: "drawing", strokes })(core, kept, width);
+  return printed({ kind: "drawing", strokes, width })(core, kept, width);
 };
 
 /** Rings in shades of grey. */
@@ -78,8 +82,8 @@ function pins(columns: number, rows: number): Made {
 }
 
 const READ: Readonly<Record<string, Made>> = {
-  "The word Hello": printed({ kind: "text", text: "Hello" }),
-  "A long word": printed({ kind: "text", text: "friction" }),
+  "The word Hello": text("Hello"),
+  "A long word": text("friction"),
   "A drawing": drawing,
   "A picture in grey": picture,
   "Gratings of five pitches": gratings,

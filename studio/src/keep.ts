@@ -6,8 +6,9 @@ import { DeviceError } from "./device";
 import { base64, bytesOf } from "./links";
 import type { HandRows, Slowness } from "./read/hand";
 import { SLOWNESS } from "./read/hand";
+import type { PackedRaster } from "./read/raster";
 import { FORMAT, isHand } from "./read/saved";
-import type { PackedRaster, Print, ReadState } from "./read/state";
+import type { Print, ReadState } from "./read/state";
 import type { Channel, Recording } from "./recording";
 import { initialRelease, type Limit, type Overlay, type ReleaseState } from "./state";
 import { DRIVE, NUMBERS, TABLES } from "./table";
@@ -145,17 +146,19 @@ function handOf(given: unknown): HandRows {
 
 function printOf(given: Print | PackedRaster): Print {
   if (!("kind" in given)) return printOf({ kind: "picture", raster: given });
+  const width = "width" in given ? finite(given.width) : 0;
+  check(given.kind === "picture" || (width > 0 && width <= 1000));
   switch (given.kind) {
     case "text":
-      return { kind: "text", text: String(given.text) };
+      return { kind: "text", text: String(given.text), width };
     case "lines":
       check(given.lines.every((line) => line.length === 2 && line.every(Number.isFinite)));
-      return { kind: "lines", lines: given.lines };
+      return { kind: "lines", lines: given.lines, width };
     case "drawing":
       check(
         given.strokes.every((stroke) => stroke.every(({ x, y }) => Number.isFinite(x) && Number.isFinite(y))),
       );
-      return { kind: "drawing", strokes: given.strokes };
+      return { kind: "drawing", strokes: given.strokes, width };
     case "picture": {
       const { title, rows, columns, pixel, luminance } = given.raster;
       check([rows, columns, pixel].every((size) => Number.isFinite(size) && size > 0));

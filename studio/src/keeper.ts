@@ -2,8 +2,7 @@
 import type { Core } from "./core";
 import { type Found, jsonOfStates, type Kept, statesOfJson } from "./keep";
 import { packedText, unpackedText } from "./links";
-import { packedRaster } from "./read/saved";
-import type { Raster } from "./read/scan";
+import { packedPage } from "./read/saved";
 
 export type ViewName = "read" | "release";
 
@@ -22,13 +21,9 @@ interface Stored {
 export interface Source {
   readonly kept: () => Kept;
   readonly view: () => ViewName;
-  /** The raster of the page that was read, with its title. */
-  readonly page: () => { readonly raster: Raster; readonly title: string };
 }
 
 export class Keeper {
-  /** The last address that was written here. */
-  hash = "";
   private storing = 0;
   private addressing = 0;
   private readonly key: string;
@@ -77,11 +72,10 @@ export class Keeper {
 
   /** A link to the states, with the page of the reading as Python needs it. */
   private async link(): Promise<string> {
-    const { kept, view, page } = this.source;
+    const { kept, view } = this.source;
     const { release, read } = kept();
-    const { raster, title } = page();
-    const packed = read.hand && (await packedRaster(raster, title));
-    const json = jsonOfStates({ release, read }, packed);
+    const page = read.hand && (await packedPage(read.print));
+    const json = jsonOfStates({ release, read }, page);
     return `#${view()}=${await packedText(JSON.stringify(json))}`;
   }
 
@@ -90,8 +84,7 @@ export class Keeper {
     clearTimeout(this.addressing);
     const hash = await this.link();
     if (hash.length > LONGEST && !shared) return location.href;
-    this.hash = hash;
-    history.replaceState(null, "", hash);
+    history.replaceState({ own: true }, "", hash);
     this.store();
     return location.href;
   }
@@ -118,6 +111,11 @@ export class Keeper {
       return null;
     }
   }
+}
+
+/** True for an address that was written here: the person went back or forward. */
+export function isOwn(): boolean {
+  return (history.state as { readonly own?: boolean } | null)?.own === true;
 }
 
 /** True if the person did not follow a link, but loaded the page again, or went back to it. */

@@ -3,7 +3,7 @@ import { answerOf } from "./answers";
 import { Core } from "./core";
 import { type Design, designOf } from "./design";
 import { DeviceError } from "./device";
-import { h } from "./dom";
+import { h, pause } from "./dom";
 import { EXAMPLES, exampleState } from "./examples";
 import {
   acceptDrops,
@@ -18,13 +18,13 @@ import {
 } from "./files";
 import { Header } from "./header";
 import type { Kept } from "./keep";
-import { Keeper, partsOf, type ViewName } from "./keeper";
-import { rasterOfPicture } from "./read/paper";
-import { packedRaster } from "./read/saved";
+import { isOwn, Keeper, partsOf, type ViewName } from "./keeper";
+import { rasterOfPicture, usualWidth } from "./read/paper";
+import { packedRaster } from "./read/raster";
 import { initialRead, type ReadState } from "./read/state";
 import { ReadView } from "./read/view";
 import { ReleaseView } from "./releaseview";
-import { initialRelease, type ReleaseState } from "./state";
+import { currentDesign, initialRelease, type ReleaseState } from "./state";
 import { Store } from "./store";
 import { type Program, serve } from "./thread";
 
@@ -83,7 +83,6 @@ class Studio {
       {
         kept: () => this.kept,
         view: () => this.view,
-        page: () => ({ raster: this.read!.paper.raster, title: this.read!.paper.title }),
       },
       this.given?.text ?? "",
     );
@@ -108,15 +107,18 @@ class Studio {
 
   /** The states that were left behind, or those of the link or of the device that the page came with. */
   async begin(): Promise<void> {
+    await pause();
     const found = await this.keeper.found(location.hash, this.kept);
     let view = found?.view ?? partsOf(location.hash).view ?? "read";
     if (found) this.restore(found.kept);
     else if (this.given) view = this.begun(this.given);
+    await pause();
     this.show(view);
     if (found) this.tell(found.problems);
   }
 
   private restore({ read, release }: Kept): void {
+    this.opened = currentDesign(release);
     this.states.read.replace(read);
     this.states.release.replace(release);
   }
@@ -124,11 +126,10 @@ class Studio {
   /** Begins with the device that the command put into the page; the view that shows it. */
   private begun(given: Given): ViewName {
     const device = this.designOf(given);
-    if (device) {
-      const { release } = this.states;
-      release.replace({ ...release.now, designs: [device], current: 0 });
-    }
-    return "release";
+    if (!device) return "release";
+    const { release } = this.states;
+    release.replace({ ...release.now, designs: [device], current: 0 });
+    return isWhole(device) ? "read" : "release";
   }
 
   private designOf(given: Given): Design | null {
@@ -146,22 +147,22 @@ class Studio {
     this.view = view;
     this.header.show(view);
     const { read, release } = this.states;
-    this.read ??= this.mounted(
-      new ReadView(
-        this.core,
-        this.program,
-        read,
-        (problem) => this.say(problem),
-        (design) => this.openPin(design),
-      ),
-    );
     if (view === "read") {
-      const { designs, current } = release.now;
-      const design = designs[current]!;
-      const isWhole = Object.keys(design.around).length > 0;
-      if (isWhole && design !== this.opened) read.change({ ...read.now, device: design, hand: null });
-      if (isWhole) this.opened = design;
+      const design = currentDesign(release.now);
+      if (isWhole(design) && design !== this.opened) {
+        this.opened = design;
+        read.change({ ...read.now, device: design, hand: null });
+      }
       this.release?.hide();
+      this.read ??= this.mounted(
+        new ReadView(
+          this.core,
+          this.program,
+          read,
+          (problem) => this.say(problem),
+          (design) => this.openPin(design),
+        ),
+      );
       this.read.show();
     } else {
       this.release ??= this.mounted(
@@ -173,7 +174,7 @@ class Studio {
           () => choose(".csv,.txt", (file) => void this.take(file)),
         ),
       );
-      this.read.hide();
+      this.read?.hide();
       this.release.show(shows);
     }
     this.header.update(this.states[view].canUndo, this.states[view].canRedo);
@@ -187,15 +188,15 @@ class Studio {
 
   /** Another hash: that of a view, or a link that was put into the address. */
   private async follow(hash: string): Promise<void> {
-    if (hash === this.keeper.hash) return;
     const { view, packed } = partsOf(hash);
-    if (!packed) {
+    if (!packed || isOwn()) {
       this.say("");
       this.show(view ?? "read");
       return;
     }
     const { kept, problems } = await this.keeper.ofLink(packed, this.kept);
     const { read, release } = this.states;
+    this.opened = currentDesign(kept.release);
     this.show(view ?? this.view);
     if (kept.read !== read.now) read.change(kept.read);
     if (kept.release !== release.now) release.change(kept.release);
@@ -231,7 +232,7 @@ class Studio {
     } else if ("picture" in opened) {
       const { picture } = opened;
       try {
-        const raster = await rasterOfPicture(picture, this.read!.paper.usual);
+        const raster = await rasterOfPicture(picture);
         const print = { kind: "picture", raster: await packedRaster(raster, picture.name) } as const;
         read.change({ ...read.now, print, task: 0, hand: null });
       } catch (error) {
@@ -249,7 +250,7 @@ class Studio {
         hand: reading.hand,
       });
       this.show("read");
-    } else if (this.view === "read" && Object.keys(opened.device.around).length) {
+    } else if (this.view === "read" && isWhole(opened.device)) {
       read.change({ ...read.now, device: opened.device, hand: null });
     } else this.addDesigns([opened.device], false);
   }
@@ -278,7 +279,7 @@ class Studio {
   private async example(name: string): Promise<void> {
     this.say("");
     const { read, release } = this.states;
-    const found = await exampleState(this.core, name, this.kept, this.read!.paper.usual);
+    const found = await exampleState(this.core, name, this.kept, usualWidth());
     if (found.read) read.change(found.read);
     if (found.release) release.change(found.release);
     this.show(this.view, found.shows);
@@ -333,9 +334,15 @@ class Studio {
   }
 }
 
+/** True for a device with magnet, control block or pins, beside its drive. */
+function isWhole({ around }: Design): boolean {
+  return Object.keys(around).length > 0;
+}
+
 /** Shows the page. */
 async function begin(program: Program): Promise<void> {
   const core = await Core.load(program.wasm);
+  await pause();
   const studio = new Studio(core, program, document.getElementById("page")!);
   await studio.begin();
   // For scripts in the console, and tests: the core, and the page with its states.

@@ -33,8 +33,6 @@ export class ReleaseView {
   private last: ReleaseState;
   private look = currentLook();
   private asked = false;
-  /** True while the curves themselves move the cursor. */
-  private ofCharts = false;
   private readonly simulation: Simulation;
   private readonly charts: Charts;
   private readonly phase: PhasePlane;
@@ -74,11 +72,7 @@ export class ReleaseView {
     this.controls = new MapControls(step);
     this.numbers = new NumbersTable((number) => step((now) => ({ ...now, number })));
     this.charts = new Charts(this.look, {
-      cursor: (time) => {
-        this.ofCharts = true;
-        this.setCursor(time);
-        this.ofCharts = false;
-      },
+      cursor: (time) => this.setCursor(time),
       zoom: (span) => this.zoom.show(span),
     });
     this.phase = new PhasePlane(this.look);
@@ -264,7 +258,7 @@ export class ReleaseView {
     const { state, view } = this;
     this.zoom.update(view.end, state.cursor);
     this.view = { ...view, state };
-    if (!this.ofCharts) this.charts.setCursor(state.cursor);
+    this.charts.setCursor(state.cursor);
     for (const part of [this.phase, this.animation, this.sketch, this.player]) part.update(this.view);
   }
 

@@ -469,6 +469,14 @@ def test_the_map_holds_the_numbers_of_python_and_its_dot_moves(page: Any) -> Non
     assert np.array_equal(shaded, np.array(found["met"]) == 0)
     assert 0 < shaded.sum() < shaded.size
     canvas = page.locator("canvas.map")
+    canvas.hover(position={"x": 120, "y": 90})
+    told = page.locator(".pointed").inner_text()
+    number, x, y = (float(part) for part in re.findall(r"[\d.]+", told))
+    given = {"motion.mouse_velocity": 1e-3 * x, "plate.kinetic": 1e-3 * y}
+    time = motion_of(pd.load_device(EXAMPLE, given)).transient.settling_time
+    assert number == pytest.approx(1e3 * time, rel=2e-2), told
+    page.mouse.move(5, 5)
+    assert page.locator(".pointed").inner_text() == ""
     canvas.focus()
     page.keyboard.press("ArrowRight")
     settled(page)
@@ -515,6 +523,16 @@ def test_a_recording_of_a_hundred_thousand_rows_is_fitted(page: Any, tmp_path: P
     assert value(page, "drive.mass") == pytest.approx(0.0125, rel=1e-4)
     assert value(page, "drive.damping_ratio") == pytest.approx(0.11, rel=1e-3)
     assert page.evaluate("pindrive.release.state.overlay.offset") == pytest.approx(0.012, abs=1e-5)
+
+
+def test_one_cursor_runs_through_all_curves(page: Any) -> None:
+    page.locator(".u-over").first.hover(position={"x": 150, "y": 40})
+    settled(page)
+    places = page.evaluate(
+        "[...document.querySelectorAll('.u-cursor-x')].map(e => e.style.transform.split('px')[0])"
+    )
+    assert len(places) == 4 and len(set(places)) == 1
+    assert page.evaluate("pindrive.release.state.cursor") > 0.01
 
 
 def test_the_device_moves_with_the_cursor_and_can_be_heard(page: Any) -> None:

@@ -272,6 +272,45 @@ def test_nothing_is_lost_between_views_and_by_loading_again(read: Any) -> None:
     assert (value(read, "drive.mass"), value(read, "drive.stiffness")) == (0.012, 90.0)
 
 
+def test_a_whole_device_keeps_its_reading(read: Any, tmp_path: Path) -> None:
+    device = tmp_path / "two.toml"
+    text = (EXAMPLES / "tactile-reader.toml").read_text("utf-8")
+    device.write_text(text.replace("columns = 4", "columns = 2"), "utf-8")
+    read.get_by_role("link", name="One release").click()
+    settled(read)
+    opened(read, device)
+    read.get_by_role("link", name="Read").click()
+    until(read, "pindrive.read.session.pins === 8 && pindrive.read.phase === 'waiting'")
+    cross(read, 0.6)
+    read.mouse.move(5, 5)
+    kept(read)
+    shown = read.evaluate(COUNTS)
+    read.reload()
+    until(read, "window.pindrive?.read?.phase === 'kept'")
+    until(read, f"String({COUNTS}) === '{','.join(map(str, shown))}'")
+    assert read.evaluate("pindrive.read.session.pins") == 8
+
+
+def test_going_back_changes_the_view_alone(read: Any) -> None:
+    cross(read, 0.6)
+    read.mouse.move(5, 5)
+    kept(read)
+    shown = read.evaluate(COUNTS)
+    read.get_by_role("link", name="One release").click()
+    settled(read)
+    read.wait_for_timeout(900)  # the address is written
+    read.get_by_role("link", name="Read").click()
+    read.get_by_role("button", name="Reset", exact=True).click()
+    read.get_by_role("button", name="Undo", exact=True).click()
+    kept(read)
+    read.wait_for_timeout(900)
+    read.go_back()
+    until(read, "pindrive.studio.view === 'release'")
+    read.go_forward()
+    until(read, "pindrive.studio.view === 'read'")
+    until(read, f"String({COUNTS}) === '{','.join(map(str, shown))}'")
+
+
 def test_the_last_visit_is_given_back(browser: Any, page_file: Path) -> None:
     context = browser.new_context(reduced_motion="reduce")
     first = context.new_page()

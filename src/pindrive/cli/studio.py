@@ -31,7 +31,7 @@ def studio(
         typer.Option("--no-browser", help="Only say where the page is.", rich_help_panel=WRITTEN),
     ] = False,
 ) -> None:
-    """Open the studio: one release with every parameter as a slider, in a browser, offline."""
+    """Open the studio in a browser, offline: read with a device, or follow one release."""
     if not PAGE.is_file():
         typer.echo("the studio is not built; `python3 run.py studio` builds it", err=True)
         raise typer.Exit(2)

@@ -29,8 +29,6 @@ export interface Shown {
   /** True if somebody, or a demonstration, moves the hand. */
   readonly moved: boolean;
   readonly lines: readonly Line[];
-  /** True while the pen draws. */
-  readonly pen: boolean;
 }
 
 export class Display {
@@ -133,7 +131,7 @@ export class Display {
     const speed = 1e3 * speedOf(motion);
     this.speed += CALM * (speed - this.speed);
     this.peak = Math.max(FADES * this.peak, speed);
-    this.draw();
+    this.draw(true);
     this.tell();
     this.readouts.showSpeed(this.speed, hand.slowness, this.limits);
   }
@@ -144,10 +142,11 @@ export class Display {
     this.readouts.tell(this.picture, waiting, moved);
   }
 
-  draw(): void {
+  /** Draws everything, or with `moving` what is looked at while the pins move. */
+  draw(moving = false): void {
     const { look, picture, places, speed, peak, limits, chosen } = this;
     if (!this.input) return;
-    this.drawings.draw({
+    const scene = {
       look,
       picture: picture && { ...picture, look, colors: colorsOf(look), chosen },
       places,
@@ -157,7 +156,8 @@ export class Display {
       peak,
       limits,
       ...this.shown(),
-    });
+    };
+    this.drawings.draw(scene, moving);
   }
 }
 

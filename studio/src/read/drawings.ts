@@ -26,8 +26,6 @@ export interface Scene {
   readonly notice: string;
   /** Lines of the reading until now. */
   readonly lines: readonly Line[];
-  /** True while the pen draws. */
-  readonly pen: boolean;
   /** Speed of the hand and its peak, mm/s. */
   readonly speed: number;
   readonly peak: number;
@@ -41,6 +39,7 @@ export class Drawings {
   private readonly side: Canvas;
   readonly dial: Canvas;
   private tip: Drawn = { scale: 1, places: [] };
+  private turn = 0;
 
   /** `redraw` is called when a size has changed, `choose` with the number of a pin. */
   constructor(
@@ -89,16 +88,20 @@ export class Drawings {
     ];
   }
 
-  draw(scene: Scene): void {
+  /** Draws everything; with `moving` the page and the fingertip, and in turns one of the rest. */
+  draw(scene: Scene, moving = false): void {
     const { picture, look } = scene;
     const { sheet, image, fingertip, side, dial, paper } = this;
+    this.turn = (this.turn + 1) % 2;
+    const [first, second] = [!moving || this.turn === 0, !moving || this.turn === 1];
     const pen = sheet.begin(look.font);
-    drawPage(pen, sheet.width, paper, look.paper, picture, scene.lines, scene.pen);
+    drawPage(pen, sheet.width, paper, look.paper, picture, scene.lines);
     if (scene.notice) this.drawNotice(pen, scene.notice, look);
-    drawFelt(image.begin(look.font), image.width, paper, this.felt, picture);
+    if (first) drawFelt(image.begin(look.font), image.width, paper, this.felt, picture);
     if (!picture) return;
     const { width, height } = fingertip;
     this.tip = drawFingertip(fingertip.begin(look.font), width, height, scene.places, picture);
+    if (!second) return;
     const isDark = ({ values }: Sample): boolean => values.luminance[picture.chosen]! < scene.threshold;
     drawSide(side.begin(look.font), side.width, side.height, paper, picture, scene.samples, isDark);
     const { speed, peak, limits } = scene;

@@ -14,7 +14,7 @@ class Tinted {
   private of: unknown[] = [];
 
   at(paper: Paper, color: string): OffscreenCanvas {
-    const of = [paper.raster, color];
+    const of = [paper.raster, paper.changes, color];
     if (of.every((one, i) => one === this.of[i])) return this.canvas;
     this.of = of;
     const { width, height } = paper.canvas;
@@ -29,7 +29,7 @@ class Tinted {
 }
 const tinted = new Tinted();
 
-/** The page with the device and the marks of lines; `live` while the pen draws on it. */
+/** The page with the device and the marks of lines. */
 export function drawPage(
   pen: CanvasRenderingContext2D,
   width: number,
@@ -37,11 +37,10 @@ export function drawPage(
   sheet: string,
   picture: Picture | null,
   lines: readonly Line[],
-  live: boolean,
 ): void {
   const scale = width / (paper.width * 1e-3);
   const height = (width * paper.canvas.height) / paper.canvas.width;
-  pen.drawImage(live ? paper.canvas : tinted.at(paper, sheet), 0, 0, width, height);
+  pen.drawImage(tinted.at(paper, sheet), 0, 0, width, height);
   drawOutcomes(pen, scale, lines);
   if (picture) drawDevice(pen, scale, picture);
 }

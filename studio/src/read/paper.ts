@@ -1,9 +1,12 @@
 // The page under the hand: text, drawing, picture or lines, as a raster of luminance.
+
+import { rasterOf } from "./raster";
 import type { Raster } from "./scan";
-import type { PrintedLine, Stroke } from "./state";
+import type { Print, PrintedLine, Stroke } from "./state";
 
 /** Pixels to the millimetre. */
 export const RESOLUTION = 22;
+const [WIDE, NARROW] = [44, 36]; // mm of page on a screen, and on a telephone
 const MARGIN = 5.5; // mm beside a text at least
 const LETTERS = 13; // mm, largest size of the font
 const PEN = 1.2; // mm
@@ -13,6 +16,14 @@ export const HEIGHT = 12.5; // mm
 export interface Spot {
   readonly x: number;
   readonly y: number;
+}
+
+export function isNarrow(): boolean {
+  return innerWidth < 600;
+}
+/** Width of a page that is printed here, mm. */
+export function usualWidth(): number {
+  return typeof innerWidth === "number" && isNarrow() ? NARROW : WIDE;
 }
 
 const LARGEST = 4e7; // pixels of a picture, as of a page in Python
@@ -27,15 +38,28 @@ export class Paper {
   title = "blank paper";
   /** Width, mm. */
   width = 0;
+  /** Number of changes of the canvas. */
+  changes = 0;
 
-  /** Blank paper of a usual width, mm. */
-  constructor(readonly usual: number) {
-    this.clear(usual);
+  constructor() {
+    this.clear(usualWidth());
   }
 
-  text(words: string): void {
+  /** Prints anew. Throws an error for a raster that is spoiled. */
+  async print(print: Print): Promise<void> {
+    if (print.kind === "picture") {
+      this.show(await rasterOf(print.raster), print.raster.title);
+      return;
+    }
+    this.clear(print.width);
+    if (print.kind === "text") this.text(print.text || " ");
+    else if (print.kind === "lines") this.lines(print.lines);
+    else this.drawing(print.strokes);
+    this.printed();
+  }
+
+  private text(words: string): void {
     const { pen } = this;
-    this.clear(this.usual);
     this.title = `the text “${words}”`;
     pen.save();
     pen.scale(RESOLUTION, RESOLUTION);
@@ -49,33 +73,29 @@ export class Paper {
     const { width, actualBoundingBoxAscent: up, actualBoundingBoxDescent: down } = measured;
     pen.fillText(words, (this.width - width) / 2, HEIGHT / 2 + (up - down) / 2);
     pen.restore();
-    this.printed();
   }
 
   /** Vertical lines at places with widths, mm. */
-  lines(lines: readonly PrintedLine[]): void {
-    this.clear(this.usual);
+  private lines(lines: readonly PrintedLine[]): void {
     this.title = lines.length === 1 ? "one line" : `${lines.length} lines`;
     for (const [x, width] of lines) {
       this.pen.fillRect(x * RESOLUTION, RESOLUTION, width * RESOLUTION, (HEIGHT - 2) * RESOLUTION);
     }
-    this.printed();
   }
 
   /** A drawing of strokes. */
-  drawing(strokes: readonly Stroke[]): void {
-    this.clear(this.usual);
+  private drawing(strokes: readonly Stroke[]): void {
     this.title = "a drawing";
     for (const stroke of strokes) {
       stroke.forEach((to, i) => {
         this.draw(stroke[Math.max(0, i - 1)]!, to);
       });
     }
-    this.printed();
   }
   /** Draws from one spot to another, mm; the raster stays as it was. */
   draw(from: Spot, to: Spot): void {
     const { pen } = this;
+    this.changes += 1;
     [pen.lineWidth, pen.lineCap] = [PEN * RESOLUTION, "round"];
     pen.beginPath();
     pen.moveTo(from.x * RESOLUTION, from.y * RESOLUTION);
@@ -84,7 +104,7 @@ export class Paper {
   }
 
   /** A raster that was saved, at its size. */
-  show(raster: Raster, title: string): void {
+  private show(raster: Raster, title: string): void {
     this.clear(raster.columns * raster.pixel * 1e3);
     this.title = title;
     const { rows, columns, grey, pixel } = raster;
@@ -122,6 +142,7 @@ export class Paper {
   /** Blank paper of a width, mm. */
   private clear(width: number): void {
     const { pen, canvas, outline } = this;
+    this.changes += 1;
     this.width = width;
     const [columns, rows] = [Math.round(width * RESOLUTION), Math.round(HEIGHT * RESOLUTION)];
     for (const one of [canvas, outline]) [one.width, one.height] = [columns, rows];
@@ -131,8 +152,8 @@ export class Paper {
   }
 }
 
-/** A picture in shades of grey, as large as a page of a width, mm, allows. Throws an error in words. */
-export async function rasterOfPicture(file: Blob, wide: number): Promise<Raster> {
+/** A picture in shades of grey, as large as a page allows. Throws an error in words. */
+export async function rasterOfPicture(file: Blob): Promise<Raster> {
   const picture = await createImageBitmap(file).catch(() => {
     throw new Error("is no picture that this browser shows");
   });
@@ -141,7 +162,10 @@ export async function rasterOfPicture(file: Blob, wide: number): Promise<Raster>
       `must have at most ${LARGEST / 1e6} megapixels, got ${picture.width} × ${picture.height}`,
     );
   }
-  const [width, height] = [wide, HEIGHT].map((size) => Math.round(size * RESOLUTION)) as [number, number];
+  const [width, height] = [usualWidth(), HEIGHT].map((size) => Math.round(size * RESOLUTION)) as [
+    number,
+    number,
+  ];
   const [, pen] = canvasOf(width, height);
   const scale = Math.min(width / picture.width, height / picture.height);
   const [w, h] = [picture.width * scale, picture.height * scale];

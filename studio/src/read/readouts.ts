@@ -7,6 +7,7 @@ import type { Line } from "./scan";
 import { happening } from "./sentence";
 
 const SPOKEN = 3000; // ms between two sentences for screen readers
+const READ = 100; // ms between two speeds that are shown: nobody reads faster
 const STANDS = 8; // mm/s below which a hand stands
 const COUNTS = ["crossed", "felt", "merged", "missed", "false", "lag"] as const;
 type Count = (typeof COUNTS)[number];
@@ -20,6 +21,7 @@ export class Readouts {
   private readonly finest = h("p", { class: "note" });
   private readonly counts: Readonly<Record<Count, HTMLElement>>;
   private spokenAt = 0;
+  private readAt = 0;
 
   constructor() {
     const cells = COUNTS.map((name) => [name, h("b", {}, "0")]);
@@ -56,6 +58,9 @@ export class Readouts {
 
   /** Speed of the hand, mm/s, and the pitch of lines that merge at it. */
   showSpeed(speed: number, slowness: Slowness, limits: readonly Limit[]): void {
+    const time = performance.now();
+    if (time - this.readAt < READ) return;
+    this.readAt = time;
     this.speed.textContent = String(Math.round(speed));
     this.yours.textContent =
       slowness === 1 ? "in real time" : `your ${Math.round(speed / slowness)} mm/s × ${slowness}`;
@@ -85,7 +90,8 @@ export class Readouts {
     const crossed = lines.length - of("false");
     const numbers = [crossed, of("shown"), of("merged"), of("unseen") + of("faint"), of("false"), lag];
     COUNTS.forEach((name, i) => {
-      this.counts[name].textContent = String(numbers[i]);
+      const words = String(numbers[i]);
+      if (this.counts[name].textContent !== words) this.counts[name].textContent = words;
     });
   }
 }

@@ -1,8 +1,8 @@
 // A reading that is kept: device, page and hand, as `load_reading` of Python reads them.
-import { deflated, inflated } from "../links";
 import type { HandRows } from "./hand";
-import type { Raster } from "./scan";
-import type { PackedRaster } from "./state";
+import { Paper } from "./paper";
+import { type PackedRaster, packedRaster, rasterOf } from "./raster";
+import type { Print } from "./state";
 
 export const FORMAT = "pindrive reading 1";
 
@@ -13,17 +13,18 @@ export interface SavedReading {
   readonly hand: HandRows;
 }
 
-export async function packedRaster(
-  { grey, rows, columns, pixel }: Raster,
-  title: string,
-): Promise<PackedRaster> {
-  return { title, rows, columns, pixel, luminance: await deflated(grey) };
-}
+const packedPages = new WeakMap<Print, PackedRaster>();
 
-export async function rasterOf({ rows, columns, pixel, luminance }: PackedRaster): Promise<Raster> {
-  const grey = await inflated(luminance);
-  if (grey.length !== rows * columns) throw new Error("the page is not whole");
-  return { grey, rows, columns, pixel };
+/** The raster of a print, for Python and other browsers, whose fonts are others. */
+export async function packedPage(print: Print): Promise<PackedRaster> {
+  if (print.kind === "picture") return print.raster;
+  const known = packedPages.get(print);
+  if (known) return known;
+  const paper = new Paper();
+  await paper.print(print);
+  const packed = await packedRaster(paper.raster, paper.title);
+  packedPages.set(print, packed);
+  return packed;
 }
 
 /** The reading in an object of a file or a link. Throws an error in words. */

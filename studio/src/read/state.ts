@@ -3,27 +3,24 @@ import type { Core } from "../core";
 import { type Design, designOf } from "../design";
 import { TABLES } from "../table";
 import type { HandRows, Slowness } from "./hand";
-import type { Spot } from "./paper";
+import { type Spot, usualWidth } from "./paper";
+import type { PackedRaster } from "./raster";
 
 /** Begin and width of a printed line, mm. */
 export type PrintedLine = readonly [number, number];
 export type Stroke = readonly Spot[];
 
-/** A raster of luminance, compressed, in base64. */
-export interface PackedRaster {
-  readonly title: string;
-  readonly rows: number;
-  readonly columns: number;
-  /** Size of a pixel, m. */
-  readonly pixel: number;
-  readonly luminance: string;
+export interface Drawn {
+  readonly kind: "drawing";
+  readonly strokes: readonly Stroke[];
+  readonly width: number;
 }
 
-/** The print of a page. */
+/** The print of a page of a width, mm. */
 export type Print =
-  | { readonly kind: "text"; readonly text: string }
-  | { readonly kind: "lines"; readonly lines: readonly PrintedLine[] }
-  | { readonly kind: "drawing"; readonly strokes: readonly Stroke[] }
+  | { readonly kind: "text"; readonly text: string; readonly width: number }
+  | { readonly kind: "lines"; readonly lines: readonly PrintedLine[]; readonly width: number }
+  | Drawn
   | { readonly kind: "picture"; readonly raster: PackedRaster };
 
 export interface ReadState {
@@ -39,5 +36,11 @@ export interface ReadState {
 
 export function initialRead(core: Core): ReadState {
   const device = designOf(core, { text: TABLES.reader, file: "the reader", rows: {} });
-  return { device, print: { kind: "text", text: "Hello" }, hand: null, task: 0, slowness: 10 };
+  return {
+    device,
+    print: { kind: "text", text: "Hello", width: usualWidth() },
+    hand: null,
+    task: 0,
+    slowness: 10,
+  };
 }

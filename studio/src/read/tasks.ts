@@ -113,7 +113,7 @@ export const TASKS: readonly Task[] = [
   {
     name: "Read the word",
     what: "Cross it in one slow stroke. Every letter should appear in blue.",
-    page: () => ({ kind: "text", text: "Hello" }),
+    page: (width) => ({ kind: "text", text: "Hello", width }),
     verdict: readTheWord,
   },
   {
@@ -125,19 +125,20 @@ export const TASKS: readonly Task[] = [
         [width / 2 - PITCH, PITCH / 2],
         [width / 2, PITCH / 2],
       ],
+      width,
     }),
     verdict: howFast,
   },
   {
     name: "Why askew feels less",
     what: "Cross the line straight, then slanting. How far is a pin dragged?",
-    page: (width) => ({ kind: "lines", lines: [[width / 2 - 0.75, 1.5]] }),
+    page: (width) => ({ kind: "lines", lines: [[width / 2 - 0.75, 1.5]], width }),
     verdict: whyAskew,
   },
   {
     name: "The paper's Figure 4",
     what: "Cross the line. Behind it the pin springs back, and swings: how far, at damping ratios 0.04, 0.16 and 0.32? The slider sets them; “Open its motion” shows the curve.",
-    page: (width) => ({ kind: "lines", lines: [[width / 2 - 1, 2]] }),
+    page: (width) => ({ kind: "lines", lines: [[width / 2 - 1, 2]], width }),
     verdict: figure4,
   },
 ];

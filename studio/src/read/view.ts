@@ -1,7 +1,7 @@
 // The view "Read": a page, a hand that the person moves, and what the pins do under it.
 import type { Core } from "../core";
 import { type Design, dampingRatio } from "../design";
-import { card, download, fileName, h } from "../dom";
+import { card, download, fileName, h, pause } from "../dom";
 import type { Store } from "../store";
 import { type Program, Thread } from "../thread";
 import { deviceFile } from "../write";
@@ -12,20 +12,19 @@ import type { Limits } from "./engine";
 import type { Hand, HandRows } from "./hand";
 import { HandControl } from "./handcontrol";
 import { Outcomes } from "./outcomes";
-import { Paper, type Spot } from "./paper";
+import { isNarrow, Paper, type Spot, usualWidth } from "./paper";
 import { Pins } from "./pins";
 import { Playback } from "./playback";
 import { Demonstration } from "./pointer";
 import { pinDesign } from "./release";
-import { FORMAT, packedRaster, rasterOf } from "./saved";
+import { FORMAT, packedPage } from "./saved";
 import type { DeviceInput, Line } from "./scan";
 import { type Sample, Session } from "./session";
-import type { Print, ReadState } from "./state";
+import type { Drawn, Print, ReadState } from "./state";
 import { TaskCard } from "./taskcard";
 import { TASKS } from "./tasks";
 import { Toolbar } from "./toolbar";
 
-const [WIDE, NARROW] = [44, 36]; // mm of page on a screen, and on a telephone
 const PITCHES = [1, 2, 3, 4]; // mm, on the dial
 const SETTLED = 200; // ms after which changed sliders have new limits
 const SHORTEST = 5e-3; // m of way of a reading that is kept
@@ -37,7 +36,7 @@ type Phase = "waiting" | "demonstration" | "reading" | "ending" | "kept";
 export class ReadView {
   readonly element: HTMLElement;
   readonly session: Session;
-  readonly paper = new Paper(isNarrow() ? NARROW : WIDE);
+  readonly paper = new Paper();
   phase: Phase = "waiting";
   private last: ReadState | null = null;
   /** The hand of the reading that is shown, if it is a finished one. */
@@ -83,9 +82,10 @@ export class ReadView {
     this.playback = new Playback(() => this.wake());
     this.hand = this.handControl();
     this.toolbar = new Toolbar({
-      text: (text) => this.change({ print: { kind: "text", text }, task: 0, hand: null }, "text"),
+      text: (text) =>
+        this.change({ print: { kind: "text", text, width: usualWidth() }, task: 0, hand: null }, "text"),
       pen: (on) => this.setPen(on),
-      clear: () => this.change({ print: { kind: "drawing", strokes: [] }, hand: null }),
+      clear: () => this.change({ print: blank(), hand: null }),
       ruler: (on) => {
         this.hand.ruler = on;
       },
@@ -134,6 +134,7 @@ export class ReadView {
     this.tasks.show(now.task);
     this.controls.update(now.device);
     if (before?.print !== now.print) {
+      if (!before) await pause();
       await this.setPrint(now.print);
       if (this.state !== now) return; // another call shows what has changed meanwhile
     }
@@ -147,22 +148,10 @@ export class ReadView {
 
   private async setPrint(print: Print): Promise<void> {
     const { paper } = this;
-    switch (print.kind) {
-      case "text":
-        paper.text(print.text || " ");
-        break;
-      case "lines":
-        paper.lines(print.lines);
-        break;
-      case "drawing":
-        paper.drawing(print.strokes);
-        break;
-      case "picture":
-        try {
-          paper.show(await rasterOf(print.raster), print.raster.title);
-        } catch {
-          this.say("The page of the reading is spoiled.");
-        }
+    try {
+      await paper.print(print);
+    } catch {
+      this.say("The page of the reading is spoiled.");
     }
     this.display.setPage(isNarrow());
     this.session.setPage(paper.raster);
@@ -210,6 +199,7 @@ export class ReadView {
     if (this.frame || this.hidden) return;
     const step = (now: number): void => {
       this.frame = !this.hidden && this.step(now) ? requestAnimationFrame(step) : 0;
+      if (!this.frame) this.draw();
     };
     this.frame = requestAnimationFrame(step);
   }
@@ -360,7 +350,6 @@ export class ReadView {
       waiting: this.waiting,
       moved: this.phase === "reading" || demonstrates || this.playback.playing,
       lines: demonstrates ? [] : this.evaluated,
-      pen: this.hand.pen,
     };
   }
 
@@ -388,8 +377,8 @@ export class ReadView {
       },
       printed: (stroke) => {
         const { print } = this.state;
-        const strokes = print.kind === "drawing" ? print.strokes : [];
-        this.change({ print: { kind: "drawing", strokes: [...strokes, stroke] }, hand: null });
+        const before = print.kind === "drawing" ? print : blank();
+        this.change({ print: { ...before, strokes: [...before.strokes, stroke] }, hand: null });
       },
     });
   }
@@ -398,13 +387,12 @@ export class ReadView {
   private setPen(on: boolean): void {
     this.hand.pen = on;
     this.display.drawings.sheet.element.classList.toggle("pen", on);
-    if (on && this.state.print.kind !== "drawing")
-      this.change({ print: { kind: "drawing", strokes: [] }, task: 0, hand: null });
+    if (on && this.state.print.kind !== "drawing") this.change({ print: blank(), task: 0, hand: null });
     else this.draw();
   }
 
   private printOf(task: number): Print {
-    return TASKS[task]!.page(this.paper.usual);
+    return TASKS[task]!.page(usualWidth());
   }
 
   /** Opens "One release" with the motion of the chosen pin. */
@@ -427,7 +415,7 @@ export class ReadView {
     const name = fileName(paper.title);
     if (kind === "device") download("device.toml", device, "application/toml");
     if (kind === "file") {
-      const page = await packedRaster(paper.raster, paper.title);
+      const page = await packedPage(state.print);
       const reading = { format: FORMAT, device, page, hand: session.hand.saved };
       download(`${name}.json`, JSON.stringify(reading), "application/json");
     }
@@ -486,6 +474,6 @@ export class ReadView {
   }
 }
 
-function isNarrow(): boolean {
-  return innerWidth < 600;
+function blank(): Drawn {
+  return { kind: "drawing", strokes: [], width: usualWidth() };
 }
