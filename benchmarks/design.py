@@ -158,7 +158,7 @@ def reader() -> None:
     found = timed(device, tables)
     reached = found.goals[0].value
     problem = problem_of(device, tables)
-    (pitch,) = problem.study.page.page.grating  # type: ignore[union-attr, misc]
+    ((pitch, _),) = problem.study.page.page.grating  # type: ignore[union-attr, misc]
     for levels in LEVELS:
         meets, points = grid_that_meets(problem, levels)
         best = 0.0

@@ -49,7 +49,8 @@ def press(page: Any) -> None:
 
 def counts(page: Any) -> list[str]:
     page.wait_for_timeout(900)  # evaluated and shown
-    return page.locator(".counts dd").all_inner_texts()
+    shown: list[str] = page.locator(".counts dd").all_inner_texts()
+    return shown
 
 
 def leave(page: Any) -> None:

@@ -54,3 +54,19 @@ def init(
         with writing([Output(file, kind)], force=force) as parts, naming(file):
             parts[file].write_text(made(whole=device), encoding="utf-8")
     typer.echo(f"Wrote {file}; try: pindrive {next_}")
+    if device and not (study or problem):
+        typer.echo(_page_that_fits(file))
+
+
+def _page_that_fits(file: Path) -> str:
+    """Return the size of the pages on which the spots of a device find room."""
+    from pindrive.files.device import load_device
+
+    device = load_device(file, whole=True)
+    array = device.device.array
+    spots = array.on_page(array.spots)
+    across, down = 1e3 * (spots.max(axis=0) - spots.min(axis=0))
+    return (
+        f"Its {len(array)} pins look at spots {across:.3g} mm across and {down:.3g} mm down: it "
+        f"fits pages larger than that; letters are {1e3 * device.reading.text_height:.3g} mm high."
+    )

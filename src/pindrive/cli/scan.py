@@ -15,7 +15,6 @@ from pindrive.cli.options import (
     OverridesOption,
     RateOption,
     file_option,
-    measures,
     option,
 )
 from pindrive.cli.outputs import (
@@ -48,7 +47,13 @@ def scan(
     ] = None,
     image: Annotated[Path | None, option(PAGE, "Picture of the page.", metavar="FILE")] = None,
     grating: Annotated[
-        str | None, option(PAGE, 'Pitches of lines, for example "4 mm, 2 mm".', metavar="PITCHES")
+        str | None,
+        option(
+            PAGE,
+            'Pitches of groups of four lines, "4 mm, 2 mm"; of twelve, "12 x 4 mm"; or of as many '
+            'as a length holds, "4 mm over 60 mm".',
+            metavar="PITCHES",
+        ),
     ] = None,
     font: Annotated[
         Path | None, option(PAGE, "Font of the text; default DejaVu Sans.", metavar="FILE")
@@ -101,6 +106,7 @@ def scan(
             required = f"from 0 to {len(device.array) - 1}, beside --plot"
             raise ValueError(f"--pin must be {required}, got {pin}")
 
+        from pindrive.device.gratings import line_group
         from pindrive.device.page_description import Page
         from pindrive.device.scanning import scan as follow
         from pindrive.evaluation.perception import Evaluation, evaluate
@@ -113,7 +119,9 @@ def scan(
                 image=image,
                 grating=None
                 if grating is None
-                else tuple(measures(grating, "pitch", "4 mm", "--grating")),
+                else [
+                    line_group(part.strip(), "pitch", "--grating") for part in grating.split(",")
+                ],
                 font=font,
                 path=None if path == STROKES else Path(path),
                 smooth=smooth,

@@ -310,10 +310,7 @@ def _doubts(scan: Scan) -> list[str]:
             f"feel {np.cos(largest):.0%} of the speed, and the plate's friction pulls askew"
         )
     if not any(len(pin.commands.times) or pin.commands.at_first for pin in scan.pins):
-        found.append(
-            f"no pin met information: nothing under their spots is darker than "
-            f"{control.threshold - 0.5 * control.hysteresis:g}"
-        )
+        found.append(_blank(scan, control.threshold - 0.5 * control.hysteresis))
     coil = device.magnet.coil
     if coil is not None:
         lasts, peak = path.end - path.begin, peak_warming(scan)
@@ -330,6 +327,22 @@ def _doubts(scan: Scan) -> list[str]:
                 f"{coil.temperature_rise:g} K at {coil.duty:.0%}"
             )
     return found
+
+
+def _blank(scan: Scan, threshold: float) -> str:
+    """Return where the print is that no pin met."""
+    words = f"no pin met information: nothing under their spots is darker than {threshold:g}"
+    printed = scan.scene.printed(threshold)
+    if printed is None:
+        return f"{words}, nor is anything on the page"
+    x, _ = scan.path.position(np.linspace(scan.path.begin, scan.path.end, 1001))
+    spots = scan.device.array.on_page(scan.device.array.spots)[:, 0]
+    passed = 1e3 * (x.min() + spots.min()), 1e3 * (x.max() + spots.max())
+    left, right = (1e3 * edge for edge in printed)
+    return (
+        f"{words}; the print is {left:.4g} to {right:.4g} mm across, and the spots pass "
+        f"{passed[0]:.4g} to {passed[1]:.4g} mm"
+    )
 
 
 def _beyond(scan: Scan) -> str:

@@ -27,6 +27,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pindrive import _core
+from pindrive.device.gratings import USUAL, LineGroup, line_group
 from pindrive.lazy import Image, ImageDraw, ImageFont, ImageOps, features, ft2font, matplotlib
 from pindrive.quantities import budgets
 from pindrive.quantities.refusal import check_whole, quoted, refusal
@@ -180,9 +181,9 @@ class Scene:
     @classmethod
     def from_grating(
         cls,
-        pitches: Iterable[float | str],
+        pitches: Iterable[float | str | tuple[float, int]],
         *,
-        count: int = 4,
+        count: int = USUAL,
         height: float | str = default("text_height"),
         pixel: float | str = default("text.pixel"),
         margin: float | str = default("margin"),
@@ -190,8 +191,9 @@ class Scene:
         """Groups of upright black lines, each half as wide as its pitch.
 
         Args:
-            pitches: Distances between lines in each group, m, greater than 0.
-            count: Lines in each group, at least 1.
+            pitches: Distances between lines in each group, m, greater than 0; or pairs of a
+                distance and a number of lines; or text as for `Page`.
+            count: Lines in each group without a number of its own, at least 1.
             height: m.
             pixel: M; a border between pixels is as dark as the part of the pixel it covers.
             margin: White around the groups, m, and with the pitch between them.
@@ -199,15 +201,19 @@ class Scene:
         Raises:
             ValueError: No pitch is given, no line fits, or a number is out of range.
         """
-        steps = [check("pitch", pitch) for pitch in pitches]
-        if not steps:
+        usual = check_whole(count, "count")
+        groups = [
+            LineGroup(group.pitch, usual) if isinstance(given, (int, float)) else group
+            for given in pitches
+            for group in [line_group(given, "pitch")]
+        ]
+        if not groups:
             raise ValueError(refusal("pitches", "at least one", "none"))
-        size, count = check("pixel", pixel), check_whole(count, "count")
-        white = check("margin", margin)
+        size, white = check("pixel", pixel), check("margin", margin)
         begins, ends, x = [], [], white
-        for pitch in steps:
-            begins += [x + i * pitch for i in range(count)]
-            ends += [x + (i + 0.5) * pitch for i in range(count)]
+        for pitch, number in groups:
+            begins += [x + i * pitch for i in range(number)]
+            ends += [x + (i + 0.5) * pitch for i in range(number)]
             x = ends[-1] + white
         across, down = x / size, (check("text_height", height) + 2.0 * white) / size
         _check_size(across, down)
@@ -218,8 +224,21 @@ class Scene:
         top = round(white / size)
         page[top : rows - top] = row
         page.flags.writeable = False
-        words = ", ".join(f"{1e3 * pitch:g}" for pitch in steps)
-        return cls(page, size, lines=(0.5 * rows * size,), title=f"lines every {words} mm")
+        return cls(page, size, lines=(0.5 * rows * size,), title=lines_in_words(groups))
+
+    def printed(self, threshold: float | str = default("threshold")) -> tuple[float, float] | None:
+        """Left and right end of what is darker than a threshold, m; None for a blank page."""
+        columns = np.flatnonzero(self.dark(threshold).any(axis=0))
+        if not len(columns):
+            return None
+        left = self.origin[0]
+        return left + columns[0] * self.pixel, left + (columns[-1] + 1) * self.pixel
+
+
+def lines_in_words(groups: Iterable[LineGroup]) -> str:
+    """A grating for a title."""
+    pitches = ", ".join(f"{1e3 * pitch:g}" for pitch, _ in groups)
+    return f"lines every {pitches} mm"
 
 
 def in_words(text: str) -> str:

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 
+from pindrive.device.gratings import LineGroup, line_group
 from pindrive.device.hand import HandPath
-from pindrive.device.page import Scene, in_words
+from pindrive.device.page import Scene, in_words, lines_in_words
 from pindrive.device.pin_array import PinArray
 from pindrive.device.reading import Reading
 from pindrive.device.recording import read_csv
 from pindrive.quantities.refusal import refusal
-from pindrive.quantities.table import check
 from pindrive.quantities.value import concise
 
 
@@ -36,7 +36,8 @@ class Page:
     Args:
         text: Text of one or more lines.
         image: A file that Pillow reads.
-        grating: Distances between lines in each of several groups, m.
+        grating: Groups of lines, each a pitch (m) of four lines, or text: "4 mm", "12 x 4 mm" for
+            twelve lines, "4 mm over 60 mm" for as many as a length holds.
         font: A file for the text; None: DejaVu Sans.
         path: A CSV of the hand's path; None: strokes.
         smooth: True to smooth this path, False to use its places as they are; None: as its data
@@ -48,7 +49,7 @@ class Page:
 
     text: str | None
     image: Path | None
-    grating: tuple[float, ...] | None
+    grating: tuple[LineGroup, ...] | None
     font: Path | None
     path: Path | None
     smooth: bool | None
@@ -58,14 +59,14 @@ class Page:
         *,
         text: str | None = None,
         image: str | PathLike[str] | None = None,
-        grating: Iterable[float | str] | None = None,
+        grating: Iterable[float | str | tuple[float, int]] | None = None,
         font: str | PathLike[str] | None = None,
         path: str | PathLike[str] | None = None,
         smooth: bool | None = None,
     ) -> None:
         """Validate the pitches, and keep paths."""
         if grating is not None:
-            found = [check("pitch", x, label=f"grating[{i}]") for i, x in enumerate(grating)]
+            found = [line_group(group, f"grating[{i}]") for i, group in enumerate(grating)]
             object.__setattr__(self, "grating", tuple(found))
         else:
             object.__setattr__(self, "grating", None)
@@ -112,13 +113,13 @@ class Page:
         elif self.image is not None:
             shown = f"picture {self.image.name}"
         else:
-            shown = f"lines every {', '.join(f'{1e3 * p:g}' for p in self.grating or ())} mm"
+            shown = lines_in_words(self.grating or ())
         return f"{shown} along {self.path.name}" if self.path else shown
 
     @property
     def options(self) -> str:
         """As `pindrive scan` takes it."""
-        pitches = ", ".join(f"{1e3 * pitch:.12g} mm" for pitch in self.grating or ())
+        pitches = ", ".join(group.words for group in self.grating or ())
         text = None if self.text is None else self.text.replace("\n", "\\n")
         given = {"text": text, "grating": pitches or None} | self.files
         flags = {None: "", True: " --smooth", False: " --no-smooth"}

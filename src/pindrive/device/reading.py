@@ -8,6 +8,7 @@ from typing import Final
 
 import numpy as np
 
+from pindrive.device.gratings import LineGroup
 from pindrive.device.hand import HandPath, lines
 from pindrive.device.page import Scene
 from pindrive.device.pin_array import PinArray
@@ -65,7 +66,7 @@ class Reading:
             font=font,
         )
 
-    def grating(self, pitches: Iterable[float], array: PinArray) -> Scene:
+    def grating(self, pitches: Iterable[float | LineGroup], array: PinArray) -> Scene:
         """Groups of lines on which the array finds room; errors as for `Scene.from_grating`."""
         return Scene.from_grating(
             pitches,

@@ -44,7 +44,7 @@ def _speed(study: Study, requested: SpeedRequest) -> tuple[float, int]:
     try:
         file = study.device_at(requested.at)
         device, criteria = file.device, file.criteria
-        pitches = study.page.page.grating or ()
+        pitches = [group.pitch for group in study.page.page.grating or ()]
         check_work(device, pitches, [0.5 * p for p in pitches], (SLOWEST, FASTEST))
         for pitch in pitches:
             climb = Climb(device, pitch, criteria)

@@ -12,14 +12,13 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from pindrive.device.gratings import LineGroup, line_group
 from pindrive.device.hand import HandPath
 from pindrive.device.page import Scene
 from pindrive.device.page_description import Page, recorded
 from pindrive.device.pin_array import PinArray
 from pindrive.device.reading import Reading
-from pindrive.files.keys import number
 from pindrive.quantities.refusal import quoted, refusal
-from pindrive.quantities.table import QUANTITIES
 from pindrive.study.distributions import (
     Distribution,
     Grid,
@@ -114,7 +113,7 @@ def read_page(table: Any, file: Path) -> Page:
     parts: dict[str, Any] = {}
     for key, given in table.items():
         if key == "grating":
-            parts[key] = _pitches(given, str(file))
+            parts[key] = _groups(given, str(file))
         elif not isinstance(given, str):
             raise ValueError(refusal(f"page.{key}", "text in quotes", quoted(given), str(file)))
         else:
@@ -124,14 +123,14 @@ def read_page(table: Any, file: Path) -> Page:
     return page
 
 
-def _pitches(given: object, file: str) -> tuple[float, ...]:
-    """The distances of a grating, SI."""
+def _groups(given: object, file: str) -> tuple[LineGroup, ...]:
+    """The groups of lines of a grating."""
     if not isinstance(given, list) or not given:
         required = 'a list of distances, like ["4 mm", "2 mm"]'
         raise ValueError(refusal("page.grating", required, quoted(given), file))
-    pitch = QUANTITIES["pitch"]
     return tuple(
-        number(value, pitch, "4 mm", f"page.grating[{i}]", file) for i, value in enumerate(given)
+        line_group(value if isinstance(value, str) else repr(value), f"page.grating[{i}]", file)
+        for i, value in enumerate(given)
     )
 
 
