@@ -1,29 +1,29 @@
 /* The C interface, called from C: what it computes, and what it says of each mistake. */
+#include "pindrive.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "pindrive.h"
-
 static int failures = 0;
 
-static void expect(int holds, const char* what) {
+static void expect(int holds, const char *what) {
   if (holds) return;
   ++failures;
   printf("FAILED: %s\n", what);
 }
 
 /* That a call fails with an error, and that what it says has these words. */
-static void refuses(pindrive_error error, pindrive_error expected, const char* words) {
+static void refuses(pindrive_error error, pindrive_error expected, const char *words) {
   if (error == expected && strstr(pindrive_last_error(), words) != NULL) return;
   ++failures;
-  printf("FAILED: error %d, \"%s\", not %d, \"%s\"\n", error, pindrive_last_error(), expected,
-         words);
+  printf("FAILED: error %d, \"%s\", not %d, \"%s\"\n", error, pindrive_last_error(),
+         expected, words);
 }
 
-static pindrive_drive* the_drive(void) {
-  pindrive_drive* drive = pindrive_drive_new();
+static pindrive_drive *the_drive(void) {
+  pindrive_drive *drive = pindrive_drive_new();
   expect(pindrive_drive_set(drive, "mass", 0.010) == PINDRIVE_OK, "mass");
   expect(pindrive_drive_set(drive, "stiffness", 100.0) == PINDRIVE_OK, "stiffness");
   expect(pindrive_drive_set(drive, "damping", 0.40) == PINDRIVE_OK, "damping");
@@ -32,21 +32,21 @@ static pindrive_drive* the_drive(void) {
   return drive;
 }
 
-static pindrive_release* the_release(void) {
-  pindrive_release* release = pindrive_release_new();
+static pindrive_release *the_release(void) {
+  pindrive_release *release = pindrive_release_new();
   expect(pindrive_release_set(release, "mouse_velocity", 0.10) == PINDRIVE_OK, "mouse_velocity");
   expect(pindrive_release_set(release, "displacement", 1.5e-3) == PINDRIVE_OK, "displacement");
   return release;
 }
 
-static pindrive_motion* run(const pindrive_drive* drive, const pindrive_release* release) {
-  pindrive_motion* motion = NULL;
+static pindrive_motion *run(const pindrive_drive *drive, const pindrive_release *release) {
+  pindrive_motion *motion = NULL;
   expect(pindrive_simulate(drive, release, NULL, NULL, &motion) == PINDRIVE_OK, "simulate");
   return motion;
 }
 
 /* A number of a motion by its name; NaN if it has none. */
-static double number(const pindrive_motion* motion, const char* name) {
+static double number(const pindrive_motion *motion, const char *name) {
   double values[64];
   size_t i;
   expect(pindrive_number_count() <= 64, "the numbers fit");
@@ -58,9 +58,9 @@ static double number(const pindrive_motion* motion, const char* name) {
 }
 
 static void a_motion(void) {
-  pindrive_drive* drive = the_drive();
-  pindrive_release* release = the_release();
-  pindrive_motion* motion = run(drive, release);
+  pindrive_drive *drive = the_drive();
+  pindrive_release *release = the_release();
+  pindrive_motion *motion = run(drive, release);
   pindrive_outcome outcome;
   pindrive_segment first, last;
   pindrive_event events[64];
@@ -112,8 +112,8 @@ static void a_motion(void) {
   times[1] = -1;
   refuses(pindrive_evaluate(motion, PINDRIVE_POSITION, times, 2, PINDRIVE_RIGHT, x),
           PINDRIVE_BAD_VALUE, "times[1] must be");
-  refuses(pindrive_evaluate(motion, 9, times, 1, PINDRIVE_RIGHT, x), PINDRIVE_BAD_VALUE,
-          "a quantity must be from 0 to 7, not 9");
+  refuses(pindrive_evaluate(motion, 9, times, 1, PINDRIVE_RIGHT, x),
+          PINDRIVE_BAD_VALUE, "a quantity must be from 0 to 7, not 9");
   refuses(pindrive_numbers(motion, -1, 0.05, values), PINDRIVE_BAD_VALUE, "duration must be");
   refuses(pindrive_numbers(motion, 1, 0, values), PINDRIVE_BAD_VALUE, "settling_band must be");
   refuses(pindrive_crossings(motion, PINDRIVE_PLATE_FORCE, 0, 1, turns, sides, 64, &count),
@@ -133,9 +133,9 @@ static void derivatives(void) {
   double slope, below, above, event;
   size_t count;
   expect(pindrive_drive_set(rate, "mass", 1) == PINDRIVE_OK, "a direction");
-  expect(
-      pindrive_differentiate(drive, release, rate, still, NULL, NULL, &derivative) == PINDRIVE_OK,
-      "differentiate");
+  expect(pindrive_differentiate(drive, release, rate, still, NULL, NULL, &derivative) ==
+             PINDRIVE_OK,
+         "differentiate");
   pindrive_drive_set(drive, "mass", 0.010 * (1 - step));
   less = run(drive, release);
   pindrive_drive_set(drive, "mass", 0.010 * (1 + step));
@@ -168,38 +168,31 @@ static void derivatives(void) {
 /* Each mistake in a drive or a release is told in words. */
 static void mistakes(void) {
   static const struct {
-    const char* name;
+    const char *name;
     double value;
     pindrive_error error;
-    const char* words;
+    const char *words;
   } cases[] = {
-      {"mass", 1e-13, PINDRIVE_BAD_VALUE,
-       "mass must be finite and at least 1e-12 kg and at most 1e12 kg"},
+      {"mass", 1e-13, PINDRIVE_BAD_VALUE, "mass must be finite and at least 1e-12 kg and at most 1e12 kg"},
       {"mass", 0, PINDRIVE_BAD_VALUE, "mass must be finite and greater than 0 kg, got 0.0 kg"},
-      {"stiffness", INFINITY, PINDRIVE_BAD_VALUE,
-       "stiffness must be finite and greater than 0 N/m, got inf N/m"},
-      {"damping", -1, PINDRIVE_BAD_VALUE,
-       "damping must be finite and at least 0 N*s/m, got -1.0 N*s/m"},
-      {"plate.kinetic", -0.5, PINDRIVE_BAD_VALUE,
-       "plate.kinetic must be finite and at least 0 N, got -0.5 N"},
-      {"plate.static", 0.01, PINDRIVE_BAD_VALUE,
-       "plate.static must be at least the kinetic friction, 0.02 N, got 0.01 N"},
-      {"finger.stiffness", 0, PINDRIVE_BAD_VALUE,
-       "finger.stiffness must be finite and greater than 0 N/m"},
+      {"stiffness", INFINITY, PINDRIVE_BAD_VALUE, "stiffness must be finite and greater than 0 N/m, got inf N/m"},
+      {"damping", -1, PINDRIVE_BAD_VALUE, "damping must be finite and at least 0 N*s/m, got -1.0 N*s/m"},
+      {"plate.kinetic", -0.5, PINDRIVE_BAD_VALUE, "plate.kinetic must be finite and at least 0 N, got -0.5 N"},
+      {"plate.static", 0.01, PINDRIVE_BAD_VALUE, "plate.static must be at least the kinetic friction, 0.02 N, got 0.01 N"},
+      {"finger.stiffness", 0, PINDRIVE_BAD_VALUE, "finger.stiffness must be finite and greater than 0 N/m"},
       {"displacement", NAN, PINDRIVE_BAD_VALUE, "displacement must be finite"},
       {"velocity", INFINITY, PINDRIVE_BAD_VALUE, "velocity must be finite, got inf m/s"},
       {"plate_load", -1, PINDRIVE_BAD_VALUE, "row 0 of plate_load must be from 0 to 1e12"},
       {"skin_stretch", 1e-3, PINDRIVE_UNSUPPORTED, "skin_stretch must be NaN for a rigid finger"},
-      {"duration", 0, PINDRIVE_BAD_VALUE,
-       "duration must be finite and greater than 0 s, got 0.0 s"},
+      {"duration", 0, PINDRIVE_BAD_VALUE, "duration must be finite and greater than 0 s, got 0.0 s"},
       {"weight", 1, PINDRIVE_BAD_NAME, "has no weight, but"},
   };
   const double speeds[] = {0, 0.1, 0.05}, forces[] = {0.02, 0.01, 0.01};
-  pindrive_motion* motion = NULL;
+  pindrive_motion *motion = NULL;
   size_t i;
   for (i = 0; i < sizeof cases / sizeof *cases; ++i) {
-    pindrive_drive* drive = the_drive();
-    pindrive_release* release = the_release();
+    pindrive_drive *drive = the_drive();
+    pindrive_release *release = the_release();
     pindrive_error error = pindrive_drive_set(drive, cases[i].name, cases[i].value);
     if (error == PINDRIVE_BAD_NAME)
       error = pindrive_release_set(release, cases[i].name, cases[i].value);
@@ -210,8 +203,8 @@ static void mistakes(void) {
     pindrive_release_free(release);
   }
   {
-    pindrive_drive* drive = the_drive();
-    pindrive_release* release = the_release();
+    pindrive_drive *drive = the_drive();
+    pindrive_release *release = the_release();
     pindrive_drive_set_curve(drive, "plate", speeds, forces, 3);
     refuses(pindrive_simulate(drive, release, NULL, NULL, &motion), PINDRIVE_BAD_VALUE,
             "row 2 of plate.curve must come after");
@@ -223,8 +216,7 @@ static void mistakes(void) {
     refuses(pindrive_drive_set_curve(drive, "thumb", speeds, forces, 2), PINDRIVE_BAD_NAME,
             "the contacts plate and finger");
     refuses(pindrive_release_set_profile(release, "displacement", speeds, forces, 2),
-            PINDRIVE_BAD_NAME,
-            "the inputs mouse_velocity, plate_load, force, across_velocity and finger_load");
+            PINDRIVE_BAD_NAME, "the inputs mouse_velocity, plate_load, force, across_velocity and finger_load");
     refuses(pindrive_simulate(NULL, release, NULL, NULL, &motion), PINDRIVE_NULL, "drive");
     pindrive_drive_free(drive);
     pindrive_release_free(release);
@@ -232,7 +224,7 @@ static void mistakes(void) {
 }
 
 /* The position at a time to which steps lead. */
-static double position_after(pindrive_stepper* stepper, double until, double step) {
+static double position_after(pindrive_stepper *stepper, double until, double step) {
   pindrive_instant now;
   double x = NAN;
   expect(pindrive_stepper_now(stepper, &now) == PINDRIVE_OK, "now");
@@ -245,16 +237,16 @@ static double position_after(pindrive_stepper* stepper, double until, double ste
   return x;
 }
 
-static int never(void* context) {
-  ++*(int*)context;
+static int never(void *context) {
+  ++*(int *)context;
   return 0;
 }
 
 /* Next to no friction and no damping: a motion of very many events, which its caller stops. */
 static void stopping(void) {
-  pindrive_drive* drive = the_drive();
-  pindrive_release* release = the_release();
-  pindrive_motion* motion = NULL;
+  pindrive_drive *drive = the_drive();
+  pindrive_release *release = the_release();
+  pindrive_motion *motion = NULL;
   pindrive_stepper *stepper = NULL, *other = NULL;
   pindrive_instant now;
   double until;
@@ -281,30 +273,29 @@ static void stopping(void) {
 static void a_batch(void) {
   const double masses[3] = {0.008, -1, 0.012};
   const pindrive_varied varied = {"mass", masses}, unknown = {"weight", masses};
-  const char* const outputs[3] = {pindrive_number_name(0), "energy.spring_start", "final.position"};
-  const char* const no_output = "energy.none";
+  const char *const outputs[3] = {pindrive_number_name(0), "energy.spring_start", "final.position"};
+  const char *const no_output = "energy.none";
   double numbers[9];
   int events[3];
   pindrive_status status[3];
   pindrive_end end[3];
   pindrive_error error[3];
-  pindrive_drive* drive = the_drive();
-  pindrive_release* release = the_release();
-  pindrive_motion* motion;
-  expect(pindrive_batch(drive, release, &varied, 1, 3, 0.05, outputs, 3, NULL, NULL, numbers,
-                        events, status, end, error) == PINDRIVE_OK,
+  pindrive_drive *drive = the_drive();
+  pindrive_release *release = the_release();
+  pindrive_motion *motion;
+  expect(pindrive_batch(drive, release, &varied, 1, 3, 0.05, outputs, 3, NULL, NULL, numbers, events,
+                        status, end, error) == PINDRIVE_OK,
          "batch");
   expect(error[0] == PINDRIVE_OK && error[1] == PINDRIVE_BAD_VALUE && error[2] == PINDRIVE_OK,
          "one point is refused");
-  expect(isnan(numbers[3]) && events[1] == 0 && end[2] == PINDRIVE_END_RESTING,
-         "and has no numbers");
+  expect(isnan(numbers[3]) && events[1] == 0 && end[2] == PINDRIVE_END_RESTING, "and has no numbers");
   pindrive_drive_set(drive, "mass", 0.012);
   motion = run(drive, release);
   expect(fabs(numbers[6] / number(motion, outputs[0]) - 1) < 1e-14, "as one motion has it");
   expect(fabs(numbers[8] / number(motion, "ending.position") - 1) < 1e-14, "where it ends");
   expect(events[2] > 0, "and its events");
-  refuses(pindrive_batch(drive, release, &unknown, 1, 3, 0.05, outputs, 3, NULL, NULL, numbers,
-                         NULL, NULL, NULL, NULL),
+  refuses(pindrive_batch(drive, release, &unknown, 1, 3, 0.05, outputs, 3, NULL, NULL, numbers, NULL,
+                         NULL, NULL, NULL),
           PINDRIVE_BAD_NAME, "neither a drive nor a release has weight");
   refuses(pindrive_batch(drive, release, &varied, 1, 3, 0.05, &no_output, 1, NULL, NULL, numbers,
                          NULL, NULL, NULL, NULL),
@@ -322,7 +313,7 @@ static void stepping(void) {
   pindrive_stepper *stepper = NULL, *copy = NULL, *read = NULL, *along = NULL, *other = NULL;
   pindrive_instant now;
   pindrive_segment first;
-  unsigned char* bytes;
+  unsigned char *bytes;
   size_t size;
   double x, y;
   expect(pindrive_stepper_new(drive, release, 0, &stepper) == PINDRIVE_OK, "a stepper");
@@ -335,17 +326,17 @@ static void stepping(void) {
   x = position_after(stepper, t, 1e-3);
   expect(x == position_after(copy, t, 7e-4), "any steps lead to the same bits");
 
-  expect(
-      pindrive_release_set_profile(release, "mouse_velocity", times, velocities, 2) == PINDRIVE_OK,
-      "the same as a profile");
+  expect(pindrive_release_set_profile(release, "mouse_velocity", times, velocities, 2) ==
+             PINDRIVE_OK,
+         "the same as a profile");
   motion = run(drive, release);
   pindrive_evaluate(motion, PINDRIVE_POSITION, &t, 1, PINDRIVE_RIGHT, &y);
   expect(fabs(x - y) < 1e-15 * fabs(y), "those of one simulation");
   pindrive_release_free(still);
   still = pindrive_release_rate_new(release);
-  expect(
-      pindrive_differentiate(drive, release, rate, still, NULL, NULL, &derivative) == PINDRIVE_OK,
-      "its derivatives");
+  expect(pindrive_differentiate(drive, release, rate, still, NULL, NULL, &derivative) ==
+             PINDRIVE_OK,
+         "its derivatives");
   pindrive_evaluate(derivative, PINDRIVE_POSITION, &t, 1, PINDRIVE_RIGHT, &y);
   expect(fabs(position_after(along, t, 1e-3) - y) < 1e-12 * fabs(y), "and its derivatives");
 
@@ -369,8 +360,8 @@ static void stepping(void) {
          "its plate slips across");
   expect(pindrive_stepper_set(copy, "force", 0.02, 1) == PINDRIVE_OK &&
              pindrive_stepper_set(copy, "across_velocity", 0, 0) == PINDRIVE_OK &&
-             pindrive_stepper_now(copy, &now) == PINDRIVE_OK &&
-             now.plate == PINDRIVE_SLIP_BACKWARD && now.force == 0.02 && now.force_rate == 1,
+             pindrive_stepper_now(copy, &now) == PINDRIVE_OK && now.plate == PINDRIVE_SLIP_BACKWARD &&
+             now.force == 0.02 && now.force_rate == 1,
          "until that stops");
   pindrive_stepper_free(copy);
   pindrive_release_set(release, "across_velocity", 0);
@@ -386,8 +377,7 @@ static void stepping(void) {
              now.finger_event == first.finger_event,
          "where it stops");
 
-  refuses(pindrive_stepper_step(copy, 0, 0, NULL, NULL), PINDRIVE_BAD_VALUE,
-          "until must be finite");
+  refuses(pindrive_stepper_step(copy, 0, 0, NULL, NULL), PINDRIVE_BAD_VALUE, "until must be finite");
   refuses(pindrive_stepper_set(copy, "plate_load", -1, 0), PINDRIVE_BAD_VALUE,
           "plate_load must be from 0 to 1e12, not -1");
   refuses(pindrive_stepper_set(copy, "mouse_velocity", 0, INFINITY), PINDRIVE_BAD_VALUE,
@@ -447,8 +437,8 @@ static void along_no_load(void) {
 }
 
 static void at_stops(void) {
-  pindrive_drive* drive = the_drive();
-  pindrive_release* release = pindrive_release_new();
+  pindrive_drive *drive = the_drive();
+  pindrive_release *release = pindrive_release_new();
   pindrive_stepper *stepper = NULL, *read = NULL;
   pindrive_instant now;
   double push = NAN, x = NAN;
@@ -469,7 +459,7 @@ static void at_stops(void) {
   expect(push < -0.3, "which the stop takes");
   {
     const size_t size = pindrive_stepper_size(stepper);
-    unsigned char* bytes = malloc(size);
+    unsigned char *bytes = malloc(size);
     expect(pindrive_stepper_write(stepper, bytes, size) == PINDRIVE_OK, "written at a stop");
     expect(pindrive_stepper_read(bytes, size, &read) == PINDRIVE_OK, "read");
     free(bytes);
@@ -490,9 +480,9 @@ static void at_stops(void) {
 static void slipping_across(void) {
   const double across[2] = {0.05, 1e12};
   for (int i = 0; i < 2; ++i) {
-    pindrive_drive* drive = the_drive();
-    pindrive_release* release = the_release();
-    pindrive_stepper* stepper = NULL;
+    pindrive_drive *drive = the_drive();
+    pindrive_release *release = the_release();
+    pindrive_stepper *stepper = NULL;
     double x = NAN;
     pindrive_release_set(release, "across_velocity", across[i]);
     expect(pindrive_stepper_new(drive, release, 0, &stepper) == PINDRIVE_OK, "a stepper across");
@@ -508,8 +498,8 @@ static void slipping_across(void) {
 }
 
 /* A device whose one pin stands on a black line, under a hand at an even speed. */
-static pindrive_device* the_device(void) {
-  pindrive_device* device = pindrive_device_new();
+static pindrive_device *the_device(void) {
+  pindrive_device *device = pindrive_device_new();
   expect(pindrive_device_set(device, "drive.mass", 0.010) == PINDRIVE_OK, "mass by its key");
   expect(pindrive_device_set(device, "drive.stiffness", 100) == PINDRIVE_OK, "stiffness");
   expect(pindrive_device_set(device, "drive.damping", 0.4) == PINDRIVE_OK, "damping");
@@ -523,8 +513,8 @@ static void lines_and_speeds(void) {
   double paper[400];
   pindrive_piece pieces[2];
   pindrive_term terms[4];
-  pindrive_device* device = the_device();
-  pindrive_scan* scan = NULL;
+  pindrive_device *device = the_device();
+  pindrive_scan *scan = NULL;
   pindrive_line lines[8];
   pindrive_speed_limit limit;
   size_t count = 0;
@@ -535,7 +525,8 @@ static void lines_and_speeds(void) {
   refuses(pindrive_scan_lines(scan, NULL, NULL, lines, 8, &count), PINDRIVE_BAD_VALUE,
           "two rows of the hand or more");
   expect(pindrive_scan_move(scan, 0.6, 0.06, 0, 1) == PINDRIVE_OK, "the hand moves");
-  expect(pindrive_scan_lines(scan, NULL, NULL, lines, 1, &count) == PINDRIVE_MORE && count >= 2,
+  expect(pindrive_scan_lines(scan, NULL, NULL, lines, 1, &count) == PINDRIVE_MORE &&
+             count >= 2,
          "two lines");
   expect(pindrive_scan_lines(scan, NULL, NULL, lines, 8, &count) == PINDRIVE_OK &&
              lines[0].outcome == PINDRIVE_SHOWN && lines[1].outcome == PINDRIVE_SHOWN,
@@ -557,10 +548,10 @@ static void lines_and_speeds(void) {
           PINDRIVE_BAD_VALUE, "width must be from 1e-07 to below the pitch");
   refuses(pindrive_device_speed_limit(device, 4e-3, 2e-3, 1, 1, NULL, NULL, &limit),
           PINDRIVE_BAD_VALUE, "fastest must be above the slowest");
-  expect(
-      pindrive_device_speed_limit(device, 4e-3, 2e-3, 0.01, 1, NULL, NULL, &limit) == PINDRIVE_OK &&
-          limit.bands > 0 && limit.distinct_to > 0.05 && limit.distinct_to < 1,
-      "a speed at which two lines merge");
+  expect(pindrive_device_speed_limit(device, 4e-3, 2e-3, 0.01, 1, NULL, NULL, &limit) ==
+                 PINDRIVE_OK &&
+             limit.bands > 0 && limit.distinct_to > 0.05 && limit.distinct_to < 1,
+         "a speed at which two lines merge");
   pindrive_scan_free(scan);
   pindrive_device_free(device);
 }
@@ -568,14 +559,14 @@ static void lines_and_speeds(void) {
 static void a_device(void) {
   const double black[2] = {0, 0}, gray[1] = {1.5}, x[2] = {0, 5e-3}, y[2] = {0, 0};
   const double times[2] = {0, 0.01}, volts[2] = {5, 2};
-  pindrive_device* device = the_device();
+  pindrive_device *device = the_device();
   pindrive_scan *scan = NULL, *copy = NULL, *read = NULL;
   pindrive_scan_instant now;
   pindrive_instant pin;
   pindrive_pin_event events[2];
   double values[2];
   size_t count, size;
-  unsigned char* bytes;
+  unsigned char *bytes;
   expect(pindrive_device_set_pins(device, x, y, 2) == PINDRIVE_OK, "pins");
   expect(pindrive_scan_new(device, 0.1, 0, 0, 0.06, 0, 1, &scan) == PINDRIVE_OK, "a scan");
   expect(pindrive_scan_now(scan, &now) == PINDRIVE_OK && now.pins == 2 && now.x == 0, "it begins");
@@ -586,8 +577,7 @@ static void a_device(void) {
   expect(pindrive_scan_copy(scan, &copy) == PINDRIVE_OK, "a copy before the second row");
   refuses(pindrive_scan_move(scan, 0.1, 0, 0, 1), PINDRIVE_BAD_VALUE, "must be later than");
   refuses(pindrive_scan_move(scan, 0.2, NAN, 0, 1), PINDRIVE_BAD_VALUE, "vx must be from -1e12");
-  refuses(pindrive_scan_move(scan, 0.2, 0, 0, -1), PINDRIVE_BAD_VALUE,
-          "finger_load must be from 0");
+  refuses(pindrive_scan_move(scan, 0.2, 0, 0, -1), PINDRIVE_BAD_VALUE, "finger_load must be from 0");
   expect(pindrive_scan_set_page(scan, black, 1, 2, 4e-3, -4e-3, -2e-3) == PINDRIVE_OK, "a page");
   refuses(pindrive_scan_set_page(scan, gray, 1, 1, 1e-4, 0, 0), PINDRIVE_BAD_VALUE,
           "luminance must be from 0 to 1, not 1.5 at pixel 0");
@@ -626,8 +616,7 @@ static void a_device(void) {
   }
   bytes[size / 2] ^= 1;
   pindrive_scan_free(read);
-  refuses(pindrive_scan_read(device, bytes, size, &read), PINDRIVE_BAD_VALUE,
-          "of a scan of 2 pins");
+  refuses(pindrive_scan_read(device, bytes, size, &read), PINDRIVE_BAD_VALUE, "of a scan of 2 pins");
   bytes[size / 2] ^= 1;
   expect(pindrive_device_set_pins(device, x, y, 1) == PINDRIVE_OK, "another device");
   refuses(pindrive_scan_read(device, bytes, size, &read), PINDRIVE_BAD_VALUE, "of a scan of 1 pin");
@@ -635,17 +624,14 @@ static void a_device(void) {
   pindrive_scan_free(scan);
   pindrive_scan_free(copy);
 
-  refuses(pindrive_device_set(device, "drive.mas", 1), PINDRIVE_BAD_NAME,
-          "has no number drive.mas");
-  refuses(pindrive_device_set_rows(device, "drive.mass", x, y, 1), PINDRIVE_BAD_NAME,
-          "has no rows");
+  refuses(pindrive_device_set(device, "drive.mas", 1), PINDRIVE_BAD_NAME, "has no number drive.mas");
+  refuses(pindrive_device_set_rows(device, "drive.mass", x, y, 1), PINDRIVE_BAD_NAME, "has no rows");
   refuses(pindrive_device_set_pins(device, x, y, 0), PINDRIVE_BAD_VALUE, "at least one pin");
   pindrive_device_set(device, "control.hysteresis", 1.5);
   refuses(pindrive_scan_new(device, 0, 0, 0, 0, 0, 1, &scan), PINDRIVE_BAD_VALUE,
           "control.hysteresis must be");
   pindrive_device_set(device, "control.hysteresis", 0.1);
-  expect(pindrive_device_set_rows(device, "magnet.voltage", times, volts, 2) == PINDRIVE_OK,
-         "rows");
+  expect(pindrive_device_set_rows(device, "magnet.voltage", times, volts, 2) == PINDRIVE_OK, "rows");
   pindrive_device_set(device, "magnet.turns", 250);
   refuses(pindrive_scan_new(device, 0, 0, 0, 0, 0, 1, &scan), PINDRIVE_BAD_VALUE,
           "magnet.turns must be given with pole_area");
@@ -655,8 +641,7 @@ static void a_device(void) {
 /* A stepper follows inputs given over time, and a friction law, also from its bytes. */
 static void stepped_functions(void) {
   const pindrive_term wave = {0, 0.1, 0, 75}, along = {0, 1, 0, 0};
-  const pindrive_piece hand[] = {{0, {0.02}, &wave, 1},
-                                 {0.04, {0.02 + 0.1 * sin(3.0), 1}, NULL, 0}};
+  const pindrive_piece hand[] = {{0, {0.02}, &wave, 1}, {0.04, {0.02 + 0.1 * sin(3.0), 1}, NULL, 0}};
   const pindrive_piece rate[] = {{0, {0}, &along, 1}, {0, {sin(3.0)}, NULL, 0}};
   const double times[] = {0, 0.02, 0.05}, forces[] = {0, 0.05, -0.05}, t = 0.06;
   pindrive_drive *drive = the_drive(), *still;
@@ -666,7 +651,7 @@ static void stepped_functions(void) {
   pindrive_instant now;
   double expected, slope, x;
   size_t size;
-  void* bytes;
+  void *bytes;
   pindrive_drive_set(drive, "plate.law", PINDRIVE_LAW_STRIBECK);
   pindrive_drive_set(drive, "plate.breakaway", 0.03);
   pindrive_drive_set(drive, "plate.static", 0.03);
@@ -691,11 +676,9 @@ static void stepped_functions(void) {
   x = position_after(stepper, t, 0.007);
   expect(fabs(x - expected) < 1e-15, "it is where the motion is");
   expect(position_after(again, t, 0.011) == x, "so it is from its bytes");
-  expect(pindrive_stepper_now(stepper, &now) == PINDRIVE_OK &&
-             fabs(now.mouse_velocity_rate - 1) < 1e-12,
+  expect(pindrive_stepper_now(stepper, &now) == PINDRIVE_OK && fabs(now.mouse_velocity_rate - 1) < 1e-12,
          "the hand is in its second piece");
-  refuses(pindrive_stepper_set(stepper, "force", 0, 0), PINDRIVE_UNSUPPORTED,
-          "force cannot be set");
+  refuses(pindrive_stepper_set(stepper, "force", 0, 0), PINDRIVE_UNSUPPORTED, "force cannot be set");
   expect(pindrive_stepper_set(stepper, "plate_load", 1.5, 0) == PINDRIVE_OK, "another input can");
   expect(pindrive_differentiate(drive, release, still, direction, NULL, NULL, &differentiated) ==
                  PINDRIVE_OK &&
@@ -703,11 +686,9 @@ static void stepped_functions(void) {
                  PINDRIVE_OK,
          "derivatives by the amplitude of the hand");
   pindrive_evaluate(differentiated, PINDRIVE_POSITION, &t, 1, PINDRIVE_RIGHT, &slope);
-  expect(fabs(position_after(derivative, t, 0.007) - slope) < 1e-12 * fabs(slope),
-         "are those of the motion");
+  expect(fabs(position_after(derivative, t, 0.007) - slope) < 1e-12 * fabs(slope), "are those of the motion");
   expect(pindrive_stepper_derivative(again, &along_force) == PINDRIVE_OK &&
-             pindrive_stepper_evaluate(along_force, PINDRIVE_ACCELERATION, &x) == PINDRIVE_OK &&
-             x == 0,
+             pindrive_stepper_evaluate(along_force, PINDRIVE_ACCELERATION, &x) == PINDRIVE_OK && x == 0,
          "nothing changes along no direction, under a law too");
   free(bytes);
   pindrive_motion_free(motion);
@@ -724,14 +705,13 @@ static void stepped_functions(void) {
 
 /* Functions by their names, and sums: a constant and two functions are one function. */
 static void named_functions(void) {
-  const double wave[] = {0, 0.01, 8, 0.3}, stroke[] = {0.02, 0.4, 0.1},
-               backwards[] = {0.02, -0.4, 0.1};
+  const double wave[] = {0, 0.01, 8, 0.3}, stroke[] = {0.02, 0.4, 0.1}, backwards[] = {0.02, -0.4, 0.1};
   const double fast[] = {0, 1, 1e8, 0};
-  pindrive_drive* drive = the_drive();
-  pindrive_release* release = the_release();
+  pindrive_drive *drive = the_drive();
+  pindrive_release *release = the_release();
   pindrive_piece pieces[3];
   pindrive_term terms[3];
-  pindrive_stepper* stepper = NULL;
+  pindrive_stepper *stepper = NULL;
   pindrive_instant now;
   size_t count = 0;
   const double t = 0.25, s = 0.375;
@@ -741,12 +721,10 @@ static void named_functions(void) {
   pindrive_release_set(release, "mouse_velocity", 0.06);
   expect(pindrive_function("harmonic", wave, 4, pieces, terms, &count) == PINDRIVE_OK && count == 1,
          "a sinusoid by its name");
-  expect(pieces[0].terms == terms && pieces[0].count == 1 && terms[0].cosine == 0.01 * sin(0.3),
-         "has a term");
+  expect(pieces[0].terms == terms && pieces[0].count == 1 && terms[0].cosine == 0.01 * sin(0.3), "has a term");
   expect(pindrive_release_add_function(release, "mouse_velocity", pieces, count) == PINDRIVE_OK,
          "added to a constant");
-  expect(pindrive_function("minimum_jerk", stroke, 3, pieces, terms, &count) == PINDRIVE_OK &&
-             count == 3,
+  expect(pindrive_function("minimum_jerk", stroke, 3, pieces, terms, &count) == PINDRIVE_OK && count == 3,
          "a stroke by its name");
   expect(pieces[1].begin == 0.1 && pieces[1].count == 0 && pieces[1].terms == NULL, "has none");
   expect(pindrive_release_add_function(release, "mouse_velocity", pieces, count) == PINDRIVE_OK,
@@ -754,19 +732,16 @@ static void named_functions(void) {
   expected += 30 * 0.02 / 0.4 * s * s * (1 - s) * (1 - s);
   pindrive_stepper_new(drive, release, 0, &stepper);
   position_after(stepper, t, 0.01);
-  expect(pindrive_stepper_now(stepper, &now) == PINDRIVE_OK &&
-             fabs(now.mouse_velocity - expected) < 1e-15,
+  expect(pindrive_stepper_now(stepper, &now) == PINDRIVE_OK && fabs(now.mouse_velocity - expected) < 1e-15,
          "the sum is the hand's velocity");
-  refuses(pindrive_function("sine", wave, 4, pieces, terms, &count), PINDRIVE_BAD_NAME,
-          "minimum_jerk");
+  refuses(pindrive_function("sine", wave, 4, pieces, terms, &count), PINDRIVE_BAD_NAME, "minimum_jerk");
   refuses(pindrive_function("harmonic", wave, 3, pieces, terms, &count), PINDRIVE_BAD_VALUE,
           "must have 4 numbers, not 3");
   refuses(pindrive_function("harmonic", fast, 4, pieces, terms, &count), PINDRIVE_BAD_VALUE,
           "a rate of harmonic must be");
-  refuses(pindrive_function("minimum_jerk", backwards, 3, pieces, terms, &count),
-          PINDRIVE_BAD_VALUE, "of minimum_jerk must begin after");
-  refuses(pindrive_release_add_function(release, "speed", pieces, 1), PINDRIVE_BAD_NAME,
-          "the inputs");
+  refuses(pindrive_function("minimum_jerk", backwards, 3, pieces, terms, &count), PINDRIVE_BAD_VALUE,
+          "of minimum_jerk must begin after");
+  refuses(pindrive_release_add_function(release, "speed", pieces, 1), PINDRIVE_BAD_NAME, "the inputs");
   pindrive_stepper_free(stepper);
   pindrive_drive_free(drive);
   pindrive_release_free(release);
@@ -781,10 +756,9 @@ static void functions(void) {
   const pindrive_piece other = {0, {0}, &grows, 1};
   const pindrive_piece jumps[] = {{0, {0.02}, NULL, 0}, {0.1, {0.05}, NULL, 0}};
   const pindrive_piece overlap[] = {{0.1, {0.02}, NULL, 0}, {0.1, {0.02}, NULL, 0}};
-  pindrive_drive* drive = the_drive();
-  pindrive_release *release = the_release(), *more = the_release(), *direction,
-                   *bad = the_release();
-  pindrive_drive* still = pindrive_drive_rate_new(drive);
+  pindrive_drive *drive = the_drive();
+  pindrive_release *release = the_release(), *more = the_release(), *direction, *bad = the_release();
+  pindrive_drive *still = pindrive_drive_rate_new(drive);
   pindrive_motion *motion, *derivative = NULL, *greater;
   pindrive_outcome outcome;
   const double t = 0.05, h = 1e-7;
@@ -795,8 +769,7 @@ static void functions(void) {
          "a sinusoid");
   motion = run(drive, release);
   expect(pindrive_outcome_of(motion, &outcome) == PINDRIVE_OK &&
-             outcome.end == PINDRIVE_END_DRIVEN &&
-             fabs(outcome.period * 75 / 6.283185307179586 - 1) < 1e-12,
+             outcome.end == PINDRIVE_END_DRIVEN && fabs(outcome.period * 75 / 6.283185307179586 - 1) < 1e-12,
          "its response repeats with it");
   direction = pindrive_release_rate_new(release);
   pindrive_release_set_function(direction, "mouse_velocity", &rate, 1);
@@ -811,25 +784,20 @@ static void functions(void) {
   pindrive_evaluate(greater, PINDRIVE_POSITION, &t, 1, PINDRIVE_RIGHT, &y);
   pindrive_evaluate(derivative, PINDRIVE_POSITION, &t, 1, PINDRIVE_RIGHT, &slope);
   expect(fabs((y - x) / h - slope) < 1e-4 * fabs(slope) + 1e-9, "is that of the difference");
-  refuses(pindrive_release_set_function(bad, "velocity", &hand, 1), PINDRIVE_BAD_NAME,
-          "the inputs");
-  refuses(pindrive_release_set_function(bad, "force", &hand, 0), PINDRIVE_BAD_VALUE,
-          "at least one piece");
+  refuses(pindrive_release_set_function(bad, "velocity", &hand, 1), PINDRIVE_BAD_NAME, "the inputs");
+  refuses(pindrive_release_set_function(bad, "force", &hand, 0), PINDRIVE_BAD_VALUE, "at least one piece");
   pindrive_release_set_function(bad, "mouse_velocity", jumps, 2);
   refuses(pindrive_simulate(drive, bad, NULL, NULL, &motion), PINDRIVE_BAD_VALUE, "without a jump");
   pindrive_release_set_function(bad, "mouse_velocity", overlap, 2);
   refuses(pindrive_simulate(drive, bad, NULL, NULL, &motion), PINDRIVE_BAD_VALUE, "begin after");
   pindrive_release_set_function(bad, "mouse_velocity", &too_fast, 1);
-  refuses(pindrive_simulate(drive, bad, NULL, NULL, &motion), PINDRIVE_BAD_VALUE,
-          "a rate of mouse_velocity");
+  refuses(pindrive_simulate(drive, bad, NULL, NULL, &motion), PINDRIVE_BAD_VALUE, "a rate of mouse_velocity");
   pindrive_release_set_function(bad, "mouse_velocity", &hand, 1);
   pindrive_release_set_function(bad, "force", &other, 1);
-  refuses(pindrive_simulate(drive, bad, NULL, NULL, &motion), PINDRIVE_BAD_VALUE,
-          "neither end nor repeat");
+  refuses(pindrive_simulate(drive, bad, NULL, NULL, &motion), PINDRIVE_BAD_VALUE, "neither end nor repeat");
   pindrive_release_set(bad, "force", 0);
   pindrive_release_set_function(bad, "plate_load", &load, 1);
-  refuses(pindrive_simulate(drive, bad, NULL, NULL, &motion), PINDRIVE_BAD_VALUE,
-          "must not be negative");
+  refuses(pindrive_simulate(drive, bad, NULL, NULL, &motion), PINDRIVE_BAD_VALUE, "must not be negative");
   pindrive_release_set(bad, "plate_load", 1);
   pindrive_motion_free(motion);
   pindrive_motion_free(derivative);
