@@ -269,7 +269,8 @@ enum {
   PINDRIVE_FINGER_FORCE = 4,     /* friction of the finger on the pin, N */
   PINDRIVE_SKIN_STRETCH = 5,     /* of a compliant finger, m */
   PINDRIVE_SKIN_STRETCH_RATE = 6, /* m/s */
-  PINDRIVE_STOP_FORCE = 7         /* of the end stops on the pin, N */
+  PINDRIVE_HOUSING_FORCE = 7,     /* of the pin on housing and finger: spring, damper, skin, stops, N */
+  PINDRIVE_STOP_FORCE = 8         /* of the end stops on the pin, N */
 };
 
 /* Which limit is requested at an event. */
@@ -558,11 +559,11 @@ PINDRIVE_API pindrive_error pindrive_scan_now(const pindrive_scan *scan,
 
 /* Quantities of a pin of a scan beside those of a motion. */
 enum {
-  PINDRIVE_PULL = 8,       /* of the magnet on the plate, N */
-  PINDRIVE_CURRENT = 9,    /* part of the full one */
-  PINDRIVE_WARMING = 10,   /* of the coil above 20 degrees Celsius, K */
-  PINDRIVE_COMMAND = 11,   /* 1: to be on */
-  PINDRIVE_LUMINANCE = 12  /* under its spot */
+  PINDRIVE_PULL = 9,       /* of the magnet on the plate, N */
+  PINDRIVE_CURRENT = 10,    /* part of the full one */
+  PINDRIVE_WARMING = 11,   /* of the coil above 20 degrees Celsius, K */
+  PINDRIVE_COMMAND = 12,   /* 1: to be on */
+  PINDRIVE_LUMINANCE = 13  /* under its spot */
 };
 
 /* values[i] of a quantity of each pin now. */

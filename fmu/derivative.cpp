@@ -31,8 +31,10 @@ double slope_of(const pd::Instant<Number>& now, int which) {
       return now.friction().finger.slope;
     case PINDRIVE_SKIN_STRETCH:
       return now.stretch().slope;
-    default:
+    case PINDRIVE_SKIN_STRETCH_RATE:
       return now.stretch_rate().slope;
+    default:
+      return now.housing_force().slope;
   }
 }
 

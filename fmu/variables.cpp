@@ -17,9 +17,9 @@ namespace {
 using pindrive_c::fail;
 
 constexpr const char* outputs[] = {
-    "position",       "velocity",     "acceleration",    "plate_force",    "finger_force",
-    "stretch",        "stretch_rate", "next_event_time", "magnet_current", "magnet_pull",
-    "magnet_warming", "plate_state",  "finger_state"};
+    "position",    "velocity",       "acceleration",  "plate_force",     "finger_force",
+    "stretch",     "stretch_rate",   "housing_force", "next_event_time", "magnet_current",
+    "magnet_pull", "magnet_warming", "plate_state",   "finger_state"};
 
 /// Index of a name among the inputs, each followed by its rate, or among the outputs; −1 if
 /// unknown.

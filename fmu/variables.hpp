@@ -23,7 +23,7 @@ constexpr const char* rate_ending = "_rate";
 
 /// The places of outputs that are none of pindrive_quantity, which come first.
 enum Output : signed char {
-  next_event_time = PINDRIVE_SKIN_STRETCH_RATE + 1,
+  next_event_time = PINDRIVE_HOUSING_FORCE + 1,
   magnet_current,
   magnet_pull,
   magnet_warming,

@@ -86,7 +86,7 @@ class Interface:
 
 QUANTITIES = (
     *("position", "velocity", "acceleration", "plate_force", "finger_force"),
-    *("stretch", "stretch_rate", "stop_force"),
+    *("stretch", "stretch_rate", "housing_force", "stop_force"),
 )
 """In the order of pindrive_quantity."""
 

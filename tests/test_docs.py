@@ -47,7 +47,10 @@ COARSER = {
     "examples/forced-study.toml": (("count = 120", "count = 7"),),
 }
 """Examples of which the pages have a copy with fewer points, to be quick."""
-WARNED = {"docs/studies.md": "the plate's friction coefficient"}
+WARNED = {
+    "docs/studies.md": "the plate's friction coefficient",
+    "docs/devices.md": "the pins push the hand with up to 1.05 N",
+}
 """Pages whose commands warn, and of what."""
 LIBRARY = BLOCKS["docs/c.md"][0].text.splitlines()
 """The commands that install the C interface, which a fixture runs."""

@@ -199,8 +199,9 @@ struct NamedQuantity {
 constexpr NamedQuantity quantities[] = {
     {"position", pd::Sampled::position},         {"velocity", pd::Sampled::velocity},
     {"acceleration", pd::Sampled::acceleration}, {"plate_force", pd::Sampled::plate_force},
-    {"finger_force", pd::Sampled::finger_force}, {"stop_force", pd::Sampled::stop_force},
-    {"stretch", pd::Sampled::stretch},           {"stretch_rate", pd::Sampled::stretch_rate}};
+    {"finger_force", pd::Sampled::finger_force}, {"housing_force", pd::Sampled::housing_force},
+    {"stop_force", pd::Sampled::stop_force},     {"stretch", pd::Sampled::stretch},
+    {"stretch_rate", pd::Sampled::stretch_rate}};
 
 pd::Side side_of(bool right) { return right ? pd::Side::right : pd::Side::left; }
 

@@ -9,6 +9,7 @@ export const QUANTITIES = [
   "finger_force",
   "stretch",
   "stretch_rate",
+  "housing_force",
   "stop_force",
 ] as const;
 export type QuantityName = (typeof QUANTITIES)[number];

@@ -184,7 +184,14 @@ function extremesOf(motion: Motion, quantity: QuantityName, spans: readonly Span
 
 function sampled({ motion, values, duration, events }: Made, grid: Grid, end: number): Curves {
   const compliant = values["finger.stiffness"] !== undefined;
-  const names: QuantityName[] = ["position", "velocity", "acceleration", "plate_force", "finger_force"];
+  const names: QuantityName[] = [
+    "position",
+    "velocity",
+    "acceleration",
+    "plate_force",
+    "finger_force",
+    "housing_force",
+  ];
   if (compliant) names.push("stretch", "stretch_rate");
   const { knownUntil } = motion.outcome;
   const known = grid.times.findIndex((time) => time > knownUntil);

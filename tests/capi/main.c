@@ -113,7 +113,7 @@ static void a_motion(void) {
   refuses(pindrive_evaluate(motion, PINDRIVE_POSITION, times, 2, PINDRIVE_RIGHT, x),
           PINDRIVE_BAD_VALUE, "times[1] must be");
   refuses(pindrive_evaluate(motion, 9, times, 1, PINDRIVE_RIGHT, x),
-          PINDRIVE_BAD_VALUE, "a quantity must be from 0 to 7, not 9");
+          PINDRIVE_BAD_VALUE, "a quantity must be from 0 to 8, not 9");
   refuses(pindrive_numbers(motion, -1, 0.05, values), PINDRIVE_BAD_VALUE, "duration must be");
   refuses(pindrive_numbers(motion, 1, 0, values), PINDRIVE_BAD_VALUE, "settling_band must be");
   refuses(pindrive_crossings(motion, PINDRIVE_PLATE_FORCE, 0, 1, turns, sides, 64, &count),
@@ -386,7 +386,7 @@ static void stepping(void) {
   refuses(pindrive_stepper_set_along(copy, "plate_load", 1, 0), PINDRIVE_DERIVATIVE, "direction");
   refuses(pindrive_stepper_write(along, bytes, size), PINDRIVE_DERIVATIVE, "is written");
   refuses(pindrive_stepper_write(copy, bytes, size - 1), PINDRIVE_BAD_VALUE, "size must be");
-  refuses(pindrive_stepper_evaluate(copy, 8, &x), PINDRIVE_BAD_VALUE, "from 0 to 7, not 8");
+  refuses(pindrive_stepper_evaluate(copy, 9, &x), PINDRIVE_BAD_VALUE, "from 0 to 8, not 9");
   refuses(pindrive_stepper_new(drive, release, NAN, &read), PINDRIVE_BAD_VALUE, "begin must be");
   pindrive_stepper_free(read);
   bytes[size / 2] ^= 1;
@@ -590,7 +590,7 @@ static void a_device(void) {
   expect(values[0] == 1 && values[1] == 0, "of which the pin on the line has one");
   expect(pindrive_scan_evaluate(scan, PINDRIVE_LUMINANCE, values) == PINDRIVE_OK && values[0] == 0,
          "luminance");
-  refuses(pindrive_scan_evaluate(scan, 13, values), PINDRIVE_BAD_VALUE, "from 0 to 12, not 13");
+  refuses(pindrive_scan_evaluate(scan, 14, values), PINDRIVE_BAD_VALUE, "from 0 to 13, not 14");
   expect(pindrive_scan_pin(scan, 0, &pin) == PINDRIVE_OK && pin.plate == PINDRIVE_STICK &&
              fabs(pin.time - 0.12) < 1e-15,
          "it is carried");

@@ -163,7 +163,7 @@ IN_C = {
         **{"ledger": "energy", "acceleration_bounds": "segment_of", "status": "outcome_of"},
         **dict.fromkeys(("known_until", "end", "cycle_begin", "until"), "outcome_of"),
         "segment_count": "outcome_of",
-        **dict.fromkeys(("stop_force", "columns"), "evaluate"),
+        **dict.fromkeys(("stop_force", "housing_force", "columns"), "evaluate"),
     },
     "": {
         "simulate_batch": "batch",

@@ -214,7 +214,7 @@ def test_a_live_hand_has_the_bits_of_a_scan(seed: int, c_library: Path) -> None:
                 events[each.pin].append((each.event.time, *kinds))
         if random.random() < 0.1:
             begun = copied(c, device, begun, reading)
-        pulls, commands = values(c, begun, 8, pins), values(c, begun, 11, pins)
+        pulls, commands = values(c, begun, 9, pins), values(c, begun, 12, pins)
         for pin in whole.pins:
             assert pulls[pin.number] == pytest.approx(pin_pull(pin, until), abs=1e-9)
             assert commands[pin.number] == pin.commands.on(until)
@@ -247,7 +247,7 @@ def test_where_it_is_cut_does_not_change_a_bit(c_library: Path) -> None:
             c("scan_move", begun, *map(c_double, row))
             known = row[0]
         c("scan_advance", begun, c_double(reading.path.end), None, None)
-        ends.append([values(c, begun, quantity, 4) for quantity in (*range(8), 8, 9, 11, 12)])
+        ends.append([values(c, begun, quantity, 4) for quantity in (*range(9), 9, 10, 12, 13)])
         c.free(scan=begun, device=device)
     for other in ends[1:]:
         assert_array_equal(ends[0], other)

@@ -203,6 +203,7 @@ def test_csv_holds_even_samples_and_events_beside_it() -> None:
         "acceleration [m/s^2]",
         "plate_force [N]",
         "finger_force [N]",
+        "housing_force [N]",
     ]
     motion = example()
     assert times == np.linspace(0.0, motion.duration, 51).tolist()
@@ -242,6 +243,7 @@ def test_netcdf_has_units() -> None:
             "acceleration": "m/s^2",
             "plate_force": "N",
             "finger_force": "N",
+            "housing_force": "N",
         }
         motion, t = example(), dataset["time"].values
         assert np.array_equal(dataset["position"], motion.position(t))

@@ -24,9 +24,9 @@ int main() {
       pd::simulate(drive, release, [&](const auto& segment) { segments.push_back(segment); });
   const pd::Motion<double> motion(drive, release, segments.data(), segments.size(), outcome);
 
-  const Sampled all[] = {Sampled::position,     Sampled::velocity,     Sampled::acceleration,
-                         Sampled::plate_force,  Sampled::finger_force, Sampled::stretch,
-                         Sampled::stretch_rate, Sampled::stop_force};
+  const Sampled all[] = {Sampled::position,     Sampled::velocity,      Sampled::acceleration,
+                         Sampled::plate_force,  Sampled::finger_force,  Sampled::stretch,
+                         Sampled::stretch_rate, Sampled::housing_force, Sampled::stop_force};
   std::vector<double> times;
   for (int i = 0; i <= 400; ++i) times.push_back(0.1 * i / 400);
   bool same = true, balanced = true, in_order = true;
@@ -40,10 +40,11 @@ int main() {
                          same = same && values[k] == pd::sampled_in(motion, *segment, tau, all[k]);
                        std::array<double, pd::sampled_count> at;
                        std::copy_n(values, at.size(), at.begin());
-                       const auto [x, v, a, plate, finger, stretch, rate, stop] = at;
+                       const auto [x, v, a, plate, finger, stretch, rate, housing, stop] = at;
                        const double balance = drive.mass * a + drive.damping * v +
                                               drive.stiffness * x - plate - finger - stop;
                        balanced = balanced && std::abs(balance) < 1e-12 &&
+                                  near(housing, plate - drive.mass * a, 1e-12) &&
                                   near(stretch, -finger / drive.finger.stiffness, 1e-15) &&
                                   std::isfinite(rate);
                        pushed = std::max(pushed, std::abs(stop));

@@ -80,6 +80,7 @@ def test_a_strict_importer_finds_nothing_wrong(archive: Archive) -> None:
     assert {name: v.unit for name, v in outputs.items()} == {
         **{"position": "m", "velocity": "m/s", "acceleration": "m/s^2"},
         **{"plate_force": "N", "finger_force": "N", "stretch": "m", "stretch_rate": "m/s"},
+        "housing_force": "N",
         **{"next_event_time": "s", "plate_state": None, "finger_state": None},
     }
 
@@ -200,6 +201,7 @@ def test_outputs_are_those_of_a_simulation(archive: Archive) -> None:
         **{name: getattr(motion, name)(times) for name in ("position", "velocity", "acceleration")},
         **{f"{contact}_force": motion.force(contact, times) for contact in ("plate", "finger")},
     }
+    known["housing_force"] = motion.housing_force(times)
     if not archive.device.drive.finger.rigid:
         known |= {"stretch": motion.stretch(times), "stretch_rate": motion.stretch_rate(times)}
     found = []

@@ -499,4 +499,4 @@ def test_damaged_states_are_refused(tmp_path: Path) -> None:
 def test_command_names_the_input_in_place_of_the_load(tmp_path: Path) -> None:
     done = run("fmu", str(READER), "-o", str(tmp_path / "pin.fmu"), "--set", "plate_load=2")
     assert "plate_load is left out; the input magnet_on takes its place" in done.stderr
-    assert "parameters, 9 inputs, 12 outputs" in done.stdout
+    assert "parameters, 9 inputs, 13 outputs" in done.stdout

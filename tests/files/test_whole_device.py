@@ -228,7 +228,9 @@ def device() -> Path:
 def test_scan_of_a_letter(device: Path) -> None:
     result = run("scan", device, "--text", "A", "-o", "a.nc")
     assert result.exit_code == 0, result.output
-    assert result.stderr == ""
+    (line,) = result.stderr.splitlines()
+    assert line.startswith("warning: the pins push the hand with up to 1.05 N, more than 0.77 N")
+    assert "The pins push the hand with up to 1.05 N (at " in result.stdout
     assert "Wrote a.nc" in result.stdout
     assert "The hand's path takes " in result.stdout
     reported = xr.load_dataset("a.nc", engine="h5netcdf")
@@ -324,7 +326,8 @@ def test_refusals(device: Path, arguments: tuple[str, ...]) -> None:
 def test_warnings_are_printed_beside_the_report(device: Path) -> None:
     result = run("scan", device, "--text", "A", "--set", "sample_rate=200 Hz")
     assert result.exit_code == 0
-    (line,) = result.stderr.splitlines()
+    line, of_hand = result.stderr.splitlines()
+    assert "the hand would give way" in of_hand
     assert line.startswith("warning: control.sample_rate = 200 Hz samples every 0.3 mm at 60 mm/s")
     assert line.endswith("600 Hz sees each")
 

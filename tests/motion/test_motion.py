@@ -59,6 +59,7 @@ def test_all_columns_at_once_are_each_by_itself(changes: dict[str, Any], others:
             "acceleration": motion.acceleration(t),
             "plate_force": motion.force("plate", t),
             "finger_force": motion.force("finger", t),
+            "housing_force": motion.housing_force(t),
             "stop_force": motion.force("stop", t),
             "stretch": motion.stretch(t),
             "stretch_rate": motion.stretch_rate(t),

@@ -59,14 +59,18 @@ class Instant {
         stretch_rate_ = at_load_1 * inputs.finger_load.rate / drive.finger.stiffness;
     }
     stretch_ = -friction_.finger / drive.finger.stiffness;
+    // Balance of all forces on the pin.
+    housing_force_ = friction_.plate + inputs.force.value +
+                     drive.mass * (inputs.plate_velocity.rate - acceleration_);
   }
 
   T position() const { return position_; }          ///< m
   T velocity() const { return velocity_; }          ///< m/s
   T acceleration() const { return acceleration_; }  ///< m/s²
   const Friction<T>& friction() const { return friction_; }
-  T stretch() const { return stretch_; }            ///< skin stretch, m; 0 without skin
-  T stretch_rate() const { return stretch_rate_; }  ///< m/s
+  T stretch() const { return stretch_; }              ///< skin stretch, m; 0 without skin
+  T stretch_rate() const { return stretch_rate_; }    ///< m/s
+  T housing_force() const { return housing_force_; }  ///< force on housing and finger, N
 
  private:
   /// Friction of the slipping plate beside a force `pull`. A pin with the velocity of the plate
@@ -90,7 +94,7 @@ class Instant {
     return -e.load.value * (force * along + e.plate_slope * u);
   }
 
-  T position_{}, velocity_{}, acceleration_{}, stretch_{0}, stretch_rate_{0};
+  T position_{}, velocity_{}, acceleration_{}, stretch_{0}, stretch_rate_{0}, housing_force_{0};
   Friction<T> friction_{T(0), T(0)};
 };
 

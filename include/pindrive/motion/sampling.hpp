@@ -20,9 +20,10 @@ enum class Sampled : signed char {
   finger_force,  ///< friction of the finger on the pin, N
   stretch,       ///< skin stretch of a compliant finger, m
   stretch_rate,  ///< m/s
-  stop_force     ///< force of the end stops on the pin, N
+  housing_force,  ///< force of the pin on the housing and the finger by spring, damper, skin and stops, N
+  stop_force  ///< force of the end stops on the pin, N
 };
-inline constexpr std::size_t sampled_count = 8;
+inline constexpr std::size_t sampled_count = 9;
 
 namespace detail {
 
@@ -47,6 +48,11 @@ T sampled_along(const Trajectory& along, const Drive<T>& drive, const Segment<T>
       return -at(along.finger_force()) / drive.finger.stiffness;
     case Sampled::stretch_rate:
       return -at(along.derivative(along.finger_force())) / drive.finger.stiffness;
+    case Sampled::housing_force:
+      return drive.stiffness * drive.stops.within(at(along.position())) +
+             drive.damping * at(along.velocity()) -
+             friction_along(along, drive, segment, lines, tau).finger -
+             stop_force_along(along, drive, segment, lines().force, tau);
     case Sampled::stop_force:
       return stop_force_along(along, drive, segment, lines().force, tau);
   }

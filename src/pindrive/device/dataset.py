@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from pindrive.device.coil import Coil
 from pindrive.device.geometry import doubts
 from pindrive.device.hand import HandPath
+from pindrive.device.hand_force import LARGEST, HandForce
 from pindrive.device.page import AT_ONCE
 from pindrive.device.pin_scan import PinScan
 from pindrive.device.scanning import Scan
@@ -49,6 +50,7 @@ def dataset(scan: Scan, times: ArrayLike | None = None) -> xr.Dataset:
     t = np.atleast_1d(np.asarray(times, np.float64))
     plate_velocity = path.plate_velocity(device.array.axis)(t - path.begin)
     over_time = dict(zip(("hand_x", "hand_y"), path.position(t), strict=True))
+    over_time["hand_force"] = scan.force_on_hand(t)
     if scan.touch is not None:
         touch = scan.touch
         over_time["touch"] = touch(t) if isinstance(touch, Profile) else np.full(t.shape, touch)
@@ -84,6 +86,7 @@ def dataset(scan: Scan, times: ArrayLike | None = None) -> xr.Dataset:
                 ("smallest_pin_gap", scan.smallest_gap and scan.smallest_gap.size),
                 ("smallest_magnet_gap", scan.smallest_magnet_gap and scan.smallest_magnet_gap.size),
                 ("slot_room", scan.slot_room and scan.slot_room.size),
+                *((f"hand_force_{name}", value) for name, value in asdict(scan.hand_force).items()),
             )
             if value is not None
         },
@@ -302,6 +305,12 @@ def _doubts(scan: Scan) -> list[str]:
         )
     if device.friction.doubt:
         found.append(device.friction.doubt)
+    if scan.hand_force.largest > LARGEST:
+        found.append(
+            f"the pins push the hand with up to {scan.hand_force.largest:.3g} N, more than "
+            f"{LARGEST:g} N, the largest published force on a mouse: the hand would give way, and "
+            "this scan's does not"
+        )
     largest, mean = path.angles(device.array.axis)
     if largest > max_angle:
         found.append(
@@ -327,6 +336,14 @@ def _doubts(scan: Scan) -> list[str]:
                 f"{coil.temperature_rise:g} K at {coil.duty:.0%}"
             )
     return found
+
+
+def hand_force_words(force: HandForce) -> str:
+    """Return the force on the hand in a sentence."""
+    return (
+        f"The pins push the hand with up to {force.largest:.3g} N (at {force.time:.4g} s), "
+        f"{force.mean:.3g} N in the mean; its work against them is {1e3 * force.work:.3g} mJ."
+    )
 
 
 def _blank(scan: Scan, threshold: float) -> str:

@@ -22,6 +22,7 @@ from pindrive import _core, lazy
 from pindrive.device.device import Criteria, Device
 from pindrive.device.geometry import Gap, smallest_gaps
 from pindrive.device.hand import HandPath
+from pindrive.device.hand_force import HandForce, force_on_hand, hand_force
 from pindrive.device.page import Scene
 from pindrive.device.page_description import Page, recorded
 from pindrive.device.pin_array import Neighbours
@@ -136,6 +137,25 @@ class Scan(lazy.NotebookHtml):
         from pindrive.device.dataset import scan_warnings
 
         return scan_warnings(self)
+
+    def force_on_hand(self, t: ArrayLike) -> NDArray[np.float64]:
+        """Return the force of all pins on the hand at times on the clock of the path, N.
+
+        Springs, dampers, skins and end stops push it; the force is positive against the way of the
+        drive axis, so that it slows a hand that moves along the axis.
+
+        Args:
+            t: s, any shape, from begin to end of the path.
+
+        Raises:
+            ValueError: A time is outside of the path.
+        """
+        return force_on_hand(self, np.asarray(t, np.float64))
+
+    @cached_property
+    def hand_force(self) -> HandForce:
+        """Largest force of all pins on the hand, its mean and its work."""
+        return hand_force(self)
 
     @cached_property
     def gaps(self) -> tuple[Gap, ...]:

@@ -47,7 +47,7 @@ _TYPES_3: Final = {"Float": "Float64", "Int": "Int32", "Boolean": "Boolean"}
 """Type names of variables in FMI 2 and 3."""
 _OUTPUTS: Final = (
     *("position", "velocity", "acceleration", "plate_force", "finger_force"),
-    *("stretch", "stretch_rate"),
+    *("stretch", "stretch_rate", "housing_force"),
 )
 _STATES: Final = "-1 slips backward, 0 sticks, 1 slips forward, 2 absent, 3 sticks elastically"
 _BASE: Final = {

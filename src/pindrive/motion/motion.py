@@ -158,6 +158,18 @@ class Motion(lazy.NotebookHtml):
         return self._evaluate(of_contact, t, side)
 
     @overload
+    def housing_force(self, t: float, side: Side = ...) -> float: ...
+    @overload
+    def housing_force(self, t: ArrayLike, side: Side = ...) -> NDArray[np.float64]: ...
+    def housing_force(self, t: ArrayLike, side: Side = "right") -> float | NDArray[np.float64]:
+        """Force of the pin on the housing and the finger, which the hand feels, N, the way of x.
+
+        Spring, damper, finger and end stops push the housing: k x + b x' - R_f - R_s. For a spring
+        on the ground (`Release.support`) it is the force on what holds spring and finger.
+        """
+        return self._evaluate(self.core.housing_force, t, side)
+
+    @overload
     def stretch(self, t: float, side: Side = ...) -> float: ...
     @overload
     def stretch(self, t: ArrayLike, side: Side = ...) -> NDArray[np.float64]: ...
@@ -179,8 +191,8 @@ class Motion(lazy.NotebookHtml):
     def columns(self, t: ArrayLike) -> dict[str, NDArray[np.float64]]:
         """Return all quantities at the times t (s, shape (n,)), right-hand limits, by name.
 
-        The forces are "plate_force" and "finger_force", with end stops "stop_force"; of a rigid
-        finger there is no stretch.
+        The forces are "plate_force", "finger_force" and "housing_force", with end stops
+        "stop_force"; of a rigid finger there is no stretch.
         """
         return self.core.columns(np.ascontiguousarray(self._known(t, "t")), True)
 

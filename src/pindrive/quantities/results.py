@@ -205,6 +205,7 @@ MOTION: Final[tuple[Quantity, ...]] = (
     Quantity("acceleration", "x''", "m/s^2", "acceleration of the pin in the housing"),
     Quantity("plate_force", "R_p", "N", "friction force of the plate on the pin"),
     Quantity("finger_force", "R_f", "N", "friction force of the finger on the pin"),
+    Quantity("housing_force", "H", "N", "force of the pin on the housing and the finger"),
     Quantity("stop_force", "R_s", "N", "force of the end stops on the pin"),
     Quantity("stretch", "s", "m", "stretch of the finger's skin"),
     Quantity("stretch_rate", "s'", "m/s", "stretch rate of the skin"),
@@ -215,6 +216,7 @@ MOTION: Final[tuple[Quantity, ...]] = (
 SCANNED: Final[tuple[Quantity, ...]] = (
     Quantity("hand_x", "x_h", "m", "place of the hand across the page"),
     Quantity("hand_y", "y_h", "m", "place of the hand down the page"),
+    Quantity("hand_force", "H_h", "N", "force of all pins on the hand, against its drive axis"),
     Quantity("touch", "N_f", "N", "touch force of the finger on each pin"),
     Quantity("luminance", "L", "1", "luminance under the pin's spot"),
     Quantity("command", "u", "", "whether the magnet is switched on"),
