@@ -221,6 +221,7 @@ def test_csv_holds_even_samples_and_events_beside_it() -> None:
             motion.acceleration(t),
             motion.force("plate", t),
             motion.force("finger", t),
+            motion.housing_force(t),
         ]
 
 
