@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import isfinite, isnan, nan
 from pathlib import Path
 from statistics import median
@@ -204,6 +205,7 @@ def test_speeds() -> None:
             distinct=((0.005, 0.2), (0.3, 0.4)),
             settled=((0.005, 0.1),),
             beyond=Trial(0.21, 0.25, 1e-4, shown=False),
+            alone=0.23,
         ),
         SpeedLimit(
             pitch=0.004,
@@ -215,12 +217,17 @@ def test_speeds() -> None:
         ),
     ]
     heads, units, one, other = table(speed_report(limits, Criteria()), "Largest hand speed")
-    assert heads == ["pitch", "width", "distinct up to", "settled up to", "a faster hand"]
-    assert units[:4] == ["mm", "mm", "mm/s", "mm/s"]
-    assert one[:4] == ["2.000", "1.000", "200.0", "100.0"]
-    assert one[4] == "lets the pin return by 25%, is distinct again at 300.0-400.0 mm/s"
+    words = ["distinct up to", "settled up to", "drive alone", "a faster hand"]
+    assert heads == ["pitch", "width", *words]
+    assert units[:5] == ["mm", "mm", "mm/s", "mm/s", "mm/s"]
+    assert one[:5] == ["2.000", "1.000", "200.0", "100.0", "230.0"]
+    assert one[5] == "lets the pin return by 25%, is distinct again at 300.0-400.0 mm/s"
     assert other[:4] == ["4.000", "1.500", "10.00 to > 1000", "-"]
-    assert "Tried: 5.000 mm/s to 1000 mm/s" in printed(speed_report(limits, Criteria()))
+    said = printed(speed_report(limits, Criteria()))
+    assert "Tried: 5.000 mm/s to 1000 mm/s" in said
+    assert "Whole samples of the control block bind every limit" in said
+    assert [limit.bound for limit in limits] == ["control block", ""]
+    assert replace(limits[0], alone=0.201).bound == "drive"
 
 
 def test_a_hand_exactly_along_the_axis_is_named() -> None:

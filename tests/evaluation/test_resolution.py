@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from command import EXAMPLES
 from notebook_reading import check_faces
-from pindrive import Contact, Drive
+from pindrive import Contact, Drive, load_device
 from pindrive.cli.app import app
 from pindrive.cli.scan_tables import beyond, speed_report
 from pindrive.cli.tables import console
@@ -53,6 +54,7 @@ def steady(device: Device) -> PinState:
     return PinState(position=position, skin_stretch=copysign(held / finger.stiffness, along))
 
 
+READER = EXAMPLES / "tactile-reader.toml"
 TRIED = (0.01, 0.4)
 
 
@@ -310,3 +312,27 @@ def test_scans_and_speed_have_one_rule_of_merged_lines(distinct: float) -> None:
             fates |= {line.fate for line in found.lines}
         shown.append(fates == {"shown"})
     assert shown == [True, False]
+
+
+def test_a_limit_is_compared_with_that_of_drive_and_finger_alone() -> None:
+    """Whole samples set the usual limit; a fast control block leaves it to the drive."""
+    device = load_device(READER, whole=True).device
+    (slow,) = largest_speeds(device, [0.002])
+    quick = replace(device, control=replace(device.control, sample_rate=5e4))
+    (fast,) = largest_speeds(quick, [0.002])
+    assert (slow.bound, fast.bound) == ("control block", "drive")
+    assert slow.speed == pytest.approx(0.24996, rel=1e-3)  # whole samples: 1 mm in 4 ms
+    assert slow.alone == pytest.approx(fast.speed, rel=3e-3)
+    assert slow.alone > 1.15 * slow.speed
+
+
+def test_the_search_goes_on_until_a_limit_is_found() -> None:
+    device = load_device(READER, whole=True).device
+    (grown,) = largest_speeds(device, [0.020])
+    (cut,) = largest_speeds(device, [0.020], fastest=1.0)
+    assert (cut.beyond, cut.speed) == (None, 1.0)
+    assert grown.beyond is not None and grown.tried[1] == 4.0
+    assert 2.0 < grown.speed < 4.0
+    given = (grown.speed * 0.99, grown.speed * 1.01)
+    trials = [two_lines(device, 0.020, 0.010, speed, Criteria()) for speed in given]
+    assert [trial.distinct(Criteria().direction) for trial in trials] == [True, False]

@@ -193,11 +193,13 @@ def speed_report(limits: Sequence[SpeedLimit], criteria: Criteria) -> Renderable
         ">width",
         ">distinct up to",
         ">settled up to",
+        ">drive alone",
         "a faster hand",
     )
     table.add_row(
         length.display_unit,
         length.display_unit,
+        speed.display_unit,
         speed.display_unit,
         speed.display_unit,
         style="dim",
@@ -208,16 +210,32 @@ def speed_report(limits: Sequence[SpeedLimit], criteria: Criteria) -> Renderable
             length.digits(limit.width),
             _band(limit.distinct, limit),
             _band(limit.settled, limit),
+            speed.digits(limit.alone),
             beyond(limit, criteria),
         )
-    tried = limits[0].tried
+    tried = limits[0].tried[0], max(limit.tried[1] for limit in limits)
     words = [
         criterion(criteria),
         "Settled: the vibration after the first line also ends before the second line.",
+        *bound_words(limits),
         hands_words([limit.speed for limit in limits]),
         f"Tried: {speed.text(tried[0])} to {speed.text(tried[1])}, each speed an exact simulation.",
     ]
     return Group(table, *whole_lines(words))
+
+
+def bound_words(limits: Sequence[SpeedLimit]) -> list[str]:
+    """Return the part of the device that binds the limits, in a sentence."""
+    bounds = [limit.bound for limit in limits]
+    found = [bound for bound in bounds if bound]
+    if not found:
+        return []
+    sampled = bounds.count("control block")
+    alone = "Drive alone: with a control block that samples a hundred times as often"
+    if not sampled:
+        return [f"{alone}; the drive and the finger bind every limit."]
+    which = "every limit" if sampled == len(found) else f"{sampled} of {len(found)} limits"
+    return [f"{alone}. Whole samples of the control block bind {which}: a higher rate raises it."]
 
 
 def page_speed_report(found: PageSpeeds) -> RenderableType:

@@ -54,8 +54,14 @@ def speed(
         str, option(ASKED, "Lowest hand speed of the search.", metavar="SPEED")
     ] = "5 mm/s",
     fastest: Annotated[
-        str, option(ASKED, "Highest hand speed of the search.", metavar="SPEED")
-    ] = "1000 mm/s",
+        str | None,
+        option(
+            ASKED,
+            "Highest hand speed of the search; default 1000 mm/s, and up to 10 m/s over two lines "
+            "without a limit below.",
+            metavar="SPEED",
+        ),
+    ] = None,
     overrides: OverridesOption = None,
     output: ResultOption = None,
     plot: PlotOption = None,
@@ -70,10 +76,9 @@ def speed(
 
     with refusing():
         device = load_device(file, overrides or (), whole=True)
-        tried = (
-            measure(slowest, "speed.slowest", "5 mm/s", "--slowest"),
-            measure(fastest, "speed.fastest", "1000 mm/s", "--fastest"),
-        )
+        least = measure(slowest, "speed.slowest", "5 mm/s", "--slowest")
+        most = fastest and measure(fastest, "speed.fastest", "1000 mm/s", "--fastest")
+        tried = least, most or None
         files = partial(_files, output, plot, device.name)
         if text is not None:
             if pitch or width:
@@ -111,7 +116,7 @@ def _over_lines(
     device: DeviceFile,
     pitches: list[float],
     width: float | None,
-    tried: tuple[float, float],
+    tried: tuple[float, float | None],
     files: Callable[[str], list[Target[_Speeds]]],
     force: bool,
 ) -> tuple[RenderableType, list[Target[_Speeds]]]:
@@ -137,13 +142,14 @@ def _over_lines(
 def _over_text(
     device: DeviceFile,
     text: str,
-    tried: tuple[float, float],
+    tried: tuple[float, float | None],
     files: Callable[[str], list[Target[_Speeds]]],
     force: bool,
 ) -> tuple[RenderableType, list[Target[_Speeds]]]:
     from pindrive.cli.scan_tables import page_speed_report
     from pindrive.device.page_description import Page
     from pindrive.evaluation.page_speed import speeds_over_page
+    from pindrive.quantities.table import default
 
     page = Page(text=text.replace("\\n", "\n"))
     page.check("--{}")
@@ -157,7 +163,7 @@ def _over_text(
                 touch=device.touch,
                 criteria=device.criteria,
                 slowest=tried[0],
-                fastest=tried[1],
+                fastest=tried[1] or default("speed.fastest"),
                 progress=progress,
             )
         write(found)

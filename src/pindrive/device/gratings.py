@@ -26,7 +26,7 @@ class LineGroup(NamedTuple):
     """
 
     pitch: float
-    number: int = USUAL
+    number: int
 
     @property
     def words(self) -> str:
@@ -53,13 +53,14 @@ def line_group(given: object, label: str, where: str = "") -> LineGroup:
             check("pitch", pitch, label=label, where=where), check_whole(count, "count")
         )
     if not isinstance(given, str):
-        return LineGroup(check("pitch", given, label=label, where=where))  # type: ignore[arg-type]
+        pitch = check("pitch", given, label=label, where=where)  # type: ignore[arg-type]
+        return LineGroup(pitch, USUAL)
     if counted := _COUNTED.fullmatch(given):
         return LineGroup(_length(counted[2], label, where), _count(counted[1], where))
     if long := _LONG.fullmatch(given):
         pitch = _length(long[1], label, where)
         return LineGroup(pitch, max(1, int(_length(long[2], "length", where) / pitch + _WHOLE)))
-    return LineGroup(_length(given, label, where))
+    return LineGroup(_length(given, label, where), USUAL)
 
 
 def _length(text: str, label: str, where: str) -> float:

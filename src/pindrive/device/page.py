@@ -27,7 +27,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pindrive import _core
-from pindrive.device.gratings import USUAL, LineGroup, line_group
+from pindrive.device.gratings import LineGroup, line_group
 from pindrive.lazy import Image, ImageDraw, ImageFont, ImageOps, features, ft2font, matplotlib
 from pindrive.quantities import budgets
 from pindrive.quantities.refusal import check_whole, quoted, refusal
@@ -183,7 +183,7 @@ class Scene:
         cls,
         pitches: Iterable[float | str | tuple[float, int]],
         *,
-        count: int = USUAL,
+        count: int = 4,
         height: float | str = default("text_height"),
         pixel: float | str = default("text.pixel"),
         margin: float | str = default("margin"),

@@ -20,19 +20,23 @@ for all of them. With pulses, their own phase counts too, and is that of one han
 Distinct speeds need not be one interval: a swing may fit by chance, and a slow hand may leave the
 pin where the finger's friction holds it. Therefore a geometric grid of speeds is evaluated first,
 and bisection finds the border of each interval; intervals between two speeds of the grid may be
-missed. Within a sampling interval of the control block a border is chance.
+missed. Within a sampling interval of the control block a border is chance: at the limit a whole
+number of samples fits on the lines or between them, and limits of devices that differ a little are
+equal. Beside it stands the limit of drive and finger alone, with a control block that samples 100
+times as often.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isnan, nan, pi
-from typing import Final, overload
+from typing import Any, Final, overload
 
 import numpy as np
 
 from pindrive import _core, lazy
+from pindrive.device.controller import ControlBlock
 from pindrive.device.device import Criteria, Device
 from pindrive.device.pin_scan import Progress
 from pindrive.device.trajectory import check_vibration
@@ -58,6 +62,16 @@ PRECISION: Final = _core.speed_precision
 """Relative precision of a border."""
 FINE: Final = 40.0
 """Pixels in the thinner of line and gap."""
+IDEAL: Final = 100.0
+"""Factor on the sample rate of a control block that binds no limit."""
+HIGHEST: Final = 1e6
+"""Highest sample rate, Hz."""
+NEAR: Final = 0.5, 3.0
+"""Parts of the limit between which that of drive and finger alone is searched."""
+BINDS: Final = 0.99
+"""Part of the limit of drive and finger alone below which the control block binds."""
+GROWN: Final = 10.0
+"""Fastest hand tried where no limit is found below and none is given, m/s."""
 MOMENT: Final = 0.002
 """From the begin of a trial to the first line, s, and a sampling interval more."""
 
@@ -102,6 +116,8 @@ class SpeedLimit:
     """From which to which they are distinct and the pin settles in between."""
     beyond: Trial | None
     """Failure of a hand just faster than the limit; None: no hand is that fast."""
+    alone: float = nan
+    """Largest hand speed of drive and finger alone, under an ideal control block, m/s."""
 
     @property
     def speed(self) -> float:
@@ -111,6 +127,13 @@ class SpeedLimit:
         with the slowest hand, `distinct` has its begin.
         """
         return self.distinct[0][1] if self.distinct else nan
+
+    @property
+    def bound(self) -> str:
+        """Part of the device that binds the limit: "control block" or "drive"; "" without one."""
+        if isnan(self.speed) or self.beyond is None or isnan(self.alone):
+            return ""
+        return "control block" if self.speed < BINDS * self.alone else "drive"
 
     @property
     def settled_speed(self) -> float:
@@ -167,6 +190,7 @@ class SpeedLimits(lazy.NotebookHtml, Sequence[SpeedLimit]):
             "speed.width": [one.width for one in self.limits],
             "speed.distinct": [one.speed for one in self.limits],
             "speed.settled": [one.settled_speed for one in self.limits],
+            "speed.alone": [one.alone for one in self.limits],
         }
         data = {
             name.replace(".", "_"): ("speed_pitch", values, QUANTITIES[name].attributes)
@@ -182,7 +206,7 @@ def largest_speeds(
     *,
     width: float | None = None,
     slowest: float = default("speed.slowest"),
-    fastest: float = default("speed.fastest"),
+    fastest: float | None = None,
     criteria: Criteria | None = None,
     progress: Progress | None = None,
 ) -> SpeedLimits:
@@ -193,7 +217,8 @@ def largest_speeds(
         pitches: Distances between lines, m, greater than 0.
         width: Width of the lines, m, less than each pitch; None: half of the pitch.
         slowest: Hand tried, m/s, greater than 0.
-        fastest: Hand tried, m/s, greater than `slowest`.
+        fastest: Hand tried, m/s, greater than `slowest`; None: 1 m/s, and faster ones up to 10 m/s
+            until a limit is found.
         criteria: Criteria of a felt line; None: those of the literature.
         progress: Function called after each trial.
 
@@ -205,7 +230,7 @@ def largest_speeds(
     steps = [check("speed.pitch", pitch, label="pitch") for pitch in pitches]
     if not steps:
         raise ValueError(refusal("pitches", "at least one", "none"))
-    tried = check_tried(slowest, fastest)
+    tried = check_tried(slowest, default("speed.fastest") if fastest is None else fastest)
     limits = criteria or Criteria()
     lines = [
         check("speed.width", 0.5 * pitch if width is None else width, label="width")
@@ -223,7 +248,7 @@ def largest_speeds(
             if progress:
                 progress(done * _TRIALS + min(trials, _TRIALS), len(steps) * _TRIALS)
 
-        found.append(_limit(device, pitch, line, tried, limits, report))
+        found.append(_limit(device, pitch, line, tried, limits, report, grows=fastest is None))
         report(_TRIALS)
     return SpeedLimits(tuple(found), limits)
 
@@ -296,12 +321,27 @@ def _limit(
     tried: Band,
     criteria: Criteria,
     progress: Callable[[int], None],
+    *,
+    grows: bool,
 ) -> SpeedLimit:
     """Return the limit for one pitch; report the number of trials after each."""
-    distinct, settled, beyond, status = _core.speed_limit(
-        device.core, pitch, width, criteria.numbers, tried, progress
-    )
-    _check_status(status, pitch)
+
+    def searched(block: ControlBlock, hands: Band) -> tuple[Any, Any, Any]:
+        with_block = replace(device, control=block)
+        distinct, settled, beyond, status = _core.speed_limit(
+            with_block.core, pitch, width, criteria.numbers, hands, progress
+        )
+        _check_status(status, pitch)
+        return distinct, settled, beyond
+
+    distinct, settled, beyond = searched(device.control, tried)
+    while grows and distinct and beyond is None and tried[1] < GROWN:
+        tried = tried[0], min(2.0 * tried[1], GROWN)
+        distinct, settled, beyond = searched(device.control, tried)
+    rate = min(IDEAL * device.control.sample_rate, HIGHEST)
+    speed = distinct[0][1] if distinct else None
+    near = tried if speed is None else (max(tried[0], NEAR[0] * speed), NEAR[1] * speed)
+    ideal, *_ = searched(replace(device.control, sample_rate=rate), near)
     return SpeedLimit(
         pitch=pitch,
         width=width,
@@ -309,6 +349,7 @@ def _limit(
         distinct=tuple(distinct),
         settled=tuple(settled),
         beyond=None if beyond is None else Trial(*beyond[:4]),
+        alone=ideal[0][1] if ideal else nan,
     )
 
 

@@ -380,6 +380,12 @@ SPEED: Final[tuple[Quantity, ...]] = (
         "m/s",
         "largest hand speed at which the pin also settles between the lines",
     ),
+    Quantity(
+        "speed.alone",
+        "v_0",
+        "m/s",
+        "largest hand speed of drive and finger alone, with an ideal control block",
+    ),
 )
 """Quantities of the search for the largest hand speed."""
 
