@@ -99,12 +99,13 @@ def test_the_history_is_that_of_the_pin(evaluated: Evaluation, figure: Figure) -
         ("x", "curve", pin.position, 1e3),
         ("force", "force", pin.skin_force, 1e3),
         ("pull", "pull", lambda t: evaluated.scan.device.magnet.pull(pin.current.flux(t)), 1.0),
+        ("hand", "hand_force", evaluated.scan.force_on_hand, 1.0),
     ):
         t, y = data(panel(figure, name), gid)
         assert t[0] == 0.0
         assert t[-1] == pytest.approx(1e3 * (chosen.end - chosen.begin))
         times = np.clip(chosen.begin + 1e-3 * t, pin.begin, pin.end)
-        jumps = np.array([e.time for e in pin.events])
+        jumps = np.array([e.time for each in evaluated.scan.pins for e in each.events])
         clear = np.abs(times[:, None] - jumps).min(axis=1) > 1e-9
         assert y[clear] == pytest.approx(scale * of(times[clear]), rel=1e-6, abs=1e-9)
     within = [e for e in pin.events if chosen.begin < e.time < chosen.end]
@@ -116,14 +117,17 @@ def test_the_history_is_that_of_the_pin(evaluated: Evaluation, figure: Figure) -
         words = {"stick": "sticks", "slip": "slips", "reverse": "reverses"}[kind]
         said = f"{words} at {'both' if contact == 'both' else f'the {contact}'}"
         assert (said in legend_of(figure)) == bool(own)
-    units = {name: panel(figure, name).get_ylabel() for name in ("x", "pull", "force", "seen")}
+    units = {
+        name: panel(figure, name).get_ylabel() for name in ("x", "pull", "force", "hand", "seen")
+    }
     assert units == {
         "x": "deflection $x$ (mm)",
         "pull": "pull (N)",
         "force": "skin force (mN)",
+        "hand": "hand (N)",
         "seen": "luminance",
     }
-    assert panel(figure, "force").get_xlabel() == "time (ms)"
+    assert panel(figure, "hand").get_xlabel() == "time (ms)"
 
 
 def test_the_history_shows_what_was_under_the_spot(evaluated: Evaluation, figure: Figure) -> None:

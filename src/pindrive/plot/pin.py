@@ -102,22 +102,23 @@ def _closest(lines: list[Line]) -> tuple[int, int]:
 def draw_history(
     evaluation: Evaluation, chosen: Moment, figure: Figure, place: SubplotSpec, where: str
 ) -> list[Artist]:
-    """Draw it: four panels over one time axis; what their signs mean, for a legend.
+    """Draw it: five panels over one time axis; what their signs mean, for a legend.
 
     `where` says where on the page that is.
     """
     scan = evaluation.scan
     pin = scan.pins[chosen.pin]
-    rows = place.subgridspec(4, 1, height_ratios=(0.8, 0.8, 2.0, 1.2))
+    rows = place.subgridspec(5, 1, height_ratios=(0.8, 0.8, 2.0, 1.4, 1.1))
     seen = figure.add_subplot(rows[0], label="seen")
     pull = figure.add_subplot(rows[1], label="pull", sharex=seen)
     x = figure.add_subplot(rows[2], label="x", sharex=seen)
     force = figure.add_subplot(rows[3], label="force", sharex=seen)
+    hand = figure.add_subplot(rows[4], label="hand", sharex=seen)
     t = _times(pin, chosen)
     ms = MS * (t - chosen.begin)
-    for axes in (seen, pull, x, force):
+    for axes in (seen, pull, x, force, hand):
         _draw_bands(evaluation, chosen, axes)
-        axes.tick_params(labelbottom=axes is force)
+        axes.tick_params(labelbottom=axes is hand)
     _draw_seen(evaluation, chosen, seen, t, ms)
     pull.plot(ms, scan.device.magnet.pull(pin.current.flux(t)), color=PALETTE["curve"], gid="pull")
     pull.set_ylabel("pull (N)")
@@ -125,6 +126,8 @@ def draw_history(
     signs = _draw_motion(pin, chosen, x, t, ms)
     _draw_force(evaluation, pin, force, t, ms)
     lifted = _draw_lifted(pin, chosen, force)
+    hand.plot(ms, scan.force_on_hand(t), color=PALETTE["curve"], gid="hand_force")
+    hand.set_ylabel("hand (N)")
     number = f" {chosen.pin}" if len(scan.pins) > 1 else ""
     seen.set_title(
         f"pin{number} from {chosen.begin:.3f} s on, {where}",
@@ -133,9 +136,9 @@ def draw_history(
         pad=3.0,
         color=PALETTE["slip"],
     )
-    force.set_xlabel("time (ms)")
-    force.set_xlim(0.0, MS * (chosen.end - chosen.begin))
-    figure.align_ylabels((seen, pull, x, force))
+    hand.set_xlabel("time (ms)")
+    hand.set_xlim(0.0, MS * (chosen.end - chosen.begin))
+    figure.align_ylabels((seen, pull, x, force, hand))
     return [*_key(signs), *lifted]
 
 

@@ -42,6 +42,8 @@ BAR: Final = 0.022
 """Width of the scale of colours, a part of the page's."""
 TALLEST: Final = 1000.0
 """Height of a page as drawn at most, mm: a longer one is drawn smaller."""
+HISTORY: Final = 124.0
+"""Height of the history of a pin, mm."""
 KEY_COLUMNS: Final = 4
 SPOT: Final[dict[str, Any]] = {
     **{"ls": "none", "marker": "o", "ms": 2.6, "mew": 0.7},
@@ -92,7 +94,7 @@ def plot_scan(evaluation: Evaluation, pin: int | None = None) -> Figure:
         figure.set_layout_engine(
             "constrained", h_pad=0.03, w_pad=0.03, rect=(0.012, 0.0, 0.98, 1.0)
         )
-        rows = figure.add_gridspec(4, 1, height_ratios=(APART, pages, APART, 100.0))
+        rows = figure.add_gridspec(4, 1, height_ratios=(APART, pages, APART, HISTORY))
         if wide:
             cells = rows[1].subgridspec(2, 2, width_ratios=(1.0, BAR))
             places = cells[0, 0], cells[1, 0], cells[:, 1]
@@ -118,7 +120,7 @@ def plot_scan(evaluation: Evaluation, pin: int | None = None) -> Figure:
             *draw_history(evaluation, chosen, figure, rows[3], _where(scan, chosen)),
         ]
         lines = -(-len(handles) // KEY_COLUMNS)
-        figure.set_figheight((pages + 106.0 + 2.0 * APART + 4.0 * lines) / 25.4)
+        figure.set_figheight((pages + HISTORY + 6.0 + 2.0 * APART + 4.0 * lines) / 25.4)
         _draw_key(figure, handles, KEY_COLUMNS)
         figure.head(_title(evaluation))
     return figure
