@@ -113,6 +113,7 @@ class Search {
   std::vector<Problem> all(bool whole) {
     for (pindrive_given& each : given_) check_alone(each);
     for (const int contact : {at_plate, at_finger}) check_contact(contact);
+    check_skin();
     check_stops();
     check_start();
     if (whole) {
@@ -357,6 +358,12 @@ class Search {
 
   // ---- drive and release ------------------------------------------------------------------------
 
+  void check_skin() {
+    constexpr const char *damping = "finger.damping", *stiffness = "finger.stiffness";
+    if (number(damping) > 0 && !has(stiffness))
+      reject(damping, {stiffness}, "left out for a rigid finger; give finger.stiffness too");
+  }
+
   void check_stops() {
     for (const char* const key : {"drive.stop_stiffness", "drive.stop_damping"})
       if (has(key) && !has("drive.travel"))
@@ -374,6 +381,7 @@ class Search {
     if (!has(stretch)) return;
     if (!has("finger.stiffness"))
       return reject(stretch, {"finger.stiffness"}, "left out for a rigid finger");
+    if (number("finger.damping") > 0) return;  // skin that relaxes need not be held
     const Friction finger = friction(at_finger);
     const RowView load = rows("motion.finger_load");
     const double factor = load.count > 0 ? load.at_begin() : number("motion.finger_load");

@@ -110,6 +110,7 @@ pindrive_error DeviceParameters::fill_friction(pindrive_drive* drive, const char
   set(names.viscous, "viscous", factor);
   set(names.limit, "static", factor);
   set("stiffness", "stiffness", 1);
+  set("damping", "damping", 1);
   return error;
 }
 

@@ -87,6 +87,7 @@ bool pindrive_c::set(pindrive_drive& drive, const char* name, double value) {
                   name);
     if (contact == &drive.finger && std::strcmp(name, "stiffness") == 0)
       number = &contact->stiffness;
+    if (contact == &drive.finger && std::strcmp(name, "damping") == 0) number = &contact->damping;
     if (number == &contact->kinetic || number == &law.breakaway) contact->static_limit = value;
   } else {
     number = find({{"mass", &drive.mass},
@@ -291,6 +292,7 @@ pindrive_error check_contact(const char* name, const pd::ContactNumbers& contact
   // The bounds of both contacts are alike.
   static constexpr auto force = input("plate.kinetic");
   static constexpr auto stiffness = input("finger.stiffness");
+  static constexpr auto damping = input("finger.damping");
   static constexpr auto law = input("plate.law");
   static constexpr auto velocity = input("plate.stribeck_velocity");
   static constexpr auto viscous = input("plate.viscous");
@@ -320,6 +322,10 @@ pindrive_error check_contact(const char* name, const pd::ContactNumbers& contact
                   breakaway, "N");
   if (!error && contact.stiffness != infinity)
     error = check(named("stiffness"), stiffness, contact.stiffness);
+  if (!error) error = check(named("damping"), damping, contact.damping);
+  if (!error)
+    error = check(named("damping"), contact.damping,
+                  contact.damping == 0 || contact.stiffness != infinity, "0 for a rigid finger");
   if (!error && !contact.curve.empty()) {
     error = check(named("curve"), contact.curve[0].first, contact.curve[0].first == 0,
                   "a curve from speed 0 on");
@@ -361,9 +367,12 @@ pindrive_error pindrive_c::check(const pindrive_drive& drive, const pindrive_rel
     error = check_input("across_velocity", release.across_velocity, true, false, release.duration);
   if (!error)
     error = check_input("finger_load", release.finger_load, false, true, release.duration);
-  if (!error && !release.finger_load.pieces.empty() && drive.finger.stiffness != infinity)
+  const bool lags =
+      drive.finger.damping == 0 || !drive.finger.curve.empty() || drive.finger.law.viscous != 0;
+  if (!error && !release.finger_load.pieces.empty() && drive.finger.stiffness != infinity && lags)
     error = fail(PINDRIVE_UNSUPPORTED,
-                 "finger_load must be constant or a profile beside a finger.stiffness");
+                 "finger_load must be constant or a profile beside a finger.stiffness, unless the "
+                 "finger has damping and Coulomb friction");
   if (!error)
     error = check("support", release.support, release.support == 0 || release.support == 1,
                   "0 (mouse) or 1 (ground)");
@@ -382,6 +391,7 @@ pindrive_error pindrive_c::check(const pindrive_drive& drive, const pindrive_rel
   if (std::isnan(skin)) return PINDRIVE_OK;
   if (!std::isfinite(drive.finger.stiffness))
     return fail(PINDRIVE_UNSUPPORTED, "skin_stretch must be NaN for a rigid finger");
+  if (drive.finger.damping > 0) return PINDRIVE_OK;
   return check("skin_stretch", skin, std::abs(skin) * drive.finger.stiffness <= most,
                "at most static friction over stiffness", most / drive.finger.stiffness, "m",
                ", either way");

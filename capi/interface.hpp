@@ -90,8 +90,9 @@ class Attended {
 bool set(pindrive_drive& drive, const char* name, double value);
 bool set(pindrive_release& release, const char* name, double value);
 constexpr const char* drive_names =
-    "mass, stiffness, damping, travel, stop_stiffness, stop_damping, finger.stiffness, and, of "
-    "plate and finger, kinetic, static, law, breakaway, stribeck_velocity, exponent, viscous";
+    "mass, stiffness, damping, travel, stop_stiffness, stop_damping, finger.stiffness, "
+    "finger.damping, and, of plate and finger, kinetic, static, law, breakaway, stribeck_velocity, "
+    "exponent, viscous";
 constexpr const char* input_names =
     "the inputs mouse_velocity, plate_load, force, across_velocity and finger_load";
 constexpr const char* release_names =

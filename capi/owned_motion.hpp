@@ -53,6 +53,7 @@ struct ContactNumbers {
   double kinetic, static_limit, stiffness;
   Rows curve{};
   LawNumbers law{};
+  double damping{0};  ///< of the skin
 };
 
 /// The end stops of a drive: infinite travel is none, infinite stiffness rigid.
@@ -196,6 +197,7 @@ struct OwnedContact {
       : contact{number<T>(at.kinetic, along.kinetic),
                 number<T>(at.static_limit, along.static_limit),
                 number<T>(at.stiffness, along.stiffness)} {
+    contact.damping = number<T>(at.damping, along.damping);
     using detail::vanishes;
     const T viscous = number<T>(at.law.viscous, along.law.viscous);
     if (at.law.shape() != FallingShape::none) {

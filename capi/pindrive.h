@@ -105,6 +105,7 @@ PINDRIVE_API void pindrive_drive_free(pindrive_drive *drive);
  *   plate.viscous     N s/m  >= 0: friction per sliding speed, beside each law; 0 at first
  *   finger.kinetic, finger.static and so on: the same at the finger, which is rigid where friction falls
  *   finger.stiffness  N/m    > 0: tangential; infinite: a rigid finger, as it is at first
+ *   finger.damping    N s/m  >= 0: of the skin, beside its stiffness; 0 at first
  *   travel            m      > 0: of the pin to its end stops, either way; infinite: none, as at first
  *   stop_stiffness    N/m    > 0: of the stops; infinite: rigid, as they are at first
  *   stop_damping      N s/m  >= 0: of elastic ones; 0 at first */
@@ -487,7 +488,8 @@ PINDRIVE_API void pindrive_device_free(pindrive_device *device);
 /* Sets a number by its key in a device file, in SI units; pindrive_scan_new() checks its range.
  *   drive.    mass, stiffness, damping or damping_ratio, travel, stop_stiffness, stop_damping
  *   plate.    kinetic and static, or coefficient and static_coefficient; preload
- *   finger.   kinetic and static, or coefficient and static_coefficient with touch_force; stiffness
+ *   finger.   kinetic and static, or coefficient and static_coefficient with touch_force
+ *   finger.   stiffness, damping
  *   magnet.   hold_force, rise_time, fall_time, saturation
  *   magnet.   or in their place turns, pole_area, gap, wire_diameter, turn_length, supply_voltage,
  *   magnet.   release_resistance, saturation_field, thermal_resistance, heat_capacity

@@ -18,7 +18,7 @@ namespace {
 
 using State = pd::StepperState<double>;
 
-constexpr std::uint32_t magic = 0x70647334;  // "pds4"
+constexpr std::uint32_t magic = 0x70647335;  // "pds5"
 
 /// Goes over the numbers of a drive and the inputs over time.
 template <class Bytes>
@@ -28,7 +28,7 @@ void exchange_numbers(Bytes& bytes, pd::Numbers& at) {
   number(at.mass, at.stiffness, at.damping, at.stops.travel, at.stops.stiffness, at.stops.damping);
   for (auto* contact : {&at.plate, &at.finger}) {
     auto& law = contact->law;
-    number(contact->kinetic, contact->static_limit, contact->stiffness);
+    number(contact->kinetic, contact->static_limit, contact->stiffness, contact->damping);
     number(law.law, law.breakaway, law.velocity, law.exponent, law.viscous);
     exchange_list(bytes, contact->curve, 2 * sizeof(double), row);
   }

@@ -108,8 +108,7 @@ pindrive_error Instance::derivative(std::size_t unknown, const unsigned* knowns,
   if (values_.initialised) {
     const Changing same(stepper_->at, pd::without_change(stepper_->at));
     const Number v(pin.v, now.plate_velocity.value.slope);  // beside a housing that jumps
-    const pd::detail::State<Number> state{pin.x, v, pin.skin, 0, 0, pin.slider_velocity};
-    value = slope_of({same.drive, mode, now, state}, which);
+    value = slope_of({same.drive, mode, now, pd::changed(same.drive, mode, now, v, pin)}, which);
     return PINDRIVE_OK;
   }
   const Drive drive(pindrive_drive_new());

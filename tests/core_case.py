@@ -39,6 +39,7 @@ class Case:
             **{f"finger.{name}": value for name, value in NO_LAW.items()},
             "finger.static": 0.005,
             "finger.stiffness": inf,
+            "finger.damping": 0.0,
             "travel": inf,
             "stop_stiffness": inf,
             "stop_damping": 0.0,
@@ -63,14 +64,15 @@ class Case:
         """In the order of the extension."""
         n = self.numbers
 
-        def contact(name: str, stiffness: float) -> tuple[Any, ...]:
+        def contact(name: str, stiffness: float, damping: float = 0.0) -> tuple[Any, ...]:
             kinetic, at_rest = n[f"{name}.kinetic"], n[f"{name}.static"]
             law = tuple(n.get(f"{name}.{part}", absent) for part, absent in NO_LAW.items())
-            return kinetic, at_rest, stiffness, self.curves[name], law
+            return kinetic, at_rest, stiffness, self.curves[name], law, damping
 
         return (
             *(n["mass"], n["stiffness"], n["damping"]),
-            *(contact("plate", inf), contact("finger", n["finger.stiffness"])),
+            contact("plate", inf),
+            contact("finger", n["finger.stiffness"], n["finger.damping"]),
             *(self.inputs["mouse_velocity"], self.inputs["plate_load"]),
             *(n["displacement"], n["velocity"], n["skin_stretch"], self.inputs["force"]),
             self.inputs["across_velocity"],
@@ -108,12 +110,12 @@ class Case:
         """Return the case as objects of the package, without the duration."""
         n = self.numbers
 
-        def contact(name: str, stiffness: float) -> Contact:
+        def contact(name: str, stiffness: float, damping: float = 0.0) -> Contact:
             at_rest, curve = n[f"{name}.static"], self.curves[name]
             if curve:
-                return Contact(curve=tuple(curve), static=at_rest, stiffness=stiffness)
+                return Contact(None, at_rest, tuple(curve), stiffness, damping)
             kinetic = n[f"{name}.kinetic"]
-            return Contact(kinetic, at_rest, stiffness=stiffness, **self.law_of(name))
+            return Contact(kinetic, at_rest, None, stiffness, damping, **self.law_of(name))
 
         def given(rows: Rows) -> float | Profile:
             return rows[0][1] if len(rows) == 1 else Profile(*zip(*rows, strict=True))
@@ -123,7 +125,7 @@ class Case:
         drive = Drive(
             **{name: n[name] for name in ("mass", "stiffness", "damping", *names)},
             plate=contact("plate", inf),
-            finger=contact("finger", n["finger.stiffness"]),
+            finger=contact("finger", n["finger.stiffness"], n["finger.damping"]),
         )
         inputs: dict[str, Any] = {name: given(rows) for name, rows in self.inputs.items()}
         start: dict[str, Any] = {name: n[name] for name in ("displacement", "velocity")}
@@ -165,6 +167,7 @@ def _made(found: dict[str, list[float]]) -> Case:
     return Case(
         numbers
         | {"finger.stiffness": found["skin"][0] or inf, "skin_stretch": nan}
+        | {"finger.damping": found.get("skin_damping", [0.0])[0]}
         | {"travel": travel, "stop_stiffness": stop_stiffness or inf, "stop_damping": stop_damping},
         {name: curve if len(curve) > 1 else [] for name, curve in curves.items()},
         {

@@ -66,9 +66,9 @@ enum : std::size_t {
 };
 static_assert(input_count == Block::inputs, "the kernel takes them all");
 using Numbers = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-/// Travel, stiffness and damping of the end stops, of all points or of each, NaN where it is refused;
-/// nothing: no stops.
-using StopNumbers = std::vector<Numbers>;
+/// What the kernel does not know, of all points or of each, NaN where it is refused: travel, stiffness
+/// and damping of the end stops, damping of the skin. Nothing: neither stops nor damped skin.
+using OtherNumbers = std::vector<Numbers>;
 using Input = nb::ndarray<const double, nb::device::cpu>;
 using Inputs = std::array<Input, input_count>;
 using Point = std::array<double, input_count>;
@@ -119,15 +119,15 @@ void points(const Inputs& inputs, std::size_t first, std::size_t count,
 /// Status of a point that breaks the first bound, less one; all further bounds follow, as in
 /// quantities/status.py.
 constexpr std::int8_t refused = 15;
-/// Status of a point with a rejected travel; the stops' stiffness and damping follow.
-constexpr std::size_t first_of_stops = refused + 1 + std::tuple_size<pe::Bounds>::value;
+/// Status of a point with a rejected travel; the other numbers follow.
+constexpr std::size_t first_of_others = refused + 1 + std::tuple_size<pe::Bounds>::value;
 
-pd::Drive<double> drive_of(const Point& p, const pd::Stops<double>& stops) {
+pd::Drive<double> drive_of(const Point& p, const pd::Stops<double>& stops, double skin_damping) {
   return {p[mass],
           p[stiffness],
           p[damping],
           {p[plate_kinetic], p[plate_static]},
-          {p[finger_kinetic], p[finger_static], p[finger_stiffness]},
+          {p[finger_kinetic], p[finger_static], p[finger_stiffness], {}, {}, skin_damping},
           stops};
 }
 
@@ -141,7 +141,7 @@ class Batch {
  public:
   /// A point that breaks a bound is left out, and marked.
   Batch(const Inputs& inputs, const pe::Bounds& bounds, const std::vector<std::string>& outputs,
-        bool events, const pe::KernelFunctions& kernel, const StopNumbers& stops)
+        bool events, const pe::KernelFunctions& kernel, const OtherNumbers& others)
       : inputs_(inputs),
         bounds_(bounds),
         size_(size_of(inputs)),
@@ -149,17 +149,17 @@ class Batch {
         rows_(rows_of(outputs)),
         asked_(events ? pd::detail::Asked::numbers : pd::detail::Asked::state),
         kernel_(kernel),
-        stops_(stops),
+        others_(others),
         numbers_(rows_.size(), size()),
         varies_(with_one_value(inputs)),
         status_(size()),
         ending_(size()),
         events_(events ? size() : 0) {
-    const bool fit = std::all_of(stops.begin(), stops.end(), [&](const Numbers& each) {
+    const bool fit = std::all_of(others.begin(), others.end(), [&](const Numbers& each) {
       return each.size() == 1 || each.size() == size();
     });
-    if (!(stops.empty() || (stops.size() == 3 && fit)))
-      throw std::invalid_argument("stops must be three arrays of one value or one of each point");
+    if (!(others.empty() || (others.size() == 4 && fit)))
+      throw std::invalid_argument("others must be four arrays of one value or one of each point");
     for (bool& each : varies_) each = !each;
     constexpr double infinite = std::numeric_limits<double>::infinity();
     ends_.fill({infinite, -infinite});
@@ -273,14 +273,14 @@ class Batch {
           kernel_.judge(block, static_cast<int>(count), of_share.data(), bounds_, space.broken);
       press(block, count);
       // The kernel knows no stops, and before it has followed a pin nobody knows whether that meets one.
-      const bool followed = stops_.empty() && by_kernel(first, count, space);
+      const bool followed = others_.empty() && by_kernel(first, count, space);
       if (good && followed && !energy_) continue;
       for (std::size_t i = 0; i < count; ++i) {
         if (space.broken[i] != 0) {
           leave_out(first + i, static_cast<std::int8_t>(refused + space.broken[i]));
           continue;
         }
-        if (const std::int8_t status = broken_stop(first + i)) {
+        if (const std::int8_t status = broken_other(first + i)) {
           leave_out(first + i, status);
           continue;
         }
@@ -289,7 +289,7 @@ class Batch {
           leave_out(first + i, static_cast<std::int8_t>(refused + 1 + displacement));
           continue;
         }
-        const Left left = stops_.empty() ? left_by_kernel(block, i) : Left::all;
+        const Left left = others_.empty() ? left_by_kernel(block, i) : Left::all;
         if (left == Left::nothing && !energy_) continue;
         if (!go_on()) return;
         Point p;
@@ -301,17 +301,17 @@ class Batch {
     }
   }
 
-  double stop_number(std::size_t k, std::size_t i) const {
-    return stops_[k].data()[stops_[k].size() > 1 ? i : 0];
+  double other_number(std::size_t k, std::size_t i) const {
+    return others_[k].data()[others_[k].size() > 1 ? i : 0];
   }
   pd::Stops<double> stops_of(std::size_t i) const {
-    if (stops_.empty()) return {};
-    return {stop_number(0, i), stop_number(1, i), stop_number(2, i)};
+    if (others_.empty()) return {};
+    return {other_number(0, i), other_number(1, i), other_number(2, i)};
   }
-  /// The status of a point of whose stops a number is refused, or 0.
-  std::int8_t broken_stop(std::size_t i) const {
-    for (std::size_t k = 0; k < stops_.size(); ++k)
-      if (std::isnan(stop_number(k, i))) return static_cast<std::int8_t>(first_of_stops + k);
+  /// The status of a point with a refused number of stops or skin, or 0.
+  std::int8_t broken_other(std::size_t i) const {
+    for (std::size_t k = 0; k < others_.size(); ++k)
+      if (std::isnan(other_number(k, i))) return static_cast<std::int8_t>(first_of_others + k);
     return 0;
   }
 
@@ -374,7 +374,7 @@ class Batch {
   template <class GoOn>
   void by_general_core(std::size_t i, const Point& p, const pd::Stops<double>& stops, Left left,
                        std::vector<pd::Segment<double>>& segments, GoOn go_on) {
-    const pd::Drive<double> drive = drive_of(p, stops);
+    const pd::Drive<double> drive = drive_of(p, stops, others_.empty() ? 0 : other_number(3, i));
     const pd::Inputs<double> inputs = inputs_of(p);
     const pd::Summary<double> summary =
         pd::summarise(drive, inputs, p[settling_band], segments, go_on);
@@ -409,7 +409,7 @@ class Batch {
   pd::detail::Asked asked_;
   bool energy_{false};
   const pe::KernelFunctions& kernel_;
-  const StopNumbers& stops_;
+  const OtherNumbers& others_;
   Rows numbers_;
   std::array<bool, input_count> varies_;        ///< inputs that are written for each block
   std::array<pe::Extremes, input_count> ends_;  ///< the least and the largest of each input
@@ -428,8 +428,8 @@ const pe::KernelFunctions& kernel_for(int width) {
 
 nb::dict simulate_batch(const Inputs& inputs, const pe::Bounds& bounds, std::size_t threads,
                         const std::vector<std::string>& outputs, bool events, int width,
-                        const StopNumbers& stops) {
-  Batch batch(inputs, bounds, outputs, events, kernel_for(width), stops);
+                        const OtherNumbers& others) {
+  Batch batch(inputs, bounds, outputs, events, kernel_for(width), others);
   Interrupt interrupt;
   {
     const nb::gil_scoped_release unlocked;
@@ -462,7 +462,7 @@ void bind_batch(nb::module_& m);  // called in _core.cpp
 void bind_batch(nb::module_& m) {
   m.def(
       "simulate_batch", &simulate_batch, "inputs"_a, "bounds"_a, "threads"_a, "outputs"_a,
-      "events"_a, "width"_a = 0, "stops"_a = nb::list(),
+      "events"_a, "width"_a = 0, "others"_a = nb::list(),
       "Columns of the numbers named in outputs, one row for each point of the inputs in C order: "
       "arrays of one shape (mass, stiffness, damping, plate kinetic and static, finger kinetic, "
       "static and stiffness, mouse velocity, displacement, velocity, duration, settling band, "
@@ -472,9 +472,9 @@ void bind_batch(nb::module_& m) {
       "status says which, its numbers are NaN. The column of events is there if asked for; "
       "`general` says how many points the general core followed, `extremes` the least and the "
       "largest value of each argument, NaN if one is NaN. The kernel works in packs of "
-      "`width`; 0: the widest. Where there are end stops (travel, infinite: none; stiffness, "
-      "infinite: "
-      "rigid; damping; a NaN is a number that is refused) the general core follows all points.");
+      "`width`; 0: the widest. Where others are given (of the end stops travel, infinite: none, "
+      "stiffness, infinite: rigid, and damping; damping of the skin; a NaN is a number that is "
+      "refused) the general core follows all points.");
   m.def("kernel_widths", &kernel_widths, "The widths of the kernel that this processor runs.");
   m.def("elementary", &elementary, "which"_a, "a"_a, "b"_a, "width"_a,
         "Values of one of the elementary functions: sine, cosine, exp, expm1, log, log1p of a, or "

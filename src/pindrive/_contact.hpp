@@ -8,15 +8,13 @@
 
 /// Number of the law, friction at rest, Stribeck velocity, exponent, viscous part.
 using LawNumbers = std::tuple<double, double, double, double, double>;
-/// Kinetic and static friction, stiffness, the rows (speed, force) of the curve, and the law.
-using ContactNumbers = std::tuple<double, double, double, pindrive::Rows, LawNumbers>;
+/// Kinetic and static friction, stiffness, the rows (speed, force) of the curve, the law, and the damping.
+using ContactNumbers = std::tuple<double, double, double, pindrive::Rows, LawNumbers, double>;
 
 inline pindrive::ContactNumbers contact_of(ContactNumbers given) {
-  auto& [kinetic, fixed, stiffness, curve, law] = given;
+  auto& [kinetic, fixed, stiffness, curve, law, damping] = given;
   const auto& [number, breakaway, velocity, exponent, viscous] = law;
-  return {kinetic,
-          fixed,
-          stiffness,
-          std::move(curve),
-          {number, breakaway, velocity, exponent, viscous}};
+  return {
+      kinetic, fixed, stiffness, std::move(curve), {number, breakaway, velocity, exponent, viscous},
+      damping};
 }

@@ -65,6 +65,7 @@ export function valueFor(values: Values, key: string): Value | null {
 /** Optional values of a drive: the core's name and the key. */
 const OPTIONAL: readonly (readonly [string, string])[] = [
   ["finger.stiffness", "finger.stiffness"],
+  ["finger.damping", "finger.damping"],
   ...STOPS.map((name) => [name, `drive.${name}`] as const),
   ...CONTACTS.flatMap((contact) =>
     ["law", "stribeck_velocity", "exponent"].map(
@@ -113,15 +114,20 @@ export function coreInput(values: Values): Input {
   return { drive, curves, release, profiles, functions };
 }
 
-/** The keys of end stops that mean nothing without that one. */
+/** Lists of keys; a key means nothing without the ones before. */
+const CHAINS: readonly (readonly string[])[] = [
+  STOPS.map((name) => `drive.${name}`),
+  ["finger.stiffness", "finger.damping"],
+];
+
+/** The keys that mean nothing without that one. */
 function needing(key: string): readonly string[] {
-  const keys = STOPS.map((name) => `drive.${name}`);
-  return keys.includes(key) ? keys.slice(keys.indexOf(key) + 1) : [];
+  return CHAINS.flatMap((chain) => (chain.includes(key) ? chain.slice(chain.indexOf(key) + 1) : []));
 }
 
-/** True if the keys that a key of end stops requires are given; true for all other keys. */
+/** True if the keys that a key requires are given. */
 export function applies(values: Values, key: string): boolean {
-  return STOPS.every((name) => !needing(`drive.${name}`).includes(key) || `drive.${name}` in values);
+  return CHAINS.flat().every((needed) => !needing(needed).includes(key) || needed in values);
 }
 
 /** The values with one set or, for null, left out; what keeps a ratio to it follows. */

@@ -65,6 +65,7 @@ export function withLaw(values: Values, contact: string, law: string): Values {
   next[`${contact}.stribeck_velocity`] = DRIVE.get(`${contact}.stribeck_velocity`)!.example!;
   if (values[ofStatic] !== undefined) next[ofStatic] = next[ofRest];
   delete next[`${contact}.stiffness`];
+  delete next[`${contact}.damping`];
   if (contact === "finger") delete next["motion.skin_stretch"];
   return next;
 }

@@ -41,6 +41,9 @@ export function unknownInFile(key: string): string {
   if (key === "plate.stiffness") {
     return `${key} cannot be given, the plate is rigid; skin gives way by finger.stiffness`;
   }
+  if (key === "plate.damping") {
+    return `${key} cannot be given, the plate is rigid; skin is damped by finger.damping`;
+  }
   const count = TABLES.keys.length + (key.includes(".") ? 0 : TABLES.tables.length);
   return said("key", key, nearest(key), `none is like it; docs/reference/device-file.md lists all ${count}`);
 }

@@ -26,6 +26,7 @@ export function meant(key: string, values: Values): boolean {
   if (FALLING.some((name) => key.includes(name)) && !falling) return false;
   if (key.endsWith(".exponent")) return lawOf(values, contact) === "stribeck";
   if (key === "finger.stiffness") return !falling;
+  if (key === "finger.damping") return !falling && applies(values, key);
   const curve = DRIVE.get(key)!.rowsOf?.endsWith("curve") === true;
   if (curve && lawOf(values, contact) !== "table") return false;
   if (key in TABLES.pressedBy[contact]!) return coefficients || values[key] !== undefined;

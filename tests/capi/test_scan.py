@@ -98,8 +98,11 @@ class Reading:
             "control.latency": 0.003,
             "array.axis": 0.1 if seed % 3 == 2 else 0.0,
         }
+        damping = 0.3 if seed % 4 == 2 else None
         if skin < inf:
             self.numbers["finger.stiffness"] = skin
+        if damping:
+            self.numbers["finger.damping"] = damping
         n = self.numbers
         drive = Drive(
             mass=n["drive.mass"],
@@ -111,6 +114,7 @@ class Reading:
                 coefficient=friction,
                 static_coefficient=n["finger.static_coefficient"],
                 stiffness=skin,
+                damping=damping,
             ),
             touch_force=TOUCH,
         )

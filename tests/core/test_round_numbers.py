@@ -122,6 +122,7 @@ def device_text(case: Case) -> str:
         lines += [f"[{contact}]", f"curve = [{curve}]" if rows else 'kinetic = "1 mN"']
         lines += ['static = "9 mN"']
     lines += ['stiffness = "100 N/m"'] * isfinite(n["finger.stiffness"])
+    lines += ['damping = "1 N*s/m"'] * (n["finger.damping"] > 0.0)
     lines += ["[motion]", 'mouse_velocity = "0 m/s"', 'velocity = "0 m/s"', 'displacement = "0 m"']
     return "\n".join(lines)
 

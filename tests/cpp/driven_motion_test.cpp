@@ -37,7 +37,7 @@ struct Given {
     e.plate_velocity = {push, 0.0};
     e.force.value = e.pushes.value + e.mass * e.plate_velocity.rate;
     e.skin_stiffness = 30;
-    e.skin_factor.value = 1;
+    e.skin_factor.value = e.skin_pull.value = 1;
     e.held = held;
     if (held) e.surface = e.plate_velocity;
     return e;

@@ -29,7 +29,7 @@ void later() {
          "... and the constants stay");
 }
 
-/// (f y)' = K x' − D y − E with f = 2 τ, K = D = 7 and E = 3, of a pin of x' = 5 + 4 τ.
+/// (f y)' = K x' − D y − E, without damping, with f = 2 τ, K = D = 7 and E = 3, of a pin of x' = 5 + 4 τ.
 void grows_from_nothing() {
   pd::detail::SeriesEquation<double> e{0.01, 0.4, 100};
   e.skin_factor = {0, 2};
@@ -37,7 +37,7 @@ void grows_from_nothing() {
   e.skin_drift = 3;
   const std::array<double, 3> v{5, 4, 0};
   std::array<double, 3> y{0.1, 0, 0};
-  for (int n = 0; n < 2; ++n) e.follow(y, v, n, 1.0);
+  for (int n = 0; n < 2; ++n) e.follow(y, v, n, 1.0, n == 0 ? 3.0 : 0.0);
   expect(y[0] == (7.0 * 5 - 3) / (7 + 2), "skin begins with its one velocity that stays finite");
   expect(y[1] == 7.0 * 4 / (7 + 4), "... and goes on from there");
 }

@@ -87,6 +87,15 @@ struct Stored {
     return {T(b[1]), end, T(b[0]), T(b[3]), T(0)};
   }
 
+  /// Tension of the skin, N.
+  T tension(const pd::Mode& mode, T skin, T pressed) const {
+    if (c.finger_stiffness == 0) return T(0);
+    if (!pd::is_slip(mode.finger)) return skin;
+    const pd::Branch<T> b = branch(c.finger_branch);
+    const T at_zero = b.force - b.slope * b.from, side = int(mode.finger) < 0 ? T(-1) : T(1);
+    return pressed * (side * at_zero + b.slope * skin);
+  }
+
   Followed<T> follow() const {
     using pd::detail::ActiveGuard;
     const pd::Branch<T> of_plate = branch(c.plate_branch), of_finger = branch(c.finger_branch);
@@ -125,7 +134,7 @@ struct Stored {
       if (ends != nullptr || !(found.time < c.duration * (1 - 1e-15)) || found.steps > 100000) {
         found.x = state.x;
         found.v = state.v;
-        found.force = series.skin_force(state.skin);
+        found.force = tension(mode, state.skin, inputs.finger_load.value);
         if (ends != nullptr) found.guard = number(*ends, mode);
         return found;
       }

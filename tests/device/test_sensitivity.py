@@ -23,10 +23,10 @@ from pindrive.device import (
     strokes,
 )
 from pindrive.device.coil import COIL_NEEDS
-from tactile_mouse import RIGID, SKIN, coil, drive
+from tactile_mouse import DAMPED, RIGID, SKIN, coil, drive
 
 STEP = 1e-6  # of the size of a parameter
-FINGERS = {"rigid": RIGID, "skin": SKIN}
+FINGERS = {"rigid": RIGID, "skin": SKIN, "damped": DAMPED}
 CONTROL = ControlBlock(latency=0.0023)
 COIL = coil(release_resistance=2.0, saturation_field=0.5)
 HOT = replace(COIL, thermal_resistance=40.0, heat_capacity=0.02)

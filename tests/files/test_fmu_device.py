@@ -310,7 +310,7 @@ LAW_BY_COEFFICIENT = LAW.replace('breakaway = "30 mN"', "breakaway_coefficient =
 FILES = (
     FORCES.format(
         plate='kinetic = "20 mN"\nstatic = "25 mN"',
-        finger='kinetic = "5 mN"\nstatic = "6 mN"\nstiffness = "300 N/m"',
+        finger='kinetic = "5 mN"\nstatic = "6 mN"\nstiffness = "300 N/m"\ndamping = "0.3 N*s/m"',
     )
     + 'skin_stretch = "0.001 mm"',
     FORCES.format(

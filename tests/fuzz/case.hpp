@@ -48,6 +48,7 @@ struct Case {
   std::array<double, 2> limit{};  ///< static friction of plate and finger
   std::array<Rows, 2> curve;      ///< kinetic friction over speed; one row is Coulomb
   double skin{never};             ///< stiffness of the finger
+  double skin_damping{};          ///< damping beside it
   Rows mouse_velocity, plate_load, force{{0}, {0}}, across{{0}, {0}},
       finger_load{{0}, {1}};          ///< over time; one row is a constant
   std::array<Function, 5> functions;  ///< in place of the rows of an Input, where not empty
@@ -78,6 +79,7 @@ inline void write(std::ostream& out, const Case& c) {
   if (c.travel < never)
     out << "stops " << c.travel << ' ' << (std::isinf(c.stop_stiffness) ? 0.0 : c.stop_stiffness)
         << ' ' << c.stop_damping << '\n';
+  if (c.skin_damping > 0) out << "skin_damping " << c.skin_damping << '\n';
   for (std::size_t i = 0; i < c.law.size(); ++i)
     if (const Falling& law = c.law[i]; law.shape != 0)
       out << "law " << i << ' ' << law.shape << ' ' << law.excess << ' ' << law.velocity << ' '
@@ -148,6 +150,10 @@ inline bool read(std::istream& in, Case& c) {
     if (name == "stops") {
       in >> c.travel >> c.stop_stiffness >> c.stop_damping;
       if (c.stop_stiffness == 0) c.stop_stiffness = never;
+      continue;
+    }
+    if (name == "skin_damping") {
+      in >> c.skin_damping;
       continue;
     }
     if (name == "law" || name == "function") {

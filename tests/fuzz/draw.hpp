@@ -31,9 +31,9 @@ class Random {
 };
 
 /// Family of drives: an aligned or oblique hand, end stops, a compliant finger with a friction curve, inputs that are
-/// functions, friction that falls by a law, strokes of a hand at an angle, or round numbers under functions; any: one
-/// drive in ten has each but the last.
-enum class Family { any, aligned, oblique, stops, skin, functions, laws, strokes, round };
+/// functions, friction that falls by a law, strokes of a hand at an angle, damped skin, or round numbers under
+/// functions; any: one drive in ten has each but the last.
+enum class Family { any, aligned, oblique, stops, skin, functions, laws, strokes, damped, round };
 
 class Draw {
  public:
@@ -88,6 +88,8 @@ class Draw {
       functions(c, omega, length);
     if (family_ == Family::laws || (family_ == Family::any && chance(0.1))) laws(c);
     if (family_ == Family::strokes || (family_ == Family::any && chance(0.1))) strokes(c);
+    if (family_ == Family::damped || (family_ == Family::any && chance(0.1)))
+      damped(c, omega, length);
     return c;
   }
 
@@ -160,6 +162,38 @@ class Draw {
       c.duration = std::min(c.duration, 3e2 * load * (c.limit[1] - least) / (c.skin * speed_));
     for (double& at : c.finger_load.at)  // within its time
       if (last > c.duration) at *= 0.8 * c.duration / last;
+  }
+
+  /// Skin with a damper, over five decades, with Coulomb friction or a curve. Its load changes, or jumps, now and then.
+  void damped(Case& c, double omega, double length) {
+    if (c.law[1].shape != 0) return;
+    if (std::isinf(c.skin)) c.skin = c.stiffness * decade(-1, 3);
+    c.skin_damping = c.skin / omega * decade(-3.5, 1.5);
+    if (c.curve[1].value[0] == 0) c.curve[1].value[0] = tidy(force_ * decade(-1.5, 0));
+    c.limit[1] = std::max(c.limit[1], c.curve[1].value[0]);
+    // Far beyond friction, the force of the damper has more rounding than friction has digits.
+    c.skin_damping = std::min(c.skin_damping, tidy(1e3 * c.curve[1].value[0] / (omega * length)));
+    double last = 0;
+    if (!c.functions[finger_load].empty()) c.curve[1] = {{0}, {c.curve[1].value[0]}};
+    if (c.functions[finger_load].empty() && chance(0.4))
+      c.finger_load = profile([&] { return chance(0.3) ? 0 : tidy(uniform(0, 2)); }, last, 0.3);
+    if (c.curve[1].at.size() == 1 && chance(0.1)) {
+      c.finger_load = {{0}, {1}};
+      c.functions[finger_load] = load(omega);
+    }
+    if (chance(0.2)) stop(c, 2 * c.mass * omega, length);
+    // Friction that falls faster than the damper rises lets the slider vibrate, ever faster as the load passes the
+    // value at which it begins to.
+    double steepest = 0;
+    for (std::size_t i = 1; i < c.curve[1].at.size(); ++i)
+      steepest = std::max(steepest, (c.curve[1].value[i - 1] - c.curve[1].value[i]) /
+                                        (c.curve[1].at[i] - c.curve[1].at[i - 1]));
+    if (c.finger_load.at.size() > 1)
+      c.skin_damping = std::max(c.skin_damping, 1.1 * steepest *
+                                                    *std::max_element(c.finger_load.value.begin(),
+                                                                      c.finger_load.value.end()));
+    else if (c.skin_damping < steepest * c.finger_load.value[0])
+      c.duration = std::min(c.duration, 3e2 * c.limit[1] / (c.skin * speed_));
   }
 
   /// Functions in place of some inputs: strokes, sinusoids and exponentials in sequence. The load of a compliant finger

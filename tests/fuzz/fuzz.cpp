@@ -197,7 +197,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr,
                  "usage: fuzz COUNT SEED [--from NUMBER] [--threads N] [--log FILE]\n"
                  "                       [--family "
-                 "any|aligned|oblique|stops|skin|functions|laws|strokes|round]\n"
+                 "any|aligned|oblique|stops|skin|functions|laws|strokes|damped|round]\n"
                  "       fuzz --replay FILE...\n");
     return 2;
   }

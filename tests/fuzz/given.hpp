@@ -41,7 +41,7 @@ class Given {
               {c.curve[0].value[0] + c.law[0].excess, c.limit[0], never, plate.data(),
                static_cast<int>(plate.size())},
               {c.curve[1].value[0] + c.law[1].excess, c.limit[1], c.skin, finger.data(),
-               static_cast<int>(finger.size())},
+               static_cast<int>(finger.size()), c.skin_damping},
               {c.travel, c.stop_stiffness, c.stop_damping}},
         inputs{input(mouse_velocity, c.mouse_velocity),
                c.displacement,

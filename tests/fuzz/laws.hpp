@@ -218,8 +218,11 @@ struct Cut {
     possible = segment != motion.end();
     if (!possible) return;
     // A release cannot say how fast skin slips on a curve, nor which way as its load changes.
-    const bool known = whole.curve[1].at.size() == 1 &&
-                       Given::profile(whole.finger_load).from(segment->begin).rate == 0;
+    const bool damped = whole.skin_damping > 0;
+    const bool either =
+        damped && whole.limit[1] > whole.curve[1].value[0];  // it may stick, or slip on
+    const bool known = whole.curve[1].at.size() == 1 && !either &&
+                       (damped || Given::profile(whole.finger_load).from(segment->begin).rate == 0);
     possible = std::isinf(whole.skin) || known || !pd::is_slip(segment->mode.finger);
     // Skin that has no first mode as its load grows from zero begins with one at a time that the rows tell.
     possible = possible && !begins_anyhow(whole);
@@ -240,7 +243,9 @@ struct Cut {
         : mode.finger == pd::ContactState::stick ? 0
                                                  : now[1];
     held = mode.stuck();
-    if (mode.finger == pd::ContactState::elastic_stick)
+    if (damped)
+      stretch = pd::sampled_in(motion, *segment, tau, pd::Sampled::stretch);
+    else if (mode.finger == pd::ContactState::elastic_stick)
       stretch = -motion.friction(*segment, tau).finger / whole.skin;
   }
 
@@ -254,7 +259,8 @@ struct Cut {
       piece.polynomial[0] += part * rest.stiffness * most[0];
     // No farther than a rigid stop, nor than the skin can hold.
     const double reach = std::isinf(rest.stop_stiffness) ? rest.travel : never;
-    const double grip = rest.limit[1] * rest.finger_load.value[0] / rest.skin;
+    const double held_by = rest.limit[1] * rest.finger_load.value[0] / rest.skin;
+    const double grip = rest.skin_damping > 0 ? never : held_by;
     const auto within = [](double value, double end) { return std::clamp(value, -end, end); };
     return {moved, within(x + part * most[0], reach), held ? v : v + part * most[1],
             within(stretch + part * most[0], grip)};

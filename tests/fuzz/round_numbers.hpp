@@ -75,12 +75,18 @@ inline void add_curve(Case& c, int contact, RoundNumbers& draw) {
   set_static(c, contact, draw);
 }
 
-inline constexpr std::array<Feature, 17> features{{
+inline constexpr std::array<Feature, 18> features{{
     {"finger", add_finger},
     {"skin",
      [](Case& c, RoundNumbers& draw) {
        add_finger(c, draw);
        c.skin = draw.between(1e2, 5e3);
+     }},
+    {"damped skin",
+     [](Case& c, RoundNumbers& draw) {
+       add_finger(c, draw);
+       c.skin = draw.between(1e2, 5e3);
+       c.skin_damping = 1.03 * draw.between(5e-2, 5e0);  // never as a curve falls
      }},
     {"plate curve", [](Case& c, RoundNumbers& draw) { add_curve(c, 0, draw); }},
     {"finger curve", [](Case& c, RoundNumbers& draw) { add_curve(c, 1, draw); }},
@@ -301,6 +307,7 @@ inline Case in_units(Case c, double force, double length, double time) {
   for (double& limit : c.limit) limit *= force;
   for (Rows& curve : c.curve) scale(curve, speed, force);
   c.skin *= force / length;
+  c.skin_damping *= force / speed;
   scale(c.mouse_velocity, time, speed);
   scale(c.plate_load, time, 1);
   scale(c.force, time, force);

@@ -85,8 +85,9 @@ struct Totals {
   }
 };
 
-inline constexpr std::array<const char*, 9> families{
-    "any", "aligned", "oblique", "stops", "skin", "functions", "laws", "strokes", "round"};
+inline constexpr std::array<const char*, 10> families{"any",    "aligned",   "oblique", "stops",
+                                                      "skin",   "functions", "laws",    "strokes",
+                                                      "damped", "round"};
 
 /// The family of a name; false if there is none.
 inline bool read(const std::string& name, Family& family) {

@@ -109,7 +109,7 @@ def test_outputs_are_computed_alone_and_the_same(outputs: list[str]) -> None:
         with pytest.raises(ValueError, match="outputs: unknown number transient_peak_force_u"):
             simulate_batch(*ANY, **points, outputs=outputs)
         return
-    everything = [*batch._NUMBERS, *batch._OTHERS]
+    everything = [*batch._NUMBERS, *batch._BESIDE]
     whole = simulate_batch(*ANY, **points, outputs=everything)
     part = simulate_batch(*ANY, **points, outputs=outputs)
     assert {str(name) for name in part.data_vars} == {*outputs, "status"}

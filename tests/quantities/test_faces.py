@@ -110,7 +110,7 @@ def test_a_contact_is_its_part_of_the_table() -> None:
     for field in fields(Contact):
         for side in ("plate", "finger"):
             key = f"{side}.{field.name}"
-            assert key in QUANTITIES or key == "plate.stiffness"  # the plate is rigid
+            assert key in QUANTITIES or key in ("plate.stiffness", "plate.damping")  # a rigid plate
 
 
 def test_batch_arguments_have_the_names_of_device_files() -> None:

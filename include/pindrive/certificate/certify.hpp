@@ -103,7 +103,7 @@ class Certifier {
 
   T energy(const Numbers& s) const {
     const T skin = drive_.finger.compliant()
-                       ? s.finger_force * s.finger_force / (2 * drive_.finger.stiffness)
+                       ? s.stretch_force * s.stretch_force / (2 * drive_.finger.stiffness)
                        : T(0);
     return drive_.mass * s.v * s.v / 2 + drive_.stiffness * s.x * s.x / 2 + skin +
            motion_.stop_energy(s.x);
@@ -158,7 +158,7 @@ class Certifier {
 
   /// Powers; sums of the powers and of v and a over a panel.
   struct Sums {
-    T v{0}, a{0}, input{0}, damper{0}, plate{0}, finger{0}, stop{0};
+    T v{0}, a{0}, input{0}, damper{0}, plate{0}, finger{0}, stop{0}, stretching{0}, skin{0};
   };
 
   /// Compares the laws along a segment; returns its last state.
@@ -273,9 +273,10 @@ class Certifier {
                const Sums& sums) {
     worst(result_.kinematics, to.x - from.x - sums.v, scales_.x);
     worst(result_.kinematics, to.v - from.v - sums.a, scales_.v);
-    if (evaluated.segment.mode.finger == ContactState::elastic_stick)
+    if (stretches(evaluated))
       worst(result_.kinematics,
-            (to.finger_force - from.finger_force) / drive_.finger.stiffness + sums.v, scales_.x);
+            (to.stretch_force - from.stretch_force) / drive_.finger.stiffness + sums.stretching,
+            scales_.x);
     account(energy(from), energy(to), sums);
   }
 
@@ -298,6 +299,8 @@ class Certifier {
     if (in_contact(segment.mode.stop)) sums.stop = drive_.stops.damping * over(v, v);
     if (segment.mode.finger != ContactState::elastic_stick)
       sums.finger = -over(segment.finger_force, v);
+    else
+      sums.skin = drive_.finger.damping * over(v, v);
     account(energy(from), energy(to), sums);
   }
 
@@ -308,9 +311,10 @@ class Certifier {
     const Trajectory& along = evaluated.along;
     const Mode mode = evaluated.segment.mode;
     raise(errors.velocity, along.at(evaluated.x_rate, s.moment) - s.v);
-    if (mode.finger == ContactState::elastic_stick)
-      raise(errors.velocity,
-            along.at(evaluated.finger_rate, s.moment) / drive_.finger.stiffness + s.v);
+    if (stretches(evaluated))
+      raise(errors.velocity, along.at(along.derivative(evaluated.stretch_force), s.moment) /
+                                     drive_.finger.stiffness +
+                                 stretch_rate(evaluated, s));
     const T missed = drive_.mass * (s.a - evaluated.plate_velocity.rate_at(s.tau)) +
                      drive_.damping * s.v + drive_.stiffness * s.x - s.plate_force -
                      s.finger_force - evaluated.force.at(s.tau) - evaluated.stop_force(s);
@@ -376,11 +380,15 @@ class Certifier {
                         : drive_.stops.stiffness * (stop_sign(stop) * drive_.stops.travel - s.x));
     if (evaluated.segment.mode.finger != ContactState::elastic_stick)
       sums.finger -= weight * s.finger_force * evaluated.on_finger(s);
+    if (!stretches(evaluated)) return;
+    const T rate = stretch_rate(evaluated, s);
+    sums.stretching += weight * rate;
+    sums.skin += weight * drive_.finger.damping * rate * rate;
   }
 
   void account(T before, T after, const Sums& sums) {
     using std::abs;
-    const T loss = sums.damper + sums.plate + sums.finger + sums.stop;
+    const T loss = sums.damper + sums.plate + sums.finger + sums.stop + sums.skin;
     balance_ += after - before - sums.input + loss;
     raise(unaccounted_, balance_);
     stored_ = std::max({stored_, before, after});
@@ -412,6 +420,7 @@ class Certifier {
       worst(result_.continuity, std::max(abs(left.v - right.v) - known, T(0)), scales_.v);
     }
     if (!drive_.finger.compliant()) return;
+    if (drive_.finger.damped()) return damped_junction(before, left, right, time);
     const T asked = abs(left.finger_force), drop = asked - abs(right.finger_force);
     if (event.finger != Transition::slip) {
       const T known = detail::skin_unsure(drive_, before.end, left);
@@ -429,6 +438,32 @@ class Certifier {
     const T unmet = std::max(most - asked, T(0));
     worst(result_.continuity, drop > 0 ? std::min(drop, unmet) : drop, scales_.force);
     raise(gained_, std::min(energy(left) - energy(right), T(0)));
+  }
+
+  /// True if the stretch of the skin follows from the motion: it sticks, or it has a damper.
+  template <class Trajectory>
+  bool stretches(const Evaluated<Trajectory>& evaluated) const {
+    return evaluated.segment.mode.finger == ContactState::elastic_stick ||
+           detail::has_damped_skin(drive_, evaluated.segment);
+  }
+  template <class Trajectory>
+  T stretch_rate(const Evaluated<Trajectory>& evaluated,
+                 const typename Evaluated<Trajectory>::State& s) const {
+    return evaluated.segment.mode.finger == ContactState::elastic_stick
+               ? s.v
+               : -s.stretch_force_rate / drive_.finger.stiffness;
+  }
+
+  /// Junction of skin with damping: its stretch does not jump, and it slips at its limit.
+  void damped_junction(const Segment<T>& before, const Numbers& left, const Numbers& right,
+                       T time) {
+    const T known = detail::skin_unsure(drive_, before.end, left);
+    const T jump = std::abs(left.stretch_force - right.stretch_force);
+    worst(result_.continuity, std::max(jump - known, T(0)), scales_.force);
+    if (before.event.finger != Transition::slip) return;
+    const T asked = std::abs(left.finger_force - drive_.finger.damping * (right.v - left.v));
+    const T most = drive_.finger.static_limit * motion_.inputs().finger_load.from(time).value;
+    worst(result_.transitions, std::max(most - asked, T(0)), scales_.force);
   }
 
   /// True if a load that falls to zero is so close to zero that the time constants of the skin are

@@ -52,7 +52,7 @@ class SegmentGuards {
     const int others = count_;
     if (drive.finger.compliant()) {
       slipping(drive.finger, mode.finger, mode.finger_branch,
-               along_.velocity() + 1 / drive.finger.stiffness * segment.finger_rate,
+               along_.velocity() + 1 / drive.finger.stiffness * segment.stretch_force_rate,
                segment.scales.v);
       known_from(others, segment.slider_unsure);
     } else {

@@ -102,6 +102,7 @@ inline constexpr InputQuantity input_quantities[] = {
     {"finger.viscous_coefficient", "s/m", non_negative, from_zero, none},
     {"finger.touch_force", "N", non_negative, from_zero, none},
     {"finger.stiffness", "N/m", positive, above_zero, none},
+    {"finger.damping", "N*s/m", non_negative, from_zero, none},
     {"motion.mouse_velocity", "m/s", finite, either_way, none},
     {"motion.plate_load", "1", non_negative, from_zero, 1},
     {"motion.force", "N", finite, either_way, 0},

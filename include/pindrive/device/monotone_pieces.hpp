@@ -11,6 +11,7 @@
 #include "pindrive/device/sign_change.hpp"
 #include "pindrive/motion/extrema.hpp"
 #include "pindrive/motion/motion.hpp"
+#include "pindrive/motion/skin_along.hpp"
 
 namespace pindrive::device {
 
@@ -56,19 +57,18 @@ class MonotonePieces {
     return of.sign * (of.skin ? values.skin : values.x);
   }
 
+  /// Stretch of the skin in a segment, m; the deflection of the pin under a rigid finger.
   template <class Trajectory>
-  double stretch(const Trajectory& along, double tau) const {
-    return -along.at(along.finger_force(), tau) / motion_->drive().finger.stiffness;
+  auto stretch_in(const Segment<double>& segment, const Trajectory& along) const {
+    const Drive<double>& drive = motion_->drive();
+    return rigid_
+               ? 1.0 * along.position()
+               : -1 / drive.finger.stiffness * detail::stretch_force_along(drive, segment, along);
   }
-  template <class Trajectory>
-  Values values_of(const Trajectory& along, double tau, double x) const {
+  template <class Trajectory, class Quantity>
+  Values values_of(const Trajectory& along, const Quantity& in_skin, double tau, double x) const {
     x = motion_->drive().stops.within(x);
-    return {x, rigid_ ? x : stretch(along, tau)};
-  }
-  template <class Trajectory>
-  double value_of(const Signal& of, const Trajectory& along, double tau) const {
-    if (of.skin && !rigid_) return of.sign * stretch(along, tau);
-    return of.sign * motion_->drive().stops.within(along.at(along.position(), tau));
+    return {x, rigid_ ? x : along.at(in_skin, tau)};
   }
 
   void begin_piece(double time, const Values& now, const Segment<double>& segment, double begin) {
@@ -103,7 +103,12 @@ class MonotonePieces {
   auto in_piece(const Signal& of, std::size_t i, Function&& f) const {
     const Knot& knot = knots_[i];
     return motion_->along(*knot.segment, [&](const auto& along) {
-      return f([&](double t) { return value_of(of, along, t - knot.segment_begin); });
+      const bool skin = of.skin && !rigid_;
+      const auto signal = skin ? stretch_in(*knot.segment, along) : 1.0 * along.position();
+      return f([&](double t) {
+        const double found = along.at(signal, t - knot.segment_begin);
+        return of.sign * (skin ? found : motion_->drive().stops.within(found));
+      });
     });
   }
 
@@ -139,17 +144,28 @@ class MonotonePieces {
       if (begin > 0 && !(begin < duration)) return false;
       span = std::min(span, duration - begin);
       motion.along(segment, [&](const auto& along) {
+        const auto in_skin = stretch_in(segment, along);
         bool first = true;
         const auto add = [&](double tau, double x) {
-          const Values now = values_of(along, tau, x);
+          const Values now = values_of(along, in_skin, tau, x);
           if (first)
             begin_piece(begin, now, segment, begin);
           else if (tau < span)
             begin_piece(begin + tau, now, segment, begin, now);
           first = false;
         };
-        detail::extrema(along, along.position(), 0.0, span, add);
-        end_ = values_of(along, span, along.at(along.position(), span));
+        if (detail::has_damped_skin(motion.drive(), segment) && is_slip(segment.mode.finger)) {
+          turns_.clear();
+          const auto keep = [&](double tau, double) { turns_.push_back(tau); };
+          detail::extrema(along, along.position(), 0.0, span, keep);
+          detail::extrema(along, in_skin, 0.0, span, keep);
+          std::sort(turns_.begin(), turns_.end());
+          turns_.erase(std::unique(turns_.begin(), turns_.end()), turns_.end());
+          for (const double tau : turns_) add(tau, along.at(along.position(), tau));
+        } else {
+          detail::extrema(along, along.position(), 0.0, span, add);
+        }
+        end_ = values_of(along, in_skin, span, along.at(along.position(), span));
       });
       return true;
     });
@@ -272,7 +288,8 @@ class MonotonePieces {
   const Motion<double>* motion_{nullptr};
   bool rigid_{false};
   std::vector<Knot> knots_;
-  Values end_{};  ///< at the end of the last segment read
+  Values end_{};               ///< at the end of the last segment read
+  std::vector<double> turns_;  ///< of one segment, s
 };
 
 }  // namespace pindrive::device

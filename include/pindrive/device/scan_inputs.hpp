@@ -155,11 +155,11 @@ struct ScanInputs {
   double next_row(double after) const {
     return std::min(plate.along().next_breakpoint(after), finger_load.next_breakpoint(after));
   }
-  /// Stretch that the skin keeps as a load begins, m: beyond static friction it slips.
+  /// Stretch that the skin keeps as a load begins, m: beyond static friction, undamped skin slips.
   double held_stretch(double stretch) const {
     const Contact<double>& finger = device.drive.finger;
     const double pressed = finger_load.from(0).value;
-    if (std::isnan(stretch) ||
+    if (std::isnan(stretch) || finger.damped() ||
         std::abs(stretch) <= finger.static_limit * pressed / finger.stiffness)
       return stretch;
     return std::copysign(finger.kinetic * pressed / finger.stiffness, stretch);

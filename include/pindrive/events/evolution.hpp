@@ -36,6 +36,7 @@ class Evolution {
     const bool given = !isnan(inputs.skin_stretch);
     if (given) pin.state.skin = drive.finger.stiffness * inputs.skin_stretch;
     pin.stop.initialize(pin.state);
+    if (given && drive.finger.damped()) pin.state.skin += drive.finger.damping * pin.state.v;
     pin.plate.initialize(pin.state, false);
     pin.finger.initialize(pin.state, given);
   }
@@ -64,6 +65,7 @@ class Evolution {
     segment.plate_velocity = pin.plate.surface;
     segment.eliminated = EliminatedPart::none;
     segment.driven = false;
+    segment.slider_velocity = T(0);
     series.reset();
     if (!SeriesMode<T>::closed_form(
             pin.drive, segment.mode,
@@ -147,6 +149,7 @@ class Evolution {
     pin.neglected_force = T(0);
     struck = false;
     if (breakpoint) come_to_rest();
+    const T arrives = pin.state.v;
     bool on_plate = pin.plate.stuck(), on_finger = pin.finger.stuck() || pin.stop.is_holding(),
          known = on_finger;
     T rest{0};  // velocity at the finger or at an end of its branch, if known
@@ -177,13 +180,14 @@ class Evolution {
     if (pin.finger.sliding() && !pin.drive.finger.rigid())
       pin.state.skin = pin.finger.skin_force(pin.state, loaded);
     end_oblique_slip(pin.state, pin.plate, on_finger, across, pin.drive.mass, pin.time);
-    if (pin.stop.snap(pin.state) || struck) begin_at_stop();
+    if (pin.stop.snap(pin.state) || struck) begin_at_stop(arrives);
   }
 
-  /// Sets the contacts of a pin that has struck a rigid stop.
-  void begin_at_stop() {
+  /// Sets the contacts of a pin that has struck a rigid stop at a velocity.
+  void begin_at_stop(const T& arrives) {
     struck = true;
     pin.state.v = T(0);
+    if (pin.drive.finger.damped()) pin.state.skin -= pin.drive.finger.damping * arrives;
     for (ContactPoint<T>* side : {&pin.plate, &pin.finger}) {
       side->reached_guard = ActiveGuard::none;
       if (side->has_slider_state()) continue;
@@ -242,7 +246,10 @@ class Evolution {
   /// constant inputs forces balance and the speed has decayed.
   bool in_equilibrium() const {
     const State<T>& s = pin.state;
-    if (!has_constant_inputs() || pin.held() || pin.finger.has_slider_state()) return false;
+    if (!has_constant_inputs() || pin.held()) return false;
+    if (pin.finger.has_slider_state() &&
+        !(pin.drive.finger.damped() && abs(s.slider_velocity) <= rest_speed()))
+      return false;
     // Slow by strong damping is not at rest.
     const T net = pin.drive.mass * abs(selected.acceleration) + pin.drive.damping * abs(s.v);
     return abs(s.v) <= rest_speed() &&
@@ -251,7 +258,7 @@ class Evolution {
   /// Begins the segment of a pin in equilibrium.
   void stay(Segment<T>& segment, const Force<T>& plate, const Force<T>& finger) {
     selected.guards.clear();
-    pin.state.v = T(0);
+    pin.state.v = pin.state.slider_velocity = T(0);
     segment.eliminated = EliminatedPart::motion;
     segment.flow = Flow<T>::stuck(pin.state.x, Line<T>{});
     segment.plate_force = plate.along(segment.flow);

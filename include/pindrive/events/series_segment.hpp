@@ -50,9 +50,10 @@ class SeriesSegment {
         {segment.plate_velocity, plate.load, plate.across, force, finger.load});
     const SeriesEquation<T> equation = mode.equation();
     const bool has_slider_state = finger.has_slider_state();
+    const T damper = finger.elastic() ? drive.finger.damping * state.v : T(0);
     const SeriesState<T> start{state.x, state.v,
-                               has_slider_state ? state.slider_velocity : state.skin, acceleration,
-                               segment.begin};
+                               has_slider_state ? state.slider_velocity : state.skin - damper,
+                               acceleration, segment.begin};
     const Reached reached{plate.mode.guard, finger.mode.guard, at_limit, no_push};
     Paths paths;  // guards along the last step
     T since{0};   // begin of that step
@@ -126,8 +127,7 @@ class SeriesSegment {
     segment.flow = {{}, {state.x, T(0), T(0)}, {velocity, T(0), T(0), rate}};
     segment.plate_force = {of_plate, T(0), T(0)};
     segment.finger_force = {of_finger, T(0), T(0)};
-    // With the stretch rate of skin that has a slider velocity.
-    if (has_slider_state) segment.finger_force.drift = finger.force_rate(state.v, T(0)).value;
+    segment.slider_velocity = has_slider_state ? state.slider_velocity : T(0);
   }
 
   /// Time to the earliest event, the end of the step or the breakpoint.
@@ -158,9 +158,10 @@ class SeriesSegment {
     state.x = now.x;
     state.v = now.v;
     state.position_scale = std::max(state.position_scale, abs(state.x));
-    if (finger.elastic()) state.skin = now.skin;
-    if (!finger.has_slider_state() || driven_) return;
+    if (finger.elastic()) state.skin = now.skin + drive.finger.damping * now.v;
+    if (!finger.has_slider_state()) return;
     state.slider_velocity = now.skin;
+    if (driven_) return;
     const SeriesStep<T>& step = *step_;
     // Pin and slider are at rest once their velocities are within the rounding of the position; the error of the
     // position of rest then follows from the remaining forces.

@@ -107,14 +107,22 @@ void shift(Evolution<T>& evolution, const T& jump, const T& given) {
   ContactPoint<T>&plate = evolution.pin.plate, &finger = evolution.pin.finger;
   auto& stop = evolution.pin.stop;
   T& v = evolution.pin.state.v;
+  const T arrives = v;
   plate.surface.value = moved(plate.surface.value, jump, given);
   if (plate.stuck() && !stop.is_holding())
     v = plate.surface.value;
   else if (!(finger.stuck() || stop.is_holding()) || plain(jump) != 0)
     v += jump;
-  if (plain(jump) == 0) return;
+  const T pulls = finger.contact.damping * (v - arrives);
+  if (finger.contact.damped()) evolution.pin.state.skin += pulls;
+  if (plain(jump) == 0) {
+    if (finger.contact.damped() && finger.has_slider_state())
+      evolution.pin.state.slider_velocity += finger.slider_change(pulls);
+    return;
+  }
   evolution.struck = false;
-  if (stop.initialize(evolution.pin.state)) return evolution.begin_at_stop();
+  const T moves = v;
+  if (stop.initialize(evolution.pin.state)) return evolution.begin_at_stop(moves);
   finger.reached_guard = ActiveGuard::none;
   const T sign = finger.mode.slip_sign;
   if (finger.sliding() && finger.contact.may_lag()) return;

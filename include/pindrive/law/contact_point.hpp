@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "pindrive/law/contact_mode.hpp"
+#include "pindrive/law/damped_skin.hpp"
 #include "pindrive/law/oblique.hpp"
 #include "pindrive/law/skin.hpp"
 #include "pindrive/law/state.hpp"
@@ -71,13 +72,17 @@ struct ContactPoint {
 
   /// True if the slider velocity is a state of its own, beside that of the pin.
   PINDRIVE_INLINE bool has_slider_state() const {
-    return contact.may_lag() && sliding() && branch().slope != 0;
+    return contact.may_lag() && sliding() && (contact.damped() || branch().slope != 0);
   }
   /// Pin speed minus slider speed and stretch rate, m/s; zero within its error.
   T relative_speed(T v) const {
     if (start.keeps_speed) return T(0);
     const T relative_speed = mode.slip_sign * v - stretch_rate(start.friction) - start.slider_speed;
     return abs(relative_speed) < rounding<T> * abs(v) ? T(0) : relative_speed;
+  }
+  /// Velocities by which damping shifts a relative speed, from derivatives of the pin velocity, m/s.
+  T by_damping(T acceleration) const {
+    return contact.damped() ? contact.damping / contact.stiffness * acceleration : T(0);
   }
   /// Rate at which the skin stretches so that a friction (N at load factor 1) follows the load,
   /// m/s.
@@ -95,15 +100,21 @@ struct ContactPoint {
     const T off = v - stationary_velocity();
     return abs(off) < rounding<T> * abs(v) ? T(0) : off;
   }
-  /// Skin tension in slip for a load factor, N.
+  /// Skin tension in slip for a load factor, N; of skin with damping, if the slider stuck.
   T skin_force(const State<T>& s, T loaded) const {
     const Branch<T> range = branch();
-    return mode.slip_sign *
-           range.at(has_slider_state() ? mode.slip_sign * s.slider_velocity : range.from) * loaded;
+    const T friction =
+        mode.slip_sign *
+        range.at(has_slider_state() ? mode.slip_sign * s.slider_velocity : range.from) * loaded;
+    return contact.damped() ? friction + contact.damping * s.slider_velocity : friction;
   }
   /// True if the slider moves noticeably within the time resolution, as under a falling load. Such
   /// a slider advances by the stored time.
   bool is_sensitive_to_time() const { return has_slider_state() && load.rate != 0; }
+  /// Change of the velocity of a slider that goes with one of its tension (N), m/s.
+  T slider_change(T tension) const {
+    return tension / (branch().slope * load.value + contact.damping);
+  }
   /// Moves the state to the start of the selected mode.
   void apply_jump(State<T>& s) const {
     if (mode.state == ContactState::absent) s.skin = T(0);
@@ -113,19 +124,23 @@ struct ContactPoint {
   /// True if, at pin velocity v (m/s), the relative acceleration is the first quantity that
   /// determines on which side of the active guard the motion continues.
   bool is_decided_by_acceleration(T v) const {
-    if (mode.guard == ActiveGuard::none || oblique()) return false;
+    if (mode.guard == ActiveGuard::none || oblique() || contact.damped()) return false;
     return elastic() ? excess_velocity(v) == 0 : !has_slider_state() || relative_speed(v) == 0;
   }
   /// Sets the initial mode: stick if pin and surface have equal velocities, otherwise slip. A
   /// compliant contact starts in elastic stick if its stretch is given or the pin is at rest.
   void initialize(State<T>& s, bool stretched) {
     const T u = s.v - surface.value, size = u < 0 ? -u : u;
-    if (!contact.present() || (!contact.rigid() && load.value == 0)) return;
+    if (!contact.present()) return;
+    if (!contact.rigid() && !contact.damped() && load.value == 0) return;
     const bool skin = !contact.rigid() && (stretched || s.v == 0);
     mode.state = skin ? ContactState::elastic_stick : ContactState::stick;
     if (skin || u == 0) return;
     mode = ContactMode<T>::slip(u / size, ActiveGuard::none, contact.branch_of(size));
-    if (has_slider_state())
+    if (contact.damped()) {
+      s.slider_velocity = s.v;
+      s.skin = skin_force(s, load.value);
+    } else if (has_slider_state())
       initialize_slider(*this, s, size);
     else if (!contact.rigid())
       s.skin = skin_force(s, load.value);
@@ -150,6 +165,7 @@ struct ContactPoint {
         (oblique() || !across.is_zero()) && enumerate_oblique_candidates(*this, u, guard);
     slip_sign = mode.slip_sign;
     if (slides_across) return;
+    if (contact.damped()) return DampedSkinCandidates<T, ContactPoint>(*this, s, guard).enumerate();
     if (!contact.rigid()) return SliderCandidates<T, ContactPoint>(*this, s, u, guard).enumerate();
     if (sliding()) {
       const Branch<T> range = branch();
@@ -189,8 +205,10 @@ struct ContactPoint {
   }
   /// Derivatives of the force for a pin with constant acceleration (m/s²).
   ForceRate<T> force_rate(T v, T acceleration) const {
-    const T stretching = contact.stiffness * v;
-    if (elastic()) return {-stretching, abs(stretching), -contact.stiffness * acceleration};
+    const T stretching = contact.stiffness * v, damper = contact.damping * acceleration;
+    if (elastic())
+      return {-stretching - damper, abs(stretching) + abs(damper),
+              -contact.stiffness * acceleration};
     if (!sliding()) return {};
     if (has_slider_state()) return slip_force_rate(v, acceleration);
     const Branch<T> range = linear_branch(v);
@@ -210,9 +228,10 @@ struct ContactPoint {
     const T slope_error = range.rounding * load.value * abs(relative);
     return {rate, abs(rate) + slope_error / rounding<T>, second};
   }
-  /// Derivative of the force of slip along the axis by the velocity of the pin, N s/m; 0 for a slider with a velocity of
-  /// its own.
+  /// Derivative of the force along the axis by the velocity of the pin, N s/m; 0 for a slider with a velocity of its
+  /// own.
   T force_by_speed(T v) const {
+    if (elastic()) return -contact.damping;
     if (!sliding() || oblique() || has_slider_state()) return T(0);
     return -linear_branch(v).slope * load.value;
   }
@@ -234,7 +253,8 @@ struct ContactPoint {
   /// In slip: −s (F + c (s u − from)) λ with u = x' − surface. In oblique slip: the present value
   /// and rate.
   Force<T> force_law(const State<T>& s) const {
-    if (elastic()) return {{-s.skin, T(0)}, T(0), contact.stiffness, T(0)};
+    if (elastic())
+      return {{contact.damping * s.v - s.skin, T(0)}, contact.damping, contact.stiffness, T(0)};
     if (oblique()) {
       const T axial = -direction * start.friction;
       return {{axial * load.value, axial * load.rate}};
@@ -266,6 +286,7 @@ struct ContactPoint {
   bool is_admissible(const State<T>& s, T first, T second = T(0), T third = T(0)) const {
     if (mode.guard == ActiveGuard::none) return true;
     if (oblique()) return is_admissible_obliquely(s, first, second, third);
+    if (contact.damped()) return is_admissible_with_damping(s.v, first, second, third, T(0));
     const T decides = first != 0 ? first : second != 0 ? second : third;
     if (!elastic()) {
       const T faster = has_slider_state() ? relative_speed(s.v) : T(0);
@@ -278,6 +299,26 @@ struct ContactPoint {
     const T stretches = contact.stiffness * slip_sign, faster = excess_velocity(s.v);
     if (faster == 0) return slip_sign * decides >= 0;
     return slip_sign * faster > 0 || grazes(stretches * faster, stretches * decides, s.force_error);
+  }
+
+  /// `is_admissible` of skin with damping: the sign of the first derivative of the slider velocity in slip, or of the
+  /// tension in stick, that is not zero. `error` (m/s²) is that of the first derivative.
+  bool is_admissible_with_damping(T v, T first, T second, T third, T error) const {
+    if (mode.guard == ActiveGuard::none) return true;
+    const T sign = elastic() ? -slip_sign : mode.slip_sign;
+    const T friction = elastic() ? contact.static_limit : start.friction;
+    const T moves = sign * v - (elastic() ? T(0) : start.slider_speed);
+    const T damped = sign * by_damping(first), unloads = stretch_rate(friction);
+    const T sum = moves + damped - unloads;
+    const T size = abs(v) + start.slider_speed + abs(damped) + abs(unloads);
+    const bool none = abs(sum) <= rounding<T> * size + by_damping(error);
+    const T later = sign * (first + by_damping(second));
+    const T faster = !none ? sum : later != 0 ? later : sign * (second + by_damping(third));
+    if (slips_either_way && elastic())
+      return none ? later == 0 : sum < 0 && abs(v + by_damping(first)) < unloads;
+    if (elastic()) return faster <= 0;
+    return mode.guard == ActiveGuard::lower ? faster > 0 || (faster == 0 && mode.branch > 0)
+                                            : faster <= 0;
   }
 
   ObliqueSlip<T> oblique_slip(T v, T acceleration) const {
@@ -312,6 +353,13 @@ struct ContactPoint {
   ForceRate<T> slip_force_rate(T v, T acceleration) const {
     const T stiffness = contact.stiffness, sign = mode.slip_sign;
     const T slope = branch().slope;
+    if (contact.damped()) {
+      const T faster = (stiffness * relative_speed(v) + sign * contact.damping * acceleration) /
+                       (slope * load.value + contact.damping);
+      const T by_load = sign * start.friction * load.rate, by_speed = slope * load.value * faster;
+      return {-by_load - sign * by_speed, abs(by_load) + abs(by_speed),
+              -sign * (start.friction * load.second() + 2 * slope * load.rate * faster)};
+    }
     const T faster = load.value == 0
                          ? sign * stiffness * acceleration / (stiffness + 2 * slope * load.rate)
                          : stiffness * relative_speed(v) / (slope * load.value);

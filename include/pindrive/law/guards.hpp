@@ -67,7 +67,8 @@ class Guards {
         Path<T> margin = limit + T(to) * segment.finger_force;
         if (limit.drift != 0 && side.mode.guard == ActiveGuard::upper && to == near) {
           margin.start = T(0);
-          if (side.excess_velocity(segment.flow.velocity.start) == 0) margin.drift = -margin.slope;
+          if (abs(margin.slope + margin.drift) < rounding<T> * abs(margin.slope))
+            margin.drift = -margin.slope;
         }
         add(margin, ActiveGuard::none, plate, to);
       }

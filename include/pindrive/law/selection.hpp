@@ -309,6 +309,11 @@ class Selection {
         return side.is_admissible(pin_.state, selected_.acceleration - side.surface.rate,
                                   jerk.value - side.surface.second(), jerk.rate);
       }
+      if (side.contact.damped()) {
+        const Line<T> jerk = this->jerk();
+        return side.is_admissible_with_damping(pin_.state.v, selected_.acceleration, jerk.value,
+                                               jerk.rate, pin_.force_error() / pin_.drive.mass);
+      }
       if (!selected_.tangential) return side.is_admissible(pin_.state, force);
       if (follows_) {
         const Line<T> jerk = this->jerk();

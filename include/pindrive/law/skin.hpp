@@ -49,11 +49,12 @@ void initialize_slider(Point& point, State<T>& s, T speed) {
 /// factor before.
 template <class T, class Point>
 void keep_force(const Point& point, State<T>& s, T loaded) {
-  if (!point.has_slider_state() || loaded == point.load.value || !(point.load.value > 0)) return;
+  const T now = point.load.value;
+  if (!point.has_slider_state()) return;
+  if (!point.contact.damped() && (loaded == now || !(now > 0))) return;
   const Branch<T> range = point.branch();
-  const T slip_sign = point.mode.slip_sign;
-  s.slider_velocity += slip_sign * range.at(slip_sign * s.slider_velocity) *
-                       (loaded / point.load.value - 1) / range.slope;
+  const T friction = point.mode.slip_sign * range.at(point.mode.slip_sign * s.slider_velocity);
+  s.slider_velocity += point.slider_change(friction * (loaded - now));
 }
 
 /// Enumeration of the candidate modes of a compliant contact at an instant, for a relative pin
@@ -257,7 +258,8 @@ template <class T, class Point>
 [[gnu::noinline]] T defer_first_grip(Point& point, T v, T time, T breakpoint) {
   const Contact<T>& contact = point.contact;
   Curve<T>& load = point.load;
-  if (load.rate == 0 || contact.rigid() || !contact.present()) return breakpoint;
+  if (load.rate == 0 || contact.rigid() || contact.damped() || !contact.present())
+    return breakpoint;
   const T u = v < 0 ? -v : v, known = first_grip<T> * breakpoint;
   if (load.value == 0 && load.rate > 0) {
     const T most = point.stretch_rate(contact.static_limit);

@@ -17,11 +17,13 @@ enum class ActiveGuard : signed char { none, lower, upper, edge, push };
 /// Position and velocity of the pin, and the state of its compliant finger.
 template <class T>
 struct State {
-  T x, v;                ///< position, m; velocity, m/s
-  T skin{0};             ///< skin tension in an elastic stick, N
+  T x, v;  ///< position, m; velocity, m/s
+  /// Tension of the skin while its slider sticks, N; of skin with damping, in slip too, the tension
+  /// that it would have if the slider stuck now: stiffness · stretch + damping · x'.
+  T skin{0};
   T position_scale{0};   ///< largest term of the position since the release, m
   T force_error{0};      ///< error bound of a sum of forces, N
-  T slider_velocity{0};  ///< slider velocity of a compliant finger on a sloped branch, m/s
+  T slider_velocity{0};  ///< slider velocity of a compliant finger that has one, m/s
 
   /// Advances the state to the end of a segment in closed form.
   void move(const Segment<T>& along, bool elastic) {

@@ -134,14 +134,17 @@ struct Contact {
   /// Branches of kinetic friction over sliding speed; null: `kinetic` at every speed (Coulomb).
   const Branch<T>* curve{nullptr};
   int branches{0};
+  T damping{0};  ///< of the skin, parallel to its stiffness, N s/m; >= 0
 
   /// True if friction is linear on each branch.
   bool linear() const { return branches == 0 || curve[0].linear(); }
   bool rigid() const { return !(stiffness < std::numeric_limits<T>::infinity()); }
   /// True if skin stretches between surface and pin.
   bool compliant() const { return present() && !rigid(); }
-  /// True if the slider may have a velocity of its own: compliant skin with a friction curve.
-  bool may_lag() const { return branches > 0 && !rigid(); }
+  /// True if skin stretches against a damper (a Kelvin-Voigt element).
+  bool damped() const { return damping != 0 && !rigid(); }
+  /// True if the slider may have a velocity of its own: skin with damping or a friction curve.
+  bool may_lag() const { return (branches > 0 || damping != 0) && !rigid(); }
   PINDRIVE_INLINE Branch<T> branch(int index) const {
     if (branches == 0) return {T(0), std::numeric_limits<T>::infinity(), kinetic, T(0), T(0)};
     return curve[index];
@@ -434,6 +437,7 @@ struct Segment {
   Curve<T> plate_velocity;  ///< m/s
   /// friction on the pin, N; if both contacts stick, the plate force is their sum
   Path<T> plate_force, finger_force;
+  T slider_velocity{0};  ///< of a compliant finger that has one, at the begin, m/s
   EliminatedPart eliminated{EliminatedPart::none};  ///< fast transient that the series omits
   bool driven{false};  ///< in closed form under functions (series/driven_motion.hpp)
 

@@ -9,6 +9,7 @@
 #include "pindrive/motion/extrema.hpp"
 #include "pindrive/motion/motion.hpp"
 #include "pindrive/motion/quadrature.hpp"
+#include "pindrive/motion/skin_along.hpp"
 
 namespace pindrive {
 
@@ -83,11 +84,11 @@ class ContactMeasurement {
     };
     if (!skin())
       finger(along.velocity(), distance);
-    else {  // the slider is slower than the pin by the stretch rate
-      const T compliance = 1 / motion_.drive().finger.stiffness;
-      const T stretched = along.at(along.finger_force(), from) - along.at(along.finger_force(), to);
-      finger(along.velocity() + compliance * along.derivative(along.finger_force()),
-             distance - compliance * stretched);
+    else {
+      const auto in_skin = stretch_force_along(motion_.drive(), segment, along);
+      const T stretched = along.at(in_skin, from) - along.at(in_skin, to);
+      finger(sliding_along(motion_.drive(), segment, along),
+             distance - stretched / motion_.drive().finger.stiffness);
     }
     across(result, along, segment, from, to, times);
     if (segment.mode.both_stuck())
@@ -98,9 +99,11 @@ class ContactMeasurement {
       }
     if (!skin()) return;
     if (whole) result.finger.dissipated += times * skin_loss(along, segment, to);
-    const auto in_skin = (-1 / motion_.drive().finger.stiffness) * along.finger_force();
+    const auto in_skin = (-1 / motion_.drive().finger.stiffness) *
+                         stretch_force_along(motion_.drive(), segment, along);
     peak(result.peak_stretch, along, in_skin, from, to);
-    peak(result.peak_stretch_rate, along, along.derivative(in_skin), from, to);
+    peak(result.peak_stretch_rate, along, stretch_rate_along(motion_.drive(), segment, along), from,
+         to);
   }
 
   /// Adds the distance and the friction work of a plate that also slides in the transverse
@@ -160,6 +163,7 @@ class ContactMeasurement {
   T skin_loss(const Trajectory& along, const Segment<T>& segment, T to) const {
     const Segment<T>* next = motion_.after(segment);
     if (segment.event.finger != Transition::slip || next == nullptr) return T(0);
+    if (motion_.drive().finger.damped()) return T(0);  // damped skin does not jump
     const auto energy = [&](T force) {
       return force * force / (2 * motion_.drive().finger.stiffness);
     };

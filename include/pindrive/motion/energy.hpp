@@ -22,12 +22,13 @@ struct Ledger {
   T inertia_work;                ///< work of the accelerating housing, J
   T force_work;                  ///< work of the external force, J
   T damper_dissipated, plate_dissipated, finger_dissipated, stop_dissipated;  ///< J
-  T exchanged;  ///< largest energy exchanged with the housing during the motion, J
+  T skin_dissipated;  ///< in the damper of the skin, J
+  T exchanged;        ///< largest energy exchanged with the housing during the motion, J
 
   T residual() const {
     return (kinetic_end - kinetic_start) + (spring_end - spring_start) + (skin_end - skin_start) +
            (stop_end - stop_start) - plate_work - inertia_work - force_work + damper_dissipated +
-           plate_dissipated + finger_dissipated + stop_dissipated;
+           plate_dissipated + finger_dissipated + stop_dissipated + skin_dissipated;
   }
   /// Largest energy in the ledger or during the motion, J; the scale of the residual.
   T scale() const {
@@ -35,7 +36,7 @@ struct Ledger {
     return std::max({kinetic_start, kinetic_end, spring_start, spring_end, skin_start, skin_end,
                      stop_start, stop_end, abs(plate_work), abs(inertia_work), abs(force_work),
                      damper_dissipated, plate_dissipated, finger_dissipated, stop_dissipated,
-                     exchanged});
+                     skin_dissipated, exchanged});
   }
 };
 
@@ -57,6 +58,7 @@ inline constexpr NamedNumber<T, Ledger<T>> ledger_numbers[] = {
     {"plate_dissipated", [](const Ledger<T>& l) { return l.plate_dissipated; }},
     {"finger_dissipated", [](const Ledger<T>& l) { return l.finger_dissipated; }},
     {"stop_dissipated", [](const Ledger<T>& l) { return l.stop_dissipated; }},
+    {"skin_dissipated", [](const Ledger<T>& l) { return l.skin_dissipated; }},
     {"residual", [](const Ledger<T>& l) { return l.residual(); }},
 };
 
@@ -96,7 +98,8 @@ Ledger<T> energy_ledger(const Motion<T>& motion, T duration, GoOn go_on = {}) {
     const auto [segment, tau] = motion.locate(t, Side::left);
     motion.along(*segment, [&, tau = tau](const auto& along) {
       const T x = along.at(along.position(), tau), v = along.at(along.velocity(), tau);
-      const T stretched = along.at(along.finger_force(), tau);
+      const T stretched =
+          skin ? along.at(detail::stretch_force_along(drive, *segment, along), tau) : T(0);
       kinetic = drive.mass * v * v / 2;
       spring = drive.stiffness * x * x / 2;
       in_stop = motion.stop_energy(x);
@@ -123,6 +126,10 @@ Ledger<T> energy_ledger(const Motion<T>& motion, T duration, GoOn go_on = {}) {
         const Curve<T> push = pushes.from(segment.begin);
         ledger.force_work += over(along.input(push), along.velocity());
         largest += std::max(abs(push.at(from)), abs(push.at(to)));
+      }
+      if (drive.finger.damped()) {
+        const auto stretching = detail::stretch_rate_along(drive, segment, along);
+        ledger.skin_dissipated += drive.finger.damping * over(stretching, stretching);
       }
       ledger.stop_dissipated +=
           times * detail::lost_at_stop(motion, along, segment, from, to, v_squared / times);

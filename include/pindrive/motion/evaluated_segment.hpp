@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "pindrive/motion/motion.hpp"
+#include "pindrive/motion/skin_along.hpp"
 #include "pindrive/numbers/functions.hpp"
 #include "pindrive/numbers/limits.hpp"
 
@@ -23,7 +24,8 @@ struct Scales {
 /// State of the pin, τ after the begin of its segment.
 template <class T>
 struct PinState {
-  T tau, x, v, a, plate_force, finger_force, finger_rate;
+  T tau, x, v, a, plate_force, finger_force;
+  T stretch_force, stretch_force_rate;  ///< finger force by the stretch of the skin, N, and N/s
 };
 
 /// Kinetic friction for a load factor of 1 at a sliding speed, from the points of the friction
@@ -39,7 +41,7 @@ T kinetic_friction(const Contact<T>& contact, T speed) {
 /// Error of the skin tension, N: its change within the time resolution.
 template <class T>
 T skin_unsure(const Drive<T>& drive, T time, const PinState<T>& s) {
-  return drive.finger.rigid() ? T(0) : rounding<T> * time * abs(s.finger_rate);
+  return drive.finger.rigid() ? T(0) : rounding<T> * time * abs(s.stretch_force_rate);
 }
 
 template <class T, class Trajectory>
@@ -56,7 +58,7 @@ class EvaluatedSegment {
   const Trajectory& along;
   const Curve<T> plate_velocity, load, finger_load, force, across;
   const T span;  ///< time to the end of the segment or of the evaluated range, s
-  const Quantity x_rate, acceleration, finger_rate;
+  const Quantity x_rate, acceleration, stretch_force, stretch_force_rate;
 
   EvaluatedSegment(const Drive<T>& of, const Scales<T>& largest, const Inputs<T>& inputs,
                    T duration, const Segment<T>& part, const Trajectory& trajectory)
@@ -73,7 +75,10 @@ class EvaluatedSegment {
         span(std::min(part.end, std::max(duration, part.begin)) - part.begin),
         x_rate(along.derivative(along.position())),
         acceleration(along.acceleration()),
-        finger_rate(along.derivative(along.finger_force())) {}
+        stretch_force(stretch_force_along(of, part, along)),
+        stretch_force_rate(has_damped_skin(of, part)
+                               ? -of.finger.stiffness * stretch_rate_along(of, part, along)
+                               : along.derivative(along.finger_force())) {}
 
   const Mode& mode() const { return segment.mode; }
   bool oblique() const { return mode().plate == ContactState::slip_oblique; }
@@ -82,7 +87,8 @@ class EvaluatedSegment {
     const auto now = along.moment(tau);
     return {{tau, along.at(along.position(), now), along.at(along.velocity(), now),
              along.at(acceleration, now), along.at(along.plate_force(), now),
-             along.at(along.finger_force(), now), along.at(finger_rate, now)},
+             along.at(along.finger_force(), now), along.at(stretch_force, now),
+             along.at(stretch_force_rate, now)},
             now};
   }
 
@@ -99,7 +105,7 @@ class EvaluatedSegment {
   /// Sliding velocity on the finger, m/s.
   T on_finger(const State& s) const {
     if (!drive.finger.compliant()) return s.v;
-    return s.v + along.at(finger_rate, s.moment) / drive.finger.stiffness;
+    return s.v + s.stretch_force_rate / drive.finger.stiffness;
   }
 
   /// Distance of a force and a sliding velocity from the law of oblique slip, N: by the force at
@@ -160,7 +166,7 @@ class EvaluatedSegment {
 
   T unsure_slider() const {
     if (!drive.finger.compliant() || !is_slip(mode().finger)) return T(0);
-    const auto bend = along.derivative(finger_rate);
+    const auto bend = along.derivative(stretch_force_rate);
     T most{0}, terms{0};  // rounding of the rate, and of the force, whose parts may cancel
     for (const T tau : {T(0), span}) {
       const auto now = along.moment(tau);

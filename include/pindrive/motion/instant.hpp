@@ -25,7 +25,8 @@ class Instant {
     position_ = at_stop ? stop_sign(mode.stop) * drive.stops.travel : drive.stops.within(state.x);
     const Line<T> surface = at_stop ? Line<T>{} : e.surface.line();
     velocity_ = e.held ? surface.value : state.v;
-    const T skin = e.skin_factor.value * (has_slider_state ? state.slider_velocity : state.skin);
+    const T by_stretch = state.skin - drive.finger.damping * state.v;
+    const T skin = e.skin_pull.value * (has_slider_state ? state.slider_velocity : by_stretch);
     T pull = e.force.value - e.damping * velocity_ - e.stiffness * position_ - skin;
     if (e.finger_falling.present())
       pull -= e.finger_side * e.finger_load.value * e.finger_falling.at(e.finger_side * velocity_);
@@ -58,7 +59,9 @@ class Instant {
       else
         stretch_rate_ = at_load_1 * inputs.finger_load.rate / drive.finger.stiffness;
     }
-    stretch_ = -friction_.finger / drive.finger.stiffness;
+    const T damper =
+        mode.finger != ContactState::absent ? drive.finger.damping * stretch_rate_ : T(0);
+    stretch_ = -(friction_.finger + damper) / drive.finger.stiffness;
     // Balance of all forces on the pin.
     housing_force_ = friction_.plate + inputs.force.value +
                      drive.mass * (inputs.plate_velocity.rate - acceleration_);
@@ -98,6 +101,24 @@ class Instant {
   Friction<T> friction_{T(0), T(0)};
 };
 
+/// State of a pin whose velocity changes to v (m/s), and the load of its finger to that of the inputs, by
+/// derivatives alone: the stretch of damped skin stays.
+template <class T, class Plain>
+detail::State<T> changed(const Drive<T>& drive, const Mode& mode, const InputCurves<T>& inputs,
+                         const T& v, const detail::State<Plain>& pin) {
+  const Contact<T>& finger = drive.finger;
+  detail::State<T> state{pin.x, v, pin.skin, 0, 0, pin.slider_velocity};
+  if (!finger.damped() || held_by_stop(drive, mode)) return state;
+  state.skin += finger.damping * (v - pin.v);
+  if (!is_slip(mode.finger)) return state;
+  const Branch<T> branch = finger.branch(mode.finger_branch);
+  const T load = inputs.finger_load.value;
+  const T slider = (state.skin - along(mode.finger, branch.intercept()) * load) /
+                   (branch.slope * load + finger.damping);
+  state.slider_velocity = slider + (pin.slider_velocity - plain(slider));
+  return state;
+}
+
 /// State at the begin of the first mode after a release at x, v with a skin stretch; NaN: stretch
 /// of sliding skin or, at rest, zero. `pin` is the state in plain numbers: a rigid stop may have
 /// taken the velocity.
@@ -115,14 +136,16 @@ detail::State<T> released(const Drive<T>& drive, const Mode& mode, const InputCu
     state.skin = finger.stiffness * stretch;
   else if (speed != 0)
     state.skin = (state.v < 0 ? -load : load) * finger.branch(finger.branch_of(speed)).at(speed);
+  state.skin += finger.damping * state.v;
   if (!detail::SeriesMode<T>(drive, mode, inputs).has_slider_state()) return state;
   const int slid = finger.branch_of(speed);
   const Branch<T> branch = finger.branch(mode.finger_branch);
   // On a falling curve a slider jumps to another speed with equal friction.
-  const T asked = abs(state.skin) / load - branch.force;
+  const T asked = abs(state.skin) - branch.force * load - finger.damping * branch.from;
+  const T faster = asked / (branch.slope * load + finger.damping);
   state.slider_velocity = slid == mode.finger_branch && isnan(stretch)
                               ? state.v
-                              : along(mode.finger, branch.from + asked / branch.slope);
+                              : along(mode.finger, branch.from + faster);
   return state;
 }
 

@@ -45,9 +45,9 @@ T sampled_along(const Trajectory& along, const Drive<T>& drive, const Segment<T>
     case Sampled::finger_force:
       return friction_along(along, drive, segment, lines, tau).finger;
     case Sampled::stretch:
-      return -at(along.finger_force()) / drive.finger.stiffness;
+      return -at(detail::stretch_force_along(drive, segment, along)) / drive.finger.stiffness;
     case Sampled::stretch_rate:
-      return -at(along.derivative(along.finger_force())) / drive.finger.stiffness;
+      return at(detail::stretch_rate_along(drive, segment, along));
     case Sampled::housing_force:
       return drive.stiffness * drive.stops.within(at(along.position())) +
              drive.damping * at(along.velocity()) -

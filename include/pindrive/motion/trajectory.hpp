@@ -39,6 +39,8 @@ class ClosedForm {
   Path<T> acceleration() const { return segment_.flow.acceleration(); }
   const Path<T>& plate_force() const { return segment_.plate_force; }
   const Path<T>& finger_force() const { return segment_.finger_force; }
+  /// Of a segment without a length, or of a pin at rest.
+  Path<T> slider_velocity() const { return {segment_.slider_velocity, T(0), T(0)}; }
   Path<T> input(const Curve<T>& curve) const { return curve.line(); }
   Path<T> above(Path<T> path, T level) const {
     path.start -= level;
@@ -94,10 +96,9 @@ template <class T>
 SeriesState<T> start_of(const Drive<T>& drive, const Segment<T>& segment,
                         const SeriesMode<T>& mode) {
   const Path<T>& v = segment.flow.velocity;
-  const Path<T>& of_finger = segment.finger_force;
-  // The slider velocity of a finger is the pin velocity minus the stretch rate.
-  const T skin = mode.has_slider_state() ? v.start + of_finger.drift / drive.finger.stiffness
-                                         : -of_finger.start;
+  const T skin = mode.has_slider_state()
+                     ? segment.slider_velocity
+                     : -segment.finger_force.start - drive.finger.damping * v.start;
   return {segment.flow.position.start, v.start, skin, v.drift};
 }
 
@@ -118,7 +119,7 @@ class BySeries {
     if (segment.mode.plate == ContactState::stick && !at_stop) plate_force_ = step_.stick_force;
     finger_force_.span = step_.span();
     if (segment.mode.finger == ContactState::elastic_stick)
-      finger_force_ = T(-1) * step_.skin;
+      finger_force_ = T(-1) * step_.skin + (-drive.finger.damping) * step_.velocity;
     else if (held && segment.mode.finger == ContactState::stick && !segment.mode.both_stuck())
       finger_force_ = step_.stick_force;
     else if (is_slip(segment.mode.finger))
@@ -138,6 +139,8 @@ class BySeries {
   Polynomial<T> acceleration() const { return step_.velocity.derivative(); }
   const Polynomial<T>& plate_force() const { return plate_force_; }
   const Polynomial<T>& finger_force() const { return finger_force_; }
+  /// Velocity of a slider that has one of its own, m/s.
+  const Polynomial<T>& slider_velocity() const { return step_.skin; }
   const Polynomial<T>& sliding_speed() const {
     return step_.speed;
   }  ///< sliding speed on the plate, with its transverse part, m/s
@@ -241,6 +244,7 @@ class ByTerms {
   TermSum<T> acceleration() const { return motion_.velocity.derivative(); }
   const TermSum<T>& plate_force() const { return plate_force_; }
   const TermSum<T>& finger_force() const { return finger_force_; }
+  const TermSum<T>& slider_velocity() const { return motion_.skin; }
   TermSum<T> input(const Curve<T>& curve) const { return curve; }
   TermSum<T> above(const TermSum<T>& sum, T level) const {
     return above(sum, Line<T>{level, T(0)});
@@ -295,7 +299,7 @@ class ByTerms {
     const bool on_plate = does.plate == ContactState::stick;
     plate_force_ = on_plate ? motion_.stick_force : motion_.plate_force;
     if (does.finger == ContactState::elastic_stick) {
-      finger_force_.add(T(-1), motion_.skin);
+      finger_force_.add(T(-1), motion_.skin).add(-drive.finger.damping, motion_.velocity);
     } else if (does.finger == ContactState::stick && !on_plate) {
       finger_force_ = motion_.stick_force;
     } else if (is_slip(does.finger)) {

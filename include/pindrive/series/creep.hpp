@@ -146,13 +146,14 @@ class CreepFlow : public IteratedStep<T> {
       T u = across_.times(t, n);
       friction[n] = e.plate_force * d[n] + e.plate_slope * u;
       const T v_p = this->plate_velocity_[n];
-      T others = e.stiffness * x[n] + e.skin_factor.value * y[n] - this->given_force(e, n, step) +
+      T others = e.stiffness * x[n] + e.skin_pull.value * y[n] - this->given_force(e, n, step) +
                  e.mass * acceleration_[n];
-      if (n > 0) others += step * (e.damping_rate * v[n - 1] + e.skin_factor.rate * y[n - 1]);
+      if (n > 0) others += step * (e.damping_rate * v[n - 1] + e.skin_pull.rate * y[n - 1]);
       others += this->bent_damper_force(e, n);
       if (n > 0 && n < N) {
         const T free = (1 - d[0] * d[0]) / s[0];
-        T slope = e.plate_force * free + e.plate_slope * w, damping = e.damping, fallen{0};
+        T slope = e.plate_force * free + e.plate_slope * w, fallen{0};
+        T damping = e.damping + e.skin_drag();
         if (falls) {
           fallen = at_plate(n);
           const T r = speed.c[0];
@@ -163,8 +164,8 @@ class CreepFlow : public IteratedStep<T> {
           others += this->falling_finger_force(e, n);
           damping += e.finger_load.value * e.finger_falling.slope(T(e.finger_side) * v[0]);
         }
-        const T missing =
-            this->load_.times(friction, n) + e.load.value * fallen + e.damping * (v_p + u) + others;
+        const T missing = this->load_.times(friction, n) + e.load.value * fallen +
+                          (e.damping + e.skin_drag()) * (v_p + u) + others;
         t[n] = -missing / (e.load.value * slope + damping * w);
         s[n] += d[0] * t[n];
         d[n] += free * t[n];
@@ -177,7 +178,8 @@ class CreepFlow : public IteratedStep<T> {
       speed.c[n] = across_.times(s, n);
       plate_force.c[n] = -this->load_.times(friction, n);
       x[n + 1] = T(step) / T(n + 1) * v[n];
-      e.follow(y, v, n, T(step));
+      if (n > 0) e.damp(y, v, n);
+      this->follow_skin(e, y, v, n, step);
       if (n == order) break;
     }
     this->take_acceleration(step, order);
@@ -191,6 +193,7 @@ class CreepFlow : public IteratedStep<T> {
     const Real h = span(), k = plain(e.stiffness), b = plain(e.damping);
     const Real b_change = plain(e.damping_rate) * h, decay = plain(e.skin_decay);
     const Real f = plain(e.skin_factor.value), f_change = plain(e.skin_factor.rate) * h;
+    const Real g = plain(e.skin_pull.value);
     const Real K = plain(e.skin_stiffness);
     const Real F = plain(e.plate_force), S = plain(e.plate_slope);
     const auto& load = this->load_;
@@ -202,7 +205,7 @@ class CreepFlow : public IteratedStep<T> {
     missed += max(abs(b), abs(b + b_change)) * last(velocity, N) +
               abs(b_change) * last(velocity, N - 1) +
               k * (last(position, N) + last(position, N + 1)) +
-              max(abs(f), abs(f + f_change)) * last(skin, N) + abs(f_change) * last(skin, N - 1) +
+              max(abs(g), abs(g + f_change)) * last(skin, N) + abs(f_change) * last(skin, N - 1) +
               this->missed_inputs(e) +
               abs(S) * (load.beyond(v) + most_load * this->plate_velocity_.missed()) +
               F * (load.beyond(d) + most_load * direction);
@@ -225,10 +228,11 @@ class CreepFlow : public IteratedStep<T> {
       missed += pressed.beyond(parts) + pressed.most() * error;
       falls += pressed.most() * slope;
     }
-    const Real missed_skin =
-        K * last(velocity, N) + (abs(decay) + (N + 1) * abs(f_change) / h) * last(skin, N);
+    const Real missed_skin = K * last(velocity, N) +
+                             (abs(decay) + (N + 1) * abs(f_change) / h) * last(skin, N) +
+                             this->missed_drift(e);
     const Real steep = sqrt(1 + t[0] * t[0]);
-    const Real gamma = std::min(b, b + b_change) - this->bent_damping(e) +
+    const Real gamma = std::min(b, b + b_change) + plain(e.skin_drag()) - this->bent_damping(e) +
                        least_load * least_friction / (most_w * steep * steep * steep) +
                        std::min(S * least_load, S * most_load) - falls;
     const Real grown = exp(max(Real(0), f < 0 ? -decay / f : Real(0)) * h) * h;
@@ -254,7 +258,7 @@ class CreepFlow : public IteratedStep<T> {
     const Real sizes = abs(plain(e.force.value)) + abs(plain(e.mass) * plain(acceleration_[0])) +
                        abs(plain(e.damping) * plain(start.v)) +
                        plain(e.stiffness) * abs(plain(start.x)) +
-                       abs(plain(e.skin_factor.value) * plain(start.skin));
+                       abs(plain(e.skin_pull.value) * plain(start.skin));
     const Real changes =
         abs(plain(e.plate_velocity.rate)) + abs(plain(balance_.across().rate * balance_.ratio()));
     const Real root = hypot(Real(1), plain(balance_.ratio()));
@@ -294,7 +298,7 @@ bool follows_plate(const SeriesEquation<T>& e, const SeriesState<T>& start) {
 template <class T>
 T pull_on(const SeriesEquation<T>& e, const SeriesState<T>& start) {
   return e.force.value - e.mass * e.plate_velocity.rate - e.damping * start.v -
-         e.stiffness * start.x - e.skin_factor.value * start.skin;
+         e.stiffness * start.x - e.skin_pull.value * start.skin;
 }
 /// Velocity relative to the plate that a pin at its friction limit has a time after the plate began to slide across, m/s.
 /// All friction balances the pull, so that the pin lags: m u' = λF w²/(2u²) as long as w is small beside u.

@@ -43,7 +43,7 @@ class CreepBalance {
   /// Computes t at a state, for an acceleration (m/s²); true if friction can balance all further forces.
   bool solve(const SeriesEquation<T>& e, const SeriesState<T>& s, const T& acceleration) {
     const T needed = (e.force.value - e.mass * acceleration - e.damping * e.plate_velocity.value -
-                      e.stiffness * s.x - e.skin_factor.value * s.skin) /
+                      e.stiffness * s.x - e.skin_pull.value * s.skin) /
                      e.load.value;
     const T linear = (e.plate_slope + e.damping / e.load.value) * across_.value;
     T t = ratio_;

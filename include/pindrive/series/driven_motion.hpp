@@ -27,9 +27,9 @@ inline constexpr bool uses_driven_motion = true;
 template <class T>
 class DrivenMotion {
  public:
-  /// True if a sum holds the terms of all inputs and of the free oscillation.
+  /// True if a sum holds the terms of all inputs, of the free oscillation and of the skin.
   static bool holds(const SeriesEquation<T>& e) {
-    std::size_t terms = 2;
+    std::size_t terms = e.skin_decay != 0 ? 3 : 2;
     for (const Curve<T>* input : {&e.pushes, &e.plate_velocity, &e.load, &e.finger_load})
       if (!input->straight()) terms += input->piece->count;
     return terms <= std::size_t{TermSum<T>::most_terms};
@@ -39,7 +39,7 @@ class DrivenMotion {
   static constexpr bool creeps() { return false; }
 
   TermSum<T> position, velocity;
-  TermSum<T> skin;         ///< tension of skin in elastic stick, N; else 0
+  TermSum<T> skin;         ///< state of the skin (see SeriesEquation); else 0
   TermSum<T> plate_force;  ///< R, N
   TermSum<T> stick_force;  ///< stick force of the surface that holds the pin, N; else 0
   TermSum<T> speed;        ///< sliding speed on the plate, m/s
@@ -54,19 +54,21 @@ class DrivenMotion {
     given.begin_at(e.force.value);
     plate_force.add(-side * e.plate_force, e.load).add(drag, surface);
     given.add(T(1), plate_force);
-    const T elastic = e.skin_factor.value * e.skin_stiffness;
+    const T elastic = e.skin_pull.value * e.skin_stiffness;
     if (e.held) {
       velocity = e.surface;
       position = integral(velocity);
     } else {
       TermSum<T> pull = given;  // skin relaxed where it was
-      pull.polynomial[0] += elastic * start.x - e.skin_factor.value * start.skin;
+      pull.polynomial[0] += elastic * start.x - e.skin_pull.value * start.skin;
       solve(e.mass, e.damping + drag, e.stiffness + elastic, pull, start);
       velocity = position.derivative();
       velocity.begin_at(start.v);
     }
     position.begin_at(start.x);
-    if (e.skin_stiffness != 0) {
+    if (e.skin_decay != 0) {
+      follow(e, start.skin);
+    } else if (e.skin_stiffness != 0) {
       skin.add(e.skin_stiffness, position);
       skin.begin_at(start.skin);
     }
@@ -75,7 +77,7 @@ class DrivenMotion {
       stick_force.add(e.mass, velocity.derivative())
           .add(e.damping + drag, velocity)
           .add(e.stiffness, position)
-          .add(e.skin_factor.value, skin)
+          .add(e.skin_pull.value, skin)
           .add(T(-1), given);
     speed.add(side, velocity).add(-side, surface);
   }
@@ -83,6 +85,8 @@ class DrivenMotion {
   /// True if its parts are not much larger at τ than its largest position before, or that at τ: near resonance
   /// and near critical damping they cancel.
   bool is_accurate(T largest, T tau) const {
+    if (!(slider_forced_ <= T(most_cancelled) * std::max(velocity.size(tau), abs(skin.start()))))
+      return false;  // infinite at resonance
     return std::max(position.size(tau), forced_) <=
            T(most_cancelled) * std::max(largest, abs(position.at(tau)));
   }
@@ -138,6 +142,18 @@ class DrivenMotion {
     return found;
   }
 
+  /// Sets the velocity of a slider that does not pull the pin: f y' + D y = K x' + B x'' − F λ'.
+  void follow(const SeriesEquation<T>& e, const T& start) {
+    const T f = e.skin_factor.value, decay = e.skin_decay;
+    TermSum<T> stretching = e.skin_stiffness * velocity;
+    stretching.add(e.skin_damping, velocity.derivative())
+        .add(-e.finger_force, TermSum<T>(e.finger_load).derivative());
+    skin = response(stretching, T(0), f, decay);
+    slider_forced_ = skin.size(T(0));
+    skin.add({start - skin.at(T(0)), T(0), decay / f, T(0)});
+    skin.begin_at(start);
+  }
+
   /// Sets the position: particular solution of m x'' + b x' + k x = `pull`, and free oscillation.
   void solve(T m, T b, T k, const TermSum<T>& pull, const SeriesState<T>& start) {
     position = response(pull, m, b, k);
@@ -159,6 +175,7 @@ class DrivenMotion {
   std::array<Curve<T>, 2> loads_;
   T forced_{
       0};  ///< size of the particular solution, m: a term at resonance merges with the free oscillation
+  T slider_forced_{0};  ///< size of the particular solution of the slider, m/s
 };
 
 }  // namespace pindrive::detail

@@ -129,12 +129,12 @@ class OverdampedFlow : public IteratedStep<T> {
     for (int n = 0; n <= N; ++n) {
       const T friction = e.plate_force * side * load_[n] - slope * plate_velocity_[n];
       v[n] = (this->given_force(e, n, step) - friction - e.stiffness * x[n] -
-              e.skin_factor.value * y[n] - e.mass * acceleration_[n]) /
+              e.skin_pull.value * y[n] - e.mass * acceleration_[n]) /
              damping(e);
       plate_force.c[n] = -friction - slope * v[n];
       speed.c[n] = side * (v[n] - plate_velocity_[n]);
       x[n + 1] = T(step) / T(n + 1) * v[n];
-      e.follow(y, v, n, T(step));
+      this->follow_skin(e, y, v, n, step);
     }
     this->take_acceleration(step, N);
   }
@@ -162,7 +162,7 @@ class OverdampedFlow : public IteratedStep<T> {
   bool starts_from(const SeriesEquation<T>& e, const SeriesState<T>& start) const {
     const Real forces = abs(plain(e.force.value)) + abs(plain(e.load.value * e.plate_force)) +
                         plain(e.stiffness) * abs(plain(start.x)) +
-                        abs(plain(e.skin_factor.value) * plain(start.skin));
+                        abs(plain(e.skin_pull.value) * plain(start.skin));
     const Real changes = abs(plain(velocity.c[1])) / span();
     return abs(plain(start.v - velocity.c[0])) <=
            difference_error<Real> *

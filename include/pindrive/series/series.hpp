@@ -124,7 +124,7 @@ class SeriesFlow : public SeriesExpansion<T> {
     const Real u = plain(s.v) - plain(e.plate_velocity.value), speed = hypot(u, w);
     const Real friction = abs(plain(e.load.value * (e.plate_force + e.plate_falling.at(T(speed)))));
     const Real pull = plain(e.force.value) - plain(e.stiffness) * plain(s.x) -
-                      plain(e.damping) * plain(s.v) - plain(e.skin_factor.value) * plain(s.skin) -
+                      plain(e.damping) * plain(s.v) - plain(e.skin_pull.value) * plain(s.skin) -
                       plain(e.load.value) * plain(e.plate_slope) * u;
     const Real turns = abs(plain(e.plate_velocity.rate)) + abs(plain(e.across.rate));
     if (starts_to_slide(e, s)) {
@@ -202,7 +202,7 @@ class SeriesFlow : public SeriesExpansion<T> {
     T per_speed{0};                 // 1/r
     std::array<T, N + 1> friction;  // F d + S u
     for (int n = 0;; ++n) {
-      e.follow(y, v, n, T(step));
+      this->follow_skin(e, y, v, n, step);
       const T u = u_[n] = v[n] - plate_velocity_[n];
       if (e.side != 0) {
         r[n] = T(e.side) * u;
@@ -222,13 +222,14 @@ class SeriesFlow : public SeriesExpansion<T> {
       const T part = T(step) / T(n + 1);
       x[n + 1] = part * v[n];
       T forces = plate_force.c[n] - this->damper_force(e, n, step) - e.stiffness * x[n] -
-                 e.skin_factor.value * y[n] + this->given_force(e, n, step);
-      if (n > 0) forces -= step * e.skin_factor.rate * y[n - 1];
+                 e.skin_pull.value * y[n] + this->given_force(e, n, step);
+      if (n > 0) forces -= step * e.skin_pull.rate * y[n - 1];
       if (e.finger_falling.present()) forces -= this->falling_finger_force(e, n);
       if (e.held) stick_force.c[n] = e.mass * surface_.rate(n) - forces;
       if (n == N) return;
       v[n + 1] = e.held ? surface_[n + 1] : part * forces * per_mass;
       if (n == 0 && !e.held && !isnan(start.acceleration)) v[1] = start.acceleration * step;
+      e.damp(y, v, n + 1);
     }
   }
 
@@ -282,11 +283,11 @@ class SeriesFlow : public SeriesExpansion<T> {
     for (int n = 0;; ++n) {
       const T part = T(step) / T(n + 1);
       x[n + 1] = part * v[n];
-      e.follow(y, v, n, T(step));
+      this->follow_skin(e, y, v, n, step);
       // All forces of this order except plate friction.
       T others = this->given_force(e, n, step) - this->damper_force(e, n, step) -
-                 e.stiffness * x[n] - e.skin_factor.value * y[n];
-      if (n > 0) others -= step * e.skin_factor.rate * y[n - 1];
+                 e.stiffness * x[n] - e.skin_pull.value * y[n];
+      if (n > 0) others -= step * e.skin_pull.rate * y[n - 1];
       if (e.finger_falling.present()) others -= this->falling_finger_force(e, n);
       // d and ρ/σᵏ of this order without u/σᵏ
       const int last = std::min(n + k - 1, N + 1), first = n + 2 * k - last;
@@ -330,12 +331,13 @@ class SeriesFlow : public SeriesExpansion<T> {
       plate_force.c[n] = -load_.times(friction, n);
       if (e.held) stick_force.c[n] = e.mass * surface_.rate(n) - others - plate_force.c[n];
       if (n == N) return;
+      e.damp(y, v, n + 1);
     }
   }
 
   /// Bounds the truncation error from the residual of the equation; returns its largest ratio to
-  /// rounding, at most 1 for a step that may be used. The error e of a mode, with 2 E² = m e_v² + k e_x² + (f e_y)²/K, grows at most by
-  /// the energy that the residual supplies, as the slope of friction dissipates energy unless it is
+  /// rounding, at most 1 for a step that may be used. The error e of a mode, with
+  /// 2 E² = m e_v² + k e_x² + (f e_y − B e_v)²/K, grows at most by the energy that the residual supplies, as the slope of friction dissipates energy unless it is
   /// negative.
   Real bound(const SeriesEquation<T>& e) {
     using std::max;
@@ -343,7 +345,8 @@ class SeriesFlow : public SeriesExpansion<T> {
     const Real h = span(), m = plain(e.mass), k = plain(e.stiffness), b = plain(e.damping);
     const Real b_change = plain(e.damping_rate) * h, decay = plain(e.skin_decay);
     const Real f = plain(e.skin_factor.value), f_change = plain(e.skin_factor.rate) * h;
-    const Real K = plain(e.skin_stiffness), most_f = max(abs(f), abs(f + f_change));
+    const Real K = plain(e.skin_stiffness), g = plain(e.skin_pull.value);
+    const Real most_g = max(abs(g), abs(g + f_change));
     const Real S = plain(e.plate_slope), most_load = load_.most();
     const auto last = [](const Polynomial<T>& p, int n) { return abs(plain(p.c[n])); };
     const Sums u = sums_of(e.side != 0 ? speed.c : inner(1).c);
@@ -354,12 +357,13 @@ class SeriesFlow : public SeriesExpansion<T> {
         e.held ? Real(0)
                : max(abs(b), abs(b + b_change)) * last(velocity, N) +
                      abs(b_change) * last(velocity, N - 1) +
-                     k * (last(position, N) + last(position, N + 1)) + most_f * last(skin, N) +
+                     k * (last(position, N) + last(position, N + 1)) + most_g * last(skin, N) +
                      abs(f_change) * last(skin, N - 1) +
                      abs(S) * (load_.beyond(u) + most_load * plate_velocity_.missed()) +
                      turning.missed + this->missed_inputs(e);
-    const Real missed_skin =
-        K * last(velocity, N) + (abs(decay) + (N + 1) * abs(f_change) / h) * last(skin, N);
+    const Real missed_skin = K * last(velocity, N) +
+                             (abs(decay) + (N + 1) * abs(f_change) / h) * last(skin, N) +
+                             this->missed_drift(e);
     const Real falls = std::min(b, b + b_change) - this->bent_damping(e) +
                        std::min(Real(0), S * most_load) - most_load * turning.falling.slope -
                        finger_load_.most() * turning.falling_at_finger.slope;
@@ -373,7 +377,7 @@ class SeriesFlow : public SeriesExpansion<T> {
     const auto rounding_of = [&](const Sums& sums) { return step_error<Real> * sums[0]; };
     // Slider beside a pin at rest: error of its velocity from the rounding of the forces.
     const Real forces =
-        decay != 0 ? most_f * sums_of(skin.c)[0] + k * sums_of(position.c)[0] : Real(0);
+        decay != 0 ? most_g * sums_of(skin.c)[0] + k * sums_of(position.c)[0] : Real(0);
     const Real of_velocity = rounding_of(sums_of(velocity.c));
     const auto over = [](Real missing, Real allowed) {
       if (missing <= allowed) return Real(0);

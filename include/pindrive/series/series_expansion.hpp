@@ -81,13 +81,22 @@ class SeriesExpansion : public SeriesStep<T> {
     if (n == 1) return e.force.rate * step;
     return pushes_[n] + e.mass * plate_velocity_.rate(n) - e.finger_force * finger_load_[n];
   }
+  /// Order n + 1 of the state of the skin, without the part of its damping.
+  template <class Coefficients>
+  void follow_skin(const SeriesEquation<T>& e, Coefficients& y, const Coefficients& v, int n,
+                   Real step) const {
+    T drift = n == 0 ? e.skin_drift : T(0);
+    if (e.skin_decay != 0 && !e.finger_load.straight())
+      drift = e.finger_force * finger_load_.rate(n);
+    e.follow(y, v, n, T(step), drift);
+  }
   /// Order n of the forces of the damper and of the slope of friction at a rigid finger, N.
   T damper_force(const SeriesEquation<T>& e, int n, Real step) const {
     T force = e.damping * velocity.c[n];
     if (e.damping_rate != 0 && n > 0) force += step * e.damping_rate * velocity.c[n - 1];
     return force + bent_damper_force(e, n);
   }
-  /// Part of it by a load of the finger beyond its tangent, N.
+  /// Part by a load of the finger beyond its tangent, N.
   T bent_damper_force(const SeriesEquation<T>& e, int n) const {
     if (e.finger_load.straight()) return T(0);
     return e.finger_slope * finger_load_.times(velocity.c, n, 2);
@@ -111,6 +120,12 @@ class SeriesExpansion : public SeriesStep<T> {
       missed += std::abs(plain(e.finger_slope)) * finger_load_.beyond(v);
     }
     return missed;
+  }
+
+  /// Bound of the load beyond its tangent in the equation of the skin, N/s.
+  Real missed_drift(const SeriesEquation<T>& e) const {
+    return e.skin_decay == 0 ? Real(0)
+                             : std::abs(plain(e.finger_force)) * finger_load_.missed_rate();
   }
 
   using Sums = detail::Sums<Real>;

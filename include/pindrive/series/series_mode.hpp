@@ -62,10 +62,12 @@ class SeriesMode {
       return contact.linear() && (load.steady() || contact.branch(branch).slope == 0);
     };
     const bool follows = is_slip(mode_.finger) && !drive_.finger.rigid();
+    const bool damped = follows && drive_.finger.damped();
     return mode_.plate != ContactState::slip_oblique &&
            constant(mode_.plate, drive_.plate, mode_.plate_branch, inputs_.plate_load) &&
            constant(mode_.finger, drive_.finger, mode_.finger_branch, inputs_.finger_load) &&
-           !has_slider_state() && !(follows && !inputs_.finger_load.straight()) &&
+           (damped ? finger().slope == 0 : !has_slider_state()) &&
+           !(follows && !damped && !inputs_.finger_load.straight()) &&
            !held_by_stop(drive_, mode_) && drive_.damping >= 0;
   }
   /// The mode with its inputs from τ on.
@@ -73,8 +75,8 @@ class SeriesMode {
 
   bool has_slider_state() const { return has_slider_state(drive_.finger, mode_); }
 
-  /// Equation of the mode. The skin state is the tension or, if the finger slips on a sloped
-  /// branch, the slider velocity.
+  /// Equation of the mode. The skin state is the tension by the stretch or, if the finger slips with damping or on
+  /// a sloped branch, the slider velocity.
   SeriesEquation<T> equation() const {
     SeriesEquation<T> e{drive_.mass, drive_.damping, drive_.stiffness};
     e.force = inputs_.force.line();
@@ -102,11 +104,14 @@ class SeriesMode {
     const Curve<T>& load = inputs_.finger_load;
     if (mode_.finger != ContactState::absent) e.finger_load = load;  // also limits a stick force
     if (has_slider_state()) {
-      e.skin_factor = {finger().slope * load.value, finger().slope * load.rate};
+      e.skin_pull = {finger().slope * load.value, finger().slope * load.rate};
+      e.skin_factor = {e.skin_pull.value + drive_.finger.damping, e.skin_pull.rate};
+      e.skin_damping = drive_.finger.damping;
       e.skin_stiffness = e.skin_decay = drive_.finger.stiffness;
       e.skin_drift = along(mode_.finger, finger().intercept()) * load.rate;
     } else if (mode_.finger == ContactState::elastic_stick) {
-      e.skin_factor.value = T(1);
+      e.skin_factor.value = e.skin_pull.value = T(1);
+      e.damping += drive_.finger.damping;
       e.skin_stiffness = drive_.finger.stiffness;
     } else if (is_slip(mode_.finger)) {
       e.damping += finger().slope * load.value;
@@ -123,15 +128,6 @@ class SeriesMode {
     }
     if (mode_.plate == ContactState::stick) e.surface = inputs_.plate_velocity;
     return e;
-  }
-
-  /// Skin tension from the skin state, N; 0 for a rigid finger.
-  T skin_force(T skin) const {
-    if (drive_.finger.rigid()) return T(0);
-    if (!is_slip(mode_.finger)) return skin;
-    const T friction = has_slider_state() ? finger().intercept() : finger().force;
-    return inputs_.finger_load.value *
-           (along(mode_.finger, friction) + (has_slider_state() ? finger().slope * skin : T(0)));
   }
 
   /// Guards that are exactly zero at the begin: of the speeds, and the side of a stick force at its
@@ -237,8 +233,8 @@ class SeriesMode {
       between(found, speed, finger(), at.finger, false, false, followed);
     }
     if (mode_.finger == ContactState::elastic_stick) {
-      const int limit = at.finger == ActiveGuard::none ? 0 : begins_with(along.skin);
-      within(found, along.skin, drive_.finger.static_limit * along.input(inputs_.finger_load),
+      const int limit = at.finger == ActiveGuard::none ? 0 : begins_with(tension(along));
+      within(found, tension(along), drive_.finger.static_limit * along.input(inputs_.finger_load),
              limit, false);
     }
     if (drive_.stops.present() && !held_by_stop(drive_, mode_)) stops(found, along, at);
@@ -251,7 +247,8 @@ class SeriesMode {
   /// True if the slider of a compliant finger has a velocity of its own, in slip on a sloped
   /// branch.
   static bool has_slider_state(const Contact<T>& finger, const Mode& mode) {
-    return finger.may_lag() && is_slip(mode.finger) && finger.branch(mode.finger_branch).slope != 0;
+    return finger.may_lag() && is_slip(mode.finger) &&
+           (finger.damped() || finger.branch(mode.finger_branch).slope != 0);
   }
   Branch<T> plate() const { return drive_.plate.branch(mode_.plate_branch); }
   Branch<T> finger() const { return drive_.finger.branch(mode_.finger_branch); }
@@ -260,6 +257,13 @@ class SeriesMode {
     return inputs_.finger_load.rate * friction / drive_.finger.stiffness;
   }
 
+  /// Tension of skin whose slider sticks, N.
+  template <class Along>
+  typename Along::Path tension(const Along& along) const {
+    if (!drive_.finger.damped()) return along.skin;
+    typename Along::Path found = along.skin;
+    return found += drive_.finger.damping * along.velocity;
+  }
   /// Sign of the first coefficient that is not zero.
   static int begins_with(const Polynomial<T>& series) {
     for (const T& c : series.c)

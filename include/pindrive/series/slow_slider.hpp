@@ -4,9 +4,9 @@
 /// series of the whole motion would need steps of a few ε. The slow motion without this fast
 /// transient solves
 ///
-///     D y = K v − E − (φ y)',
+///     D y = K v − E − (φ y − B v)',
 ///
-/// in which (φ y)' comes from the series of the preceding iteration, and the remaining residual is
+/// in which (φ y − B v)' comes from the series of the preceding iteration, and the remaining residual is
 /// bounded.
 #pragma once
 
@@ -91,16 +91,18 @@ class SlowSliderFlow : public SeriesFlow<T> {
            SeriesFlow<T>::turning_rate(e, start);
   }
 
-  /// Sets (φ y)' from the series.
+  /// Sets (φ y − B v)' from the series.
   void follow(const SeriesEquation<T>& e, Real step) {
     for (int n = 0; n <= N; ++n) {
-      const T grows = n < N ? e.skin_factor.value * skin.c[n + 1] / T(step) : T(0);
+      const T next =
+          n < N ? e.skin_factor.value * skin.c[n + 1] - e.skin_damping * velocity.c[n + 1] : T(0);
+      const T grows = next / T(step);
       const T now = T(n + 1) * (grows + e.skin_factor.rate * skin.c[n]);
       changes_[n] = std::abs(plain(now - stretching_[n]));
       stretching_[n] = now;
     }
   }
-  /// Change of (φ y)' in the last iteration over a part of the step: the residual of the series of
+  /// Change of (φ y − B v)' in the last iteration over a part of the step: the residual of the series of
   /// y.
   Real change(Real part) const {
     Real sum{0}, power{1};
@@ -115,7 +117,8 @@ class SlowSliderFlow : public SeriesFlow<T> {
     using std::min;
     const Real h = span(), m = plain(e.mass), k = plain(e.stiffness), b = plain(e.damping);
     const Real b_change = plain(e.damping_rate) * h, f = plain(e.skin_factor.value);
-    const Real f_change = plain(e.skin_factor.rate) * h, most_f = max(f, f + f_change);
+    const Real f_change = plain(e.skin_factor.rate) * h, g = plain(e.skin_pull.value);
+    const Real most_g = max(g, g + f_change);
     const Real S = plain(e.plate_slope), most_load = load_.most();
     const Real load_change = load_.change(), K = plain(e.skin_stiffness);
     const auto last = [](const Polynomial<T>& p, int n) { return abs(plain(p.c[n])); };
@@ -125,17 +128,18 @@ class SlowSliderFlow : public SeriesFlow<T> {
         e.held ? Real(0)
                : (max(abs(b), abs(b + b_change)) + most_load * abs(S)) * last(velocity, N) +
                      (abs(b_change) + abs(load_change * S)) * last(velocity, N - 1) +
-                     k * (last(position, N) + last(position, N + 1)) + most_f * last(skin, N) +
+                     k * (last(position, N) + last(position, N + 1)) + most_g * last(skin, N) +
                      abs(f_change) * last(skin, N - 1) + turning.missed + this->missed_inputs(e);
+    missed_skin += this->missed_drift(e);
     const Real stays = plain(e.skin_decay) + plain(e.skin_factor.rate);
     const Real falls =
         min(b, b + b_change) + min(Real(0), S * most_load) - most_load * turning.falling.slope;
-    const Real grown = h / m * (k * h + most_f * K / stays + max(Real(0), -falls));
+    const Real grown = h / m * (k * h + most_g * K / stays + max(Real(0), -falls));
     // May end with its load, within the time resolution.
     const Real ends =
         f + f_change + rounding<Real> * (plain(time) + h) * abs(plain(e.skin_factor.rate));
     if (!(ends >= 0) || (!e.held && grown > Real(0.5))) return false;
-    v_bound = e.held ? Real(0) : 2 * h / m * (missed + most_f * missed_skin / stays);
+    v_bound = e.held ? Real(0) : 2 * h / m * (missed + most_g * missed_skin / stays);
     x_bound = h * v_bound;
     skin_bound = (K * v_bound + missed_skin) / stays;
     speed_bound = v_bound + turning.root;
@@ -151,7 +155,7 @@ class SlowSliderFlow : public SeriesFlow<T> {
                                                      rounding<Real> * plain(start.time) * changes;
   }
 
-  std::array<T, N + 1> stretching_{};  // (φ y)', in the time σ
+  std::array<T, N + 1> stretching_{};  // (φ y − B v)', in the time σ
   std::array<Real, N + 1> changes_{};  // changes in the last iteration
   bool holds_{false};
 };

@@ -127,6 +127,7 @@ def inputs(scan: Scan) -> dict[str, float]:
         "finger.kinetic": drive.finger.kinetic,
         "finger.static": drive.finger.static_friction,
         **({} if drive.finger.rigid else {"finger.stiffness": drive.finger.stiffness}),
+        **({"finger.damping": drive.finger.damping} if drive.finger.damping else {}),
         **{k: v for k, v in asdict(magnet).items() if isinstance(v, float)},
         "normal_force": drive.normal_force,
         "preload": drive.preload,

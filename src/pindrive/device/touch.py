@@ -50,8 +50,8 @@ def spans(load: float | Profile) -> list[tuple[float, float]]:
 
 
 def held_stretch(stretch: float, finger: Contact, load: float | Profile) -> float:
-    """Return the skin stretch (m) kept as a load begins: beyond it, the skin slips."""
+    """Return the skin stretch (m) kept as a load begins: beyond it, undamped skin slips at once."""
     pressed = initial(load)
-    if abs(stretch) <= finger.static_friction * pressed / finger.stiffness:
+    if finger.damping or abs(stretch) <= finger.static_friction * pressed / finger.stiffness:
         return stretch
     return copysign(finger.kinetic * pressed / finger.stiffness, stretch)

@@ -71,6 +71,8 @@ def unknown_in_file(key: str) -> str:
     """Return the message for an unknown key of a device file."""
     if key == "plate.stiffness":
         return f"{key} cannot be given, the plate is rigid; skin gives way by finger.stiffness"
+    if key == "plate.damping":
+        return f"{key} cannot be given, the plate is rigid; skin is damped by finger.damping"
     return names_in_file(key).unknown(key)
 
 

@@ -161,9 +161,9 @@ def contact_of(values: Mapping[str, Value], table: str) -> Contact:
         for name, value in table_of(values, table).items()
         if f"{table}.{name}" in QUANTITIES  # preload and touch force are the drive's
     }
-    stiffness = given.pop("stiffness", None)
+    stiffness, damping = given.pop("stiffness", None), given.pop("damping", None)
     given["law"] = law_name(given.get("law"))
-    contact = Contact(**given, stiffness=inf if stiffness is None else stiffness)
+    contact = Contact(**given, stiffness=inf if stiffness is None else stiffness, damping=damping)
     if contact.coefficient is None:
         return contact
     pressing: dict[str, Any] = {DRIVE[k].name: value for k, value in values.items() if k in DRIVE}

@@ -62,11 +62,12 @@ def fit(
         release: The initial state and the inputs, one for all recordings or one for each.
         free: Fitted parameters: of the drive `mass`, `stiffness`, `damping` or `damping_ratio`,
             `plate.kinetic`, `plate.static`, `finger.kinetic`, `finger.static`, `finger.stiffness`,
-            rows such as `finger_curve[1].force`; of each release `displacement`, `velocity`,
-            `skin_stretch`, `mouse_velocity`, `plate_load`, rows such as `plate_load[1].time`; of
-            each recording `time_offset`, its time of the release, and `position_offset` or that of
-            another channel. Keys of device files are names too. With several recordings, what each
-            has of its own is named with its place, such as `displacement@0`.
+            `finger.damping`, rows such as `finger_curve[1].force`; of each release `displacement`,
+            `velocity`, `skin_stretch`, `mouse_velocity`, `plate_load`, rows such as
+            `plate_load[1].time`; of each recording `time_offset`, its time of the release, and
+            `position_offset` or that of another channel. Keys of device files are names too. With
+            several recordings, what each has of its own is named with its place, such as
+            `displacement@0`.
         bounds: (least, largest) by name, SI or text with a unit. Default: a tenth to ten times the
             value of the drive; from 0 for damping and friction.
         seed: Seed of the candidates, from 0 on.

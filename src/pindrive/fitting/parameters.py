@@ -31,7 +31,7 @@ from pindrive.quantities.table import FUNCTION_PARAMETERS, QUANTITIES, check
 
 DRIVE: Final = (
     *("mass", "stiffness", "damping", "damping_ratio", "plate.kinetic", "plate.static"),
-    *("finger.kinetic", "finger.static", "finger.stiffness"),
+    *("finger.kinetic", "finger.static", "finger.stiffness", "finger.damping"),
     *(
         f"{contact}.{name}"
         for contact in ("plate", "finger")
@@ -401,7 +401,7 @@ class Assembly:
 
 
 def _made_contact(numbers: Any, given: Contact, static_free: bool) -> Contact:
-    kinetic, static, give, curve, (law, breakaway, velocity, _, viscous) = numbers
+    kinetic, static, give, curve, (law, breakaway, velocity, _, viscous), damping = numbers
     rows = [(float(speed), float(force)) for speed, force in curve] or None
     known = given.static is not None or static_free
     return Contact(
@@ -409,6 +409,7 @@ def _made_contact(numbers: Any, given: Contact, static_free: bool) -> Contact:
         float(static) if known else None,
         rows,
         float(give),
+        float(damping),
         law=given.law,
         breakaway=float(breakaway) if law else None,
         stribeck_velocity=float(velocity) if law else None,
@@ -473,7 +474,7 @@ def _assembled(
 
 
 def _contact(values: Mapping[str, Any], name: str, contact: Any) -> Any:
-    kinetic, static, give, curve, (law, breakaway, velocity, exponent, viscous) = contact
+    kinetic, static, give, curve, (law, breakaway, velocity, exponent, viscous), damping = contact
     falls = law in FALLING_NUMBERS
     rest = breakaway if falls else kinetic
     ratio = static / rest if rest else 1.0
@@ -500,7 +501,8 @@ def _contact(values: Mapping[str, Any], name: str, contact: Any) -> Any:
     give = values.get(f"{name}.stiffness", give)
     velocity = values.get(f"{name}.stribeck_velocity", velocity)
     viscous = values.get(f"{name}.viscous", viscous)
-    return kinetic, static, give, curve, (law, breakaway, velocity, exponent, viscous)
+    damping = values.get(f"{name}.damping", damping)
+    return kinetic, static, give, curve, (law, breakaway, velocity, exponent, viscous), damping
 
 
 def _table(values: Mapping[str, Any], name: str, rows: Any) -> Any:

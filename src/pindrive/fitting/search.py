@@ -27,8 +27,8 @@ SINGLE: Final = 1024
 COARSE: Final = 40
 """Samples of each recording at which candidates are compared."""
 _OTHER: Final = (
-    *("finger.stiffness", "skin_stretch", "force", "across_velocity", "finger_load"),
-    *("travel", "stop_stiffness", "stop_damping"),
+    *("finger.stiffness", "finger.damping", "skin_stretch"),
+    *("force", "across_velocity", "finger_load", "travel", "stop_stiffness", "stop_damping"),
     *(name for name, place in PLACES.items() if place[1:2] == (LAW_PLACE,)),
 )
 _PLAIN: Final = tuple(name for name in PLACES if name not in _OTHER)

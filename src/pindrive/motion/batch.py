@@ -52,12 +52,13 @@ _ARGUMENTS: Final = {
     )
 }
 _STOPS: Final = {name: QUANTITIES[name] for name in ("travel", "stop_stiffness", "stop_damping")}
+_OTHERS: Final = _STOPS | {"finger_damping": QUANTITIES["finger.damping"]}
 # Arguments in place of friction forces.
 _FORCES: Final = [name for name in COEFFICIENT_OF if name.endswith(("kinetic", "static"))]
 _PRESSING: Final = [n for parts in PRESSED_BY.values() for n in parts if n not in _ARGUMENTS]
 _TAKEN: Final = (
     _ARGUMENTS
-    | _STOPS
+    | _OTHERS
     | {
         name.replace(".", "_"): QUANTITIES[name]
         for name in ("damping_ratio", *(COEFFICIENT_OF[n] for n in _FORCES), *_PRESSING)
@@ -113,7 +114,7 @@ _USUAL: Final = {
 }
 _LEDGER: Final = {q.variable: q.name for q in ENERGY}
 _NUMBERS: Final = _USUAL | _LEDGER | {q.variable: q.name for q in FINAL}
-_OTHERS: Final = ("ending", "events", _SETTLED)
+_BESIDE: Final = ("ending", "events", _SETTLED)
 _OUTPUT_NAMES: Final = number_names(
     {name: QUANTITIES[full] for name, full in _NUMBERS.items()}
     | {_SETTLED: QUANTITIES["transient.settled"]}
@@ -148,10 +149,11 @@ def simulate_batch(
             bit.
         **varied: Varied values: of the drive `mass`, `stiffness`, `damping` or `damping_ratio`,
             `plate_kinetic`, `plate_static`, `finger_kinetic`, `finger_static`, `finger_stiffness`
-            (infinite: rigid); in place of forces, of a contact given by coefficients,
-            `plate_coefficient`, `plate_static_coefficient`, `preload`, `finger_coefficient`,
-            `finger_static_coefficient` and `touch_force`; of the release `mouse_velocity`,
-            `displacement`, `velocity`, `plate_load`; of the end stops `travel`, `stop_stiffness`
+            (infinite: rigid), `finger_damping`; in place of forces, of a contact given by
+            coefficients, `plate_coefficient`, `plate_static_coefficient`, `preload`,
+            `finger_coefficient`, `finger_static_coefficient` and `touch_force`; of the release
+            `mouse_velocity`, `displacement`, `velocity`, `plate_load`; of the end stops `travel`,
+            `stop_stiffness`
             and `stop_damping`; and `duration` (infinite: long enough to see each ending) and
             `settling_band`, as for `simulate`, which has their ranges. Keys of device files are
             names too: `**{"plate.kinetic": 0.02}`. Static friction that is None in a contact is the
@@ -237,7 +239,7 @@ def _followed(
     computed = [_SETTLING_TIME if name == _SETTLED else name for name in wanted]
     numbers = [*dict.fromkeys(_NUMBERS[name] for name in computed if name in _NUMBERS)]
     table = _core.simulate_batch(
-        spread, _BOUNDS, workers, numbers, "events" in wanted, 0, _stops(aligned, shape)
+        spread, _BOUNDS, workers, numbers, "events" in wanted, 0, _others(aligned, shape)
     )
     if _SETTLED in wanted:
         settling_time = table[_NUMBERS[_SETTLING_TIME]]
@@ -294,6 +296,7 @@ def _constants(
         "damping": None if varied.get("damping_ratio") is not None else drive.damping,
         **_friction(drive, {name for name, value in varied.items() if value is not None}),
         "finger_stiffness": None if finger.rigid else finger.stiffness,
+        "finger_damping": finger.damping,
         "mouse_velocity": release.mouse_velocity,
         "displacement": release.displacement,
         "velocity": release.velocity,
@@ -342,21 +345,26 @@ def _largest(values: NDArray[np.float64]) -> float | None:
     return float(known.max()) if known.size else None
 
 
-def _stops(
+def _others(
     given: Mapping[str, NDArray[np.float64]], shape: tuple[int, ...]
 ) -> list[NDArray[np.float64]]:
-    """Return travel, stiffness and damping of the end stops: one value each, or one for each point.
+    """Travel, stiffness and damping of the end stops, damping of the skin; nothing: none of them.
 
-    NaN where one is refused.
+    Each has one value, or one for each point: NaN where one is refused.
 
     Raises:
-        ValueError: A value of the stops lacks the values that it needs.
+        ValueError: A value of stops or skin lacks the values that it needs.
     """
-    refuse({f"drive.{n}": _largest(_allowed(n, given[n])) for n in _STOPS if n in given})
-    if "travel" not in given:
+    values = {name: _allowed(q.name, given[name]) for name, q in _OTHERS.items() if name in given}
+    refuse({f"drive.{name}": _largest(values[name]) for name in _STOPS if name in values})
+    damping = values.get("finger_damping", np.array(0.0))
+    if _largest(damping) and np.isinf(given["finger_stiffness"]).any():
+        refuse({"finger.damping": _largest(damping)})
+    if "travel" not in given and not damping.any():
         return []
     left_out = {"stop_stiffness": np.array(inf), "stop_damping": np.array(0.0)}
-    parts = [_allowed(name, given[name]) if name in given else left_out[name] for name in _STOPS]
+    left_out |= {"travel": np.array(inf), "finger_damping": np.array(0.0)}
+    parts = [values.get(name, left_out[name]) for name in _OTHERS]
     return [
         np.ascontiguousarray(part if part.size == 1 else np.broadcast_to(part, shape)).ravel()
         for part in parts
@@ -390,7 +398,7 @@ def _forces(given: Mapping[str, NDArray[np.float64]]) -> dict[str, NDArray[np.fl
 def _wanted(outputs: Sequence[str] | None, energy: bool) -> list[str]:
     """The variables to return; `status` is always one."""
     if outputs is None:
-        return [*_USUAL, *(_LEDGER if energy else ()), "status", *_OTHERS]
+        return [*_USUAL, *(_LEDGER if energy else ()), "status", *_BESIDE]
     if isinstance(outputs, str):
         raise ValueError(refusal("outputs", "a list of names", repr(outputs)))
     found = [_OUTPUT_NAMES.find(name, "outputs") for name in outputs]

@@ -8,7 +8,7 @@ from functools import partial
 from math import inf, isinf, nan, sqrt
 from typing import Any, Final
 
-from pindrive.motion.friction import COEFFICIENTS, FALLING, LAW, normal_force
+from pindrive.motion.friction import COEFFICIENTS, FALLING, LAW, SKIN, normal_force
 from pindrive.quantities.contradictions import refuse, refuse_contact
 from pindrive.quantities.drive import DRIVE_QUANTITIES, FRICTION_LAWS, PARTS
 from pindrive.quantities.part import Part
@@ -40,6 +40,8 @@ class Contact:
             increasing from 0, linear between rows and on beyond the last; its first force is
             `kinetic`. None: `kinetic` at every speed (Coulomb).
         stiffness: Tangential stiffness of the surface, N/m, from 1e-12 to 1e12; infinite: rigid.
+        damping: Tangential damping of the surface, parallel to its stiffness (a Kelvin-Voigt
+            element), N*s/m, from 0 to 1e12; none if None.
         coefficient: Kinetic friction over the force that presses, from 0 to 1e12, in place of
             `kinetic`. None with a curve of coefficients: its first.
         static_coefficient: Coefficient at rest, in place of `static`; None: `coefficient`.
@@ -65,6 +67,7 @@ class Contact:
     static: float | None
     curve: tuple[tuple[float, float], ...] | None
     stiffness: float
+    damping: float | None
     coefficient: float | None
     static_coefficient: float | None
     coefficient_curve: tuple[tuple[float, float], ...] | None
@@ -82,6 +85,7 @@ class Contact:
         static: float | str | None = None,
         curve: Iterable[tuple[float | str, float | str]] | None = None,
         stiffness: float | str = inf,
+        damping: float | str | None = None,
         *,
         coefficient: float | str | None = None,
         static_coefficient: float | str | None = None,
@@ -123,6 +127,11 @@ class Contact:
         object.__setattr__(
             self, "stiffness", check("contact.stiffness", stiffness, label="stiffness")
         )
+        damper = 0.0 if damping is None else check("contact.damping", damping, label="damping")
+        if damper and isinf(self.stiffness):
+            required = "left out for a rigid contact; give stiffness too"
+            raise ValueError(refusal("damping", required, f"{damper!r} N*s/m"))
+        object.__setattr__(self, "damping", damper or None)
 
     def pressed_by(self, normal_force: float) -> Contact:
         """Return the contact with the friction forces of its coefficients under a normal force (N).
@@ -139,6 +148,7 @@ class Contact:
             },
             curve=None if rows is None else [(speed, each * normal_force) for speed, each in rows],
             stiffness=self.stiffness,
+            damping=self.damping,
             **{name: getattr(self, name) for name in LAW},
         )
         for name in COEFFICIENTS.values():
@@ -421,7 +431,7 @@ class Drive:
     def by_forces(self) -> Drive:
         """Return the drive with friction given by forces alone, which then remain fixed."""
         plate, finger = (
-            Contact(**{name: getattr(c, name) for name in (*COEFFICIENTS, *LAW, "stiffness")})
+            Contact(**{name: getattr(c, name) for name in (*COEFFICIENTS, *LAW, *SKIN)})
             for c in (self.plate, self.finger)
         )
         return self.replace(plate=plate, finger=finger, touch_force=None)
@@ -465,6 +475,8 @@ def values_of(drive: Drive) -> dict[str, Any]:
         values |= {f"{table}.{name}": value for name, value in law_values(contact).items()}
     if not drive.finger.rigid:
         values["finger.stiffness"] = drive.finger.stiffness
+    if drive.finger.damping:
+        values["finger.damping"] = drive.finger.damping
     return {key: value for key, value in values.items() if value is not None}
 
 

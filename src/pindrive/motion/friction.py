@@ -26,6 +26,8 @@ COEFFICIENTS: Final = {
 """The coefficient by which each friction force of a contact may be given instead."""
 LAW: Final = ("law", "stribeck_velocity", "exponent")
 """Parts of a friction law beside forces or coefficients."""
+SKIN: Final = ("stiffness", "damping")
+"""Parts of a contact beside its friction."""
 FALLING: Final = ("stribeck", "hess-soom")
 """Laws by which friction falls from `breakaway` to `kinetic` as the sliding speed grows."""
 COEFFICIENT_OF: Final = {

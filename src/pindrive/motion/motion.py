@@ -457,6 +457,8 @@ class Motion(lazy.NotebookHtml):
                 values |= {n: getattr(drive, n) for n in PRESSED_BY[name] if n != "mass"}
         if not drive.finger.rigid:
             values["finger.stiffness"] = drive.finger.stiffness
+        if drive.finger.damping:
+            values["finger.damping"] = drive.finger.damping
         for name in INPUTS:
             given = getattr(self.release, name)
             if isinstance(given, Function):

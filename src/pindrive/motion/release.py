@@ -185,8 +185,10 @@ def check_fits(drive: Drive, release: Release, duration: float | None = None) ->
         raise ValueError(refusal("release", "a Release", repr(release)))
     if not drive.plate.rigid:
         raise ValueError(refusal("plate stiffness", "infinite", f"{drive.plate.stiffness!r} N/m"))
-    if isinstance(release.finger_load, Function) and not drive.finger.rigid:
-        required = "a number or a Profile beside a finger stiffness"
+    finger = drive.finger
+    falls = not finger.rigid and (finger.curved or not finger.damping)
+    if isinstance(release.finger_load, Function) and falls:
+        required = "a number or a Profile beside a finger stiffness without damping, or a curve"
         raise ValueError(refusal("finger_load", required, "a Function"))
     for name in LOADS:
         refused = negative_load(name, getattr(release, name), duration)
@@ -248,6 +250,7 @@ def _contact_numbers(contact: Contact) -> ContactNumbers:
         contact.stiffness,
         contact.curve or (),
         contact.law_numbers,
+        contact.damping or 0.0,
     )
 
 

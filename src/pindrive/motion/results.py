@@ -359,6 +359,7 @@ class Ledger:
     plate_dissipated: float
     finger_dissipated: float
     stop_dissipated: float
+    skin_dissipated: float
     residual: float
 
 

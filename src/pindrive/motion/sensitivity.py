@@ -330,7 +330,7 @@ def direction_of(motion: pindrive.Motion, given: str) -> tuple[CoreNumbers, floa
         return along
     places = _places(numbers, given)
     size = max(abs(entry(numbers, place)) for place in places) or _natural_size(motion, places[0])
-    for contact, (kinetic, static, _, curve, law) in ((3, numbers[3]), (4, numbers[4])):
+    for contact, (kinetic, static, _, curve, law, _) in ((3, numbers[3]), (4, numbers[4])):
         first_row = [(contact, 3, 0, 1)] if curve else []
         if law[1]:  # friction at rest is another number
             if (contact, 4, 1) in places and static == law[1]:
@@ -525,7 +525,8 @@ def _in_range(numbers: CoreNumbers) -> bool:
         and (not law[1] or static >= law[1] >= kinetic)
         and law[2] > 0.0
         and law[4] >= 0.0
-        for kinetic, static, give, curve, law in (plate, finger)
+        and damping >= 0.0
+        for kinetic, static, give, curve, law, damping in (plate, finger)
     )
     return (
         mass > 0.0

@@ -25,6 +25,7 @@ _GLANCE = (
     *(end for name in ("mass", "stiffness") for end in (_SEEN[name].lower, _SEEN[name].upper)),
     *(_SEEN[name].upper for name in ("damping", "plate.static", "finger.static")),
     *(_SEEN["finger.stiffness"].lower, _SEEN["finger.stiffness"].upper),
+    _SEEN["finger.damping"].upper,
     *(_SEEN[name].upper for name in ("mouse_velocity", "plate_load", "displacement", "velocity")),
     *(_SEEN["duration"].lower, _SEEN["duration"].upper),
 )
@@ -129,7 +130,9 @@ def _plausible(numbers: CoreNumbers) -> bool:
     """Return True if `warn_of` has nothing to report, quickly: a motion takes microseconds."""
     mass, stiffness, damping, plate, finger, v_plate, load, x, v, *_ = numbers
     *_, force, across, finger_load, stops, duration, _ = numbers
-    m0, m1, k0, k1, b1, plate1, finger1, skin0, skin1, speed1, load1, x1, v1, t0, t1 = _GLANCE
+    m0, m1, k0, k1, b1, plate1, finger1, skin0, skin1, damper1, speed1, load1, x1, v1, t0, t1 = (
+        _GLANCE
+    )
     return (
         m0 <= mass <= m1
         and k0 <= stiffness <= k1
@@ -137,6 +140,7 @@ def _plausible(numbers: CoreNumbers) -> bool:
         and plate[1] <= plate1
         and finger[1] <= finger1
         and (skin0 <= finger[2] <= skin1 or finger[2] == inf)
+        and finger[5] <= damper1
         and not (plate[3] or finger[3])
         and len(v_plate) == len(load) == len(force) == len(across) == len(finger_load) == 1
         and len(v_plate[0]) == len(load[0]) == len(force[0]) == len(finger_load[0]) == 2

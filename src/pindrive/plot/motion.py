@@ -459,6 +459,8 @@ def parameters(motion: Motion) -> str:
         words.append(rf"$F_\mathrm{{{index}}}$ = {_course('plate.kinetic', along)}{more}")
     if not drive.finger.rigid:
         words.append(rf"$k_\mathrm{{f}}$ = {short('finger.stiffness', drive.finger.stiffness)}")
+    if drive.finger.damping:
+        words.append(rf"$b_\mathrm{{f}}$ = {short('finger.damping', drive.finger.damping)}")
     words += [
         f"{symbol} = {short(name, value)}"
         for name, symbol in _STOPS.items()

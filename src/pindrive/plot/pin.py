@@ -232,7 +232,7 @@ def _draw_force(
     axes.plot(ms, 1e3 * pin.skin_force(t), color=PALETTE["curve"], lw=1.1, gid="force")
     axes.margins(y=0.15)
     axes.set_ylabel("skin force (mN)")
-    if not finger.rigid:
+    if not finger.rigid and not finger.damping:  # a damper adds a force without a stretch
         other = axes.twinx()
         other.set_ylim(*(1e3 / finger.stiffness * force for force in axes.get_ylim()))
         other.set_ylabel("stretch (µm)")

@@ -386,6 +386,16 @@ _CONTACTS: Final = (
             remark="rigid unless given",
             seen=between(1e-2, 1e12),
         ),
+        Quantity(
+            "finger.damping",
+            "b_f",
+            "N*s/m",
+            "tangential damping of the finger's skin, parallel to its stiffness",
+            source=FINGER,
+            example=1.0,
+            remark="none unless given",
+            seen=between(0.0, 1e3),
+        ),
     ),
 )
 
@@ -530,6 +540,13 @@ _PARTS: Final = (
         "N/m",
         "tangential stiffness of a contact",
         bounds=POSITIVE_OR_RIGID,
+    ),
+    Quantity(
+        "contact.damping",
+        "b_c",
+        "N*s/m",
+        "tangential damping of a contact",
+        bounds=NON_NEGATIVE,
     ),
     Quantity(
         "curve.speed",

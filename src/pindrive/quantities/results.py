@@ -165,6 +165,9 @@ ENERGY: Final[tuple[Quantity, ...]] = (
     Quantity("energy.plate_dissipated", "W_p", "J", "energy turned into heat at the plate"),
     Quantity("energy.finger_dissipated", "W_f", "J", "energy turned into heat at the finger"),
     Quantity("energy.stop_dissipated", "W_x", "J", "energy turned into heat at the end stops"),
+    Quantity(
+        "energy.skin_dissipated", "W_s", "J", "energy turned into heat in the damper of the skin"
+    ),
     Quantity("energy.residual", "W_res", "J", "residual of the energy balance: rounding alone"),
 )
 """The energy ledger of a motion."""

@@ -53,6 +53,7 @@ class Status(IntEnum):
     bad_travel = 32
     bad_stop_stiffness = 33
     bad_stop_damping = 34
+    bad_finger_damping = 35
 
     def __str__(self) -> str:
         """Its name, such as "ok"."""

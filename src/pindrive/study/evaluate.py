@@ -267,7 +267,8 @@ def _motion(given: Mapping[str, Any]) -> Motion:
         for kinetic, curve in (("kinetic", "curve"), ("coefficient", "coefficient_curve")):
             if own[curve] is not None:
                 own[curve] = scaled_rows(own[curve], own[kinetic])
-        body[table] = Contact(**own, stiffness=stiffness)
+        damping = given["finger_damping"] if table == "finger" else None
+        body[table] = Contact(**own, stiffness=stiffness, damping=damping)
     release = {name: given[name] for name in _RELEASE}
     for name in INPUTS:
         if isinstance(release[name], Function):

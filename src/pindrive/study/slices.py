@@ -42,6 +42,7 @@ _WORDS: Final = {
     "finger_kinetic": "finger friction",
     "finger_static": "static finger friction",
     "finger_stiffness": "skin stiffness",
+    "finger_damping": "skin damping",
     "velocity": "release velocity",
     "latency": "latency of the control block",
     "fall_time": "fall time of the pull",
