@@ -47,7 +47,7 @@ def test_the_work_of_the_hand_is_what_the_pins_dissipate(done: Scan) -> None:
     taken = 0.0
     for pin in done.pins:
         ledger = pin.motion.energy
-        parts = ("plate", "finger", "damper", "stop")
+        parts = ("plate", "finger", "skin", "damper", "stop")
         taken += sum(getattr(ledger, f"{name}_dissipated") for name in parts)
         for name in ("spring", "skin", "stop"):
             taken += getattr(ledger, f"{name}_end") - getattr(ledger, f"{name}_start")

@@ -229,8 +229,8 @@ def test_scan_of_a_letter(device: Path) -> None:
     result = run("scan", device, "--text", "A", "-o", "a.nc")
     assert result.exit_code == 0, result.output
     (line,) = result.stderr.splitlines()
-    assert line.startswith("warning: the pins push the hand with up to 1.05 N, more than 0.77 N")
-    assert "The pins push the hand with up to 1.05 N (at " in result.stdout
+    assert line.startswith("warning: the pins push the hand with up to 1.04 N, more than 0.77 N")
+    assert "The pins push the hand with up to 1.04 N (at " in result.stdout
     assert "Wrote a.nc" in result.stdout
     assert "The hand's path takes " in result.stdout
     reported = xr.load_dataset("a.nc", engine="h5netcdf")

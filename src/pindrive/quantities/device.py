@@ -360,7 +360,7 @@ READER: Final[dict[str, dict[str, Any]]] = {
     "finger.coefficient": {"default": 0.5},
     "finger.static_coefficient": {"default": 0.75},
     "finger.coefficient_curve": {
-        "remark": "speeds from 0 m/s up; coefficient and stiffness are left out then",
+        "remark": "speeds from 0 m/s up; coefficient, stiffness and damping are left out then",
     },
     "finger.touch_force": {
         "default": 0.060,
@@ -370,7 +370,7 @@ READER: Final[dict[str, dict[str, Any]]] = {
     "magnet.height": {"default": 0.0124},
     "array.slot_length": {"default": 0.0042},
     "finger.curve": {
-        "remark": "speeds from 0 m/s up; kinetic and stiffness are left out then",
+        "remark": "speeds from 0 m/s up; kinetic, stiffness and damping are left out then",
         "rows": ((0.0, 0.030), (0.05, 0.024)),
     },
     "finger.stiffness": {
@@ -378,6 +378,12 @@ READER: Final[dict[str, dict[str, Any]]] = {
         "example": None,
         "source": "1000 N/m of the whole finger pad (ROBOMECH J. 2017, 10.1186/s40648-017-0080-8, "
         "Table 1); a pin touches a part of it, assumed: a third",
+    },
+    "finger.damping": {
+        "default": 0.3,
+        "example": None,
+        "source": "1 N*s/m of the whole finger pad (ROBOMECH J. 2017, 10.1186/s40648-017-0080-8, "
+        "Table 1); a pin touches a part of it, assumed: a third, as of its stiffness",
     },
     "array.spot_scale": {
         "default": 0.5,
