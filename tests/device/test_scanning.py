@@ -28,7 +28,7 @@ from pindrive.device import (
     strokes,
 )
 from random_scans import mirrored, sampled
-from tactile_mouse import PLATE, RIGID, SKIN, drive
+from tactile_mouse import DAMPED, PLATE, RIGID, SKIN, drive
 
 STRIBECK = Contact(curve=[(0.0, 0.022), (0.02, 0.012), (0.3, 0.025)], static=0.0265)
 
@@ -62,8 +62,14 @@ def weak() -> Electromagnet:
         (RIGID, PLATE, Electromagnet.from_times(residual=0.05), (0.003,), 0.15),
         (SKIN, PLATE, Electromagnet.from_times(saturation=0.6), (0.0015,), 0.1),
         (SKIN, STRIBECK, weak(), (0.008,), 0.06),
+        (DAMPED, PLATE, weak(), (0.002, 0.012), 0.06),
+        (DAMPED, PLATE, Electromagnet.from_times(residual=0.05), (0.003,), 0.06),
+        (DAMPED, STRIBECK, weak(), (0.008,), 0.06),
     ],
-    ids=["rigid", "skin", "rigid, fast, residual", "skin, saturated", "skin, curved plate"],
+    ids=[
+        *("rigid", "skin", "rigid, fast, residual", "skin, saturated", "skin, curved plate"),
+        *("damped", "damped, residual", "damped, curved plate"),
+    ],
 )
 def test_whole_cycles_against_sundials(
     finger: Contact,

@@ -127,6 +127,11 @@ def test_derivatives_are_those_of_whole_scans(parameter: str, finger: str, axis:
     compare(device(finger, axis), parameter, CHANGES[parameter])
 
 
+@pytest.mark.parametrize("name", ["stiffness", "damping"])
+def test_the_skin(name: str) -> None:
+    compare(device("damped"), f"finger.{name}", of_contact("finger", name))
+
+
 @pytest.mark.parametrize("name", ["pwm_frequency", "pwm_duty"])
 def test_pulses(name: str) -> None:
     pulsed = Electromagnet.from_times(hold_force=1.2, pwm_frequency=437.0, pwm_duty=0.8)

@@ -43,6 +43,7 @@ class Law:
     def __init__(self, contact: Mapping[str, Any]) -> None:
         rows = [(float(u), float(f)) for u, f in contact["curve"]]
         self.static, self.stiffness = float(contact["static"]), contact["stiffness"] or inf
+        self.damping = float(contact.get("damping", 0.0))
         self.absent = self.static == 0 and not any(f for _, f in rows)
         if len(rows) == 1:
             rows.append((1.0, rows[0][1]))
@@ -158,8 +159,19 @@ class ExplicitModes:
         if self.finger.absent:
             return 0.0
         if self.grips:
-            return float(-self.finger.stiffness * s)
+            return float(-self.tension(v, s))
         return float(-self.f) * self.touch_at(t) * self.finger(self.pieces["finger"], self.f * v)
+
+    def tension(self, v: float, s: float) -> float:
+        """The tension of skin that grips."""
+        return float(self.finger.stiffness * s + self.finger.damping * v)
+
+    def stretching(self, v: float, s: float) -> float:
+        """The rate of the stretch: of damped skin that slips, under constant friction."""
+        if self.grips or not self.finger.damping:
+            return v if self.grips else 0.0
+        pull = self.f * self.finger(0, 0.0) - self.finger.stiffness * s
+        return float(pull / self.finger.damping)
 
     def free(self, t: float, x: float, v: float) -> float:
         """All but friction."""
@@ -185,7 +197,7 @@ class ExplicitModes:
 
     def rhs(self, t: float, y: State) -> list[float]:
         v = 0.0 if self.on_finger else self.mouse_at(t) if self.on_plate else y[1]
-        return [v, self.acceleration(t, y), v if self.grips else 0.0]
+        return [v, self.acceleration(t, y), self.stretching(v, y[2])]
 
     # -- what ends a mode ----------------------------------------------------------------------
 
@@ -200,7 +212,7 @@ class ExplicitModes:
             found += self.limit("finger", self.finger_needed, self.finger_static)
         if self.grips:
             found += self.limit(
-                "finger", lambda t, y: self.finger.stiffness * y[2], self.finger_static
+                "finger", lambda t, y: self.tension(self.moving(t, y), y[2]), self.finger_static
             )
         for watch in found:
             watch.scale = force
@@ -209,10 +221,20 @@ class ExplicitModes:
             if self.oblique:
                 found = [w for w in found if (w.contact, w.kind) != ("plate", "level")]
         if self.f and not self.on_finger and not self.grips:
-            found += self.band("finger", self.finger, lambda t, y: self.f * y[1])
+            found += self.band("finger", self.finger, self.rubbing)
         for watch in found:
             watch.left = f"{watch.contact} {watch.kind}" in self.left
         return found
+
+    def moving(self, t: float, y: State) -> float:
+        """The velocity of the pin."""
+        return self.mouse_at(t) if self.on_plate else float(y[1])
+
+    def rubbing(self, t: float, y: State) -> float:
+        """The speed of sliding at the finger."""
+        v = self.moving(t, y)
+        slips = v - self.stretching(v, y[2]) if self.finger.damping else v
+        return float(self.f * slips)
 
     def plate_static(self, t: float) -> float:
         return self.plate.static * self.load_at(t)
@@ -251,9 +273,8 @@ class ExplicitModes:
                 abs(law.lines[self.pieces[n]][2])
                 for n, law in (("plate", self.plate), ("finger", self.finger))
             )
-            rate = max(
-                sqrt(stiffness / self.m), (self.b + slope * max(1.0, self.load[1].max())) / self.m
-            )
+            resists = self.b + self.finger.damping + slope * max(1.0, self.load[1].max())
+            rate = max(sqrt(stiffness / self.m), resists / self.m)
             longest = (end - self.t) / 40 if stuck else 0.2 / rate
             atol = RTOL * self.speed * np.array([1 / self.w0, 1.0, 1 / self.w0])
             y = np.array([self.x, self.v, self.s])
@@ -291,7 +312,8 @@ class ExplicitModes:
             force = self.k * y[0] * self.finger_static(t) / self.both_static(t)
         else:
             force = self.finger_needed(t, y) if self.on_finger else self.finger_force(t, y[1], y[2])
-        return (y[0], y[1], self.acceleration(t, y), force, -force / self.finger.stiffness)
+        stretch = y[2] if self.finger.damping else -force / self.finger.stiffness
+        return (y[0], y[1], self.acceleration(t, y), force, stretch)
 
     def react(self, watch: Watch) -> None:
         name = watch.contact
@@ -305,7 +327,15 @@ class ExplicitModes:
                 self.skin_slips()
             else:
                 self.break_loose(name)
-        elif self.soft and (name == "finger" or (self.f and not self.grips and self.stopped())):
+        elif self.finger.damping and name == "finger":
+            self.grips = True
+            self.note("finger", "stick")
+            self.left = {"finger limit"} if self.finger.static == self.finger(0, 0.0) else set()
+        elif (
+            self.soft
+            and not self.finger.damping
+            and (name == "finger" or (self.f and not self.grips and self.stopped()))
+        ):
             shared = not self.plate.absent and not self.on_plate and self.stopped()
             self.skin_grips()
             if shared:
@@ -336,7 +366,8 @@ class ExplicitModes:
         self.left = {"finger limit"} if self.finger.static == self.finger(0, 0.0) else set()
 
     def skin_slips(self) -> None:
-        self.f, self.grips = copysign(1.0, self.s), False
+        pull = self.tension(self.moving(self.t, self.y), self.s)
+        self.f, self.grips = copysign(1.0, pull), False
         self.pieces["finger"] = self.finger.piece(abs(self.v))
         self.note("finger", "slip")
 
@@ -356,6 +387,8 @@ class ExplicitModes:
     def move_full_skin(self, way: float) -> None:
         """The pin leaves v = 0 this way while its skin is stretched to the limit."""
         full = self.finger.static * (1 - 1e-12)
+        if self.finger.damping:
+            return
         if self.grips and self.v == 0 and self.finger.stiffness * abs(self.s) > full:
             if self.s * way > 0:
                 self.skin_slips()
@@ -408,7 +441,8 @@ class ExplicitModes:
                 self.t
             ):
                 self.break_loose("finger")
-            if self.soft and self.f and not self.grips and self.on_plate and self.vp == 0:
+            slips = self.f and not self.grips and not self.finger.damping
+            if self.soft and slips and self.on_plate and self.vp == 0:
                 self.skin_grips()
             if self.on_plate:
                 self.move_full_skin(self.w)

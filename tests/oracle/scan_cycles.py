@@ -92,4 +92,9 @@ def _pull(piece: InputPiece) -> tuple[float, float, list[tuple[float, float]]]:
 def _contact(surface: Contact) -> dict[str, Any]:
     stiffness = None if surface.rigid else surface.stiffness
     curve = surface.curve or [(0.0, surface.kinetic)]
-    return {"curve": curve, "static": surface.static_friction, "stiffness": stiffness}
+    return {
+        "curve": curve,
+        "static": surface.static_friction,
+        "stiffness": stiffness,
+        "damping": surface.damping or 0.0,
+    }

@@ -505,9 +505,7 @@ def test_the_example_is_a_study_of_scans() -> None:
         stiffness=250.0,
         damping_ratio=0.5,
         plate=Contact(coefficient=0.225, static_coefficient=0.27),
-        finger=Contact(
-            coefficient=0.5, static_coefficient=0.75, stiffness=300.0, damping=0.3
-        ),
+        finger=Contact(coefficient=0.5, static_coefficient=0.75, stiffness=300.0, damping=0.3),
         touch_force=columns["finger.touch_force"][1],
     )
     magnet = Electromagnet.from_times(fall_time=columns["magnet.fall_time"][1])
