@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdarg>
 #include <cstring>
+#include <initializer_list>
 #include <limits>
 
 #include "pindrive/device/inputs.hpp"
@@ -100,6 +101,14 @@ constexpr const char* magnet_by_times[] = {"magnet.hold_force", "magnet.rise_tim
 constexpr const char* coil_needs[] = {"magnet.turns",       "magnet.pole_area",
                                       "magnet.gap",         "magnet.wire_diameter",
                                       "magnet.turn_length", "magnet.supply_voltage"};
+constexpr const char* data_sheet_needs[] = {"magnet.resistance", "magnet.inductance",
+                                            "magnet.supply_voltage", "magnet.hold_force"};
+constexpr const char* in_data_sheet[] = {"magnet.resistance", "magnet.inductance",
+                                         "magnet.hold_current"};
+constexpr const char* not_in_data_sheet[] = {
+    "magnet.turns",       "magnet.pole_area",        "magnet.gap",  "magnet.wire_diameter",
+    "magnet.turn_length", "magnet.saturation_field", "magnet.lift", "magnet.closing_force",
+    "magnet.rise_time",   "magnet.fall_time"};
 constexpr const char* coil_takes[] = {"magnet.release_resistance", "magnet.saturation_field",
                                       "magnet.thermal_resistance", "magnet.heat_capacity",
                                       "magnet.temperature_rise",   "magnet.lift",
@@ -441,40 +450,68 @@ class Search {
     if (plate.kinetic * plate.normal_force == 0)
       add("plate.kinetic", {"plate.curve", "plate.coefficient"},
           "greater than 0 N where a magnet holds by friction|0.0 N");
+    if (const char* const sheet = first_of(in_data_sheet)) return check_data_sheet(sheet);
     const char* const needed = first_of(coil_needs);
     const char* const made = needed ? needed : first_of(coil_takes);
     const char* const direct = first_of(magnet_by_times);
     if (made && direct)
       return add(direct, {made}, "left out where %s describes the coil|both, %s and %s",
                  name_of(made), name_of(direct), name_of(made));
-    if (made && !check_complete(made)) return;
-    constexpr const char *voltage = "magnet.voltage", *residual = "magnet.residual";
+    if (made && !check_complete(made, coil_needs, coil_takes)) return;
+    constexpr const char* voltage = "magnet.voltage";
     if (!made && has(voltage))
       add(voltage, {}, "given with a coil, by turns, gap, wire_diameter and the like|it alone");
     const auto value = [&](const char* key) { return number(key); };
     if (made && !check_coil(device::construction_by_keys(value), made)) return;
     const device::MagnetParameters<double> magnet = device::magnet_by_keys(value);
-    if (magnet.residual >= magnet.hold_force)
-      reject(residual, {"magnet.hold_force"}, "less than the hold force, %v N", magnet.hold_force);
-    else if (has("magnet.lift") && has("magnet.closing_force"))
+    check_switching(magnet);
+    if (magnet.residual < magnet.hold_force && has("magnet.lift") && has("magnet.closing_force"))
       check_closing(magnet);
     check_pair("magnet.lift", "magnet.closing_force");
     if (made) check_poles();
-    check_pair("magnet.pwm_frequency", "magnet.pwm_duty");
-    if (has(voltage) && has("magnet.pwm_frequency"))
-      add(voltage, {"magnet.pwm_frequency"}, "left out where pwm_frequency gives pulses|both");
     if (made) check_voltage(rows(voltage));
   }
 
-  bool check_complete(const char* made) {
+  /// A magnet by its data sheet: what gives its winding otherwise is left out.
+  void check_data_sheet(const char* sheet) {
+    if (const char* const other = first_of(not_in_data_sheet))
+      return add(other, {sheet}, "left out where %s is that of a data sheet|both, %s and %s",
+                 name_of(sheet), name_of(other), name_of(sheet));
+    if (!check_complete(sheet, data_sheet_needs, in_data_sheet)) return;
+    if (std::isnan(number("magnet.resistance"))) return;  // refused above
+    const auto value = [&](const char* key) { return number(key); };
+    const device::MagnetParameters<double> magnet = device::magnet_by_keys(value);
+    if (!check_parts(sheet,
+                     {{"current", magnet.power / number("magnet.supply_voltage"), 1e-12, 1e12, "A"},
+                      {"power", magnet.power, 1e-15, 1e15, "W"},
+                      {"time constant", magnet.rise_constant, 1e-12, 1e9, "s"},
+                      {"pull", magnet.hold_force, 1e-12, 1e12, "N"}}))
+      return;
+    check_switching(magnet);
+    check_voltage(rows("magnet.voltage"));
+  }
+  /// What both descriptions of a winding share.
+  void check_switching(const device::MagnetParameters<double>& magnet) {
+    constexpr const char *voltage = "magnet.voltage", *residual = "magnet.residual";
+    if (magnet.residual >= magnet.hold_force)
+      reject(residual, {"magnet.hold_force"}, "less than the hold force, %v N", magnet.hold_force);
+    check_pair("magnet.pwm_frequency", "magnet.pwm_duty");
+    if (has(voltage) && has("magnet.pwm_frequency"))
+      add(voltage, {"magnet.pwm_frequency"}, "left out where pwm_frequency gives pulses|both");
+  }
+
+  template <class Needs, class Takes>
+  bool check_complete(const char* made, const Needs& needs, const Takes& takes) {
     Text missing, alone;
-    const auto list = [&](Text& names, const auto& keys, bool given) {
-      for (const char* const key : keys)
-        if (has(key) == given) names.add("%s%s", *names.get() ? ", " : "", name_of(key));
+    const auto list = [&](const auto& keys, bool given, Text& names) {
+      for (const char* const key : keys) {
+        const bool listed = std::strstr(names.get(), name_of(key)) != nullptr;
+        if (has(key) == given && !listed) names.add("%s%s", *names.get() ? ", " : "", name_of(key));
+      }
     };
-    list(missing, coil_needs, false);
-    list(alone, coil_needs, true);
-    list(alone, coil_takes, true);
+    list(needs, false, missing);
+    list(needs, true, alone);
+    list(takes, true, alone);
     if (!*missing.get()) return true;
     add(made, {}, "given with %s|%s alone", missing.get(), alone.get());
     return false;
@@ -482,17 +519,20 @@ class Search {
 
   /// Each value is in range, but a quotient of values may be out of its own.
   bool check_coil(const device::CoilConstruction<double>& coil, const char* made) {
-    const struct {
-      const char* name;
-      double value;
-      double lower, upper;
-      const char* unit;
-    } parts[] = {{"resistance", coil.resistance(), 1e-9, 1e15, "ohm"},
-                 {"inductance", coil.inductance(), 1e-15, 1e9, "H"},
-                 {"current", coil.current(), 1e-12, 1e12, "A"},
-                 {"field", coil.field(), 1e-12, 1e12, "T"},
-                 {"power", coil.power(), 1e-15, 1e15, "W"}};
-    for (const auto& part : parts) {
+    return check_parts(made, {{"resistance", coil.resistance(), 1e-9, 1e15, "ohm"},
+                              {"inductance", coil.inductance(), 1e-15, 1e9, "H"},
+                              {"current", coil.current(), 1e-12, 1e12, "A"},
+                              {"field", coil.field(), 1e-12, 1e12, "T"},
+                              {"power", coil.power(), 1e-15, 1e15, "W"}});
+  }
+  struct Part {
+    const char* name;
+    double value;
+    double lower, upper;
+    const char* unit;
+  };
+  bool check_parts(const char* made, std::initializer_list<Part> parts) {
+    for (const Part& part : parts) {
       const device::Bounds bounds = device::ranges::between(part.lower, part.upper);
       if (std::isnan(part.value) || bounds.contains(part.value)) continue;
       Text required;

@@ -14,6 +14,7 @@ from pindrive import Contact, Drive
 from pindrive.device import (
     Coil,
     ControlBlock,
+    DataSheet,
     Device,
     Electromagnet,
     PinArray,
@@ -125,6 +126,17 @@ def compare(given: Device, parameter: str, change: Callable[[Device, float], Dev
 def test_derivatives_are_those_of_whole_scans(parameter: str, finger: str, axis: float) -> None:
     """The hand and the page alone decide when a coil is switched, so a scan changes smoothly."""
     compare(device(finger, axis), parameter, CHANGES[parameter])
+
+
+@pytest.mark.parametrize(
+    "name", ["hold_force", "hold_current", "resistance", "inductance", "supply_voltage"]
+)
+def test_numbers_of_a_data_sheet(name: str) -> None:
+    sheet = DataSheet(
+        hold_force=1.2, resistance=25.0, inductance=0.04, supply_voltage=5.0, hold_current=0.21
+    )
+    given = device(magnet=Electromagnet.from_coil(sheet))
+    compare(given, f"magnet.{name}", of_coil(name))
 
 
 @pytest.mark.parametrize("name", ["stiffness", "damping"])

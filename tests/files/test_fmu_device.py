@@ -48,6 +48,8 @@ OPENING = 'lift = "0.05 mm"\nclosing_force = "100 mN"\n'
 MAGNETS = {
     "times": 'hold_force = "1 N"\nresidual = "20 mN"\nsaturation = 0.8',
     "pulses": 'hold_force = "1 N"\npwm_frequency = "400 Hz"\npwm_duty = 0.6',
+    "data sheet": 'hold_force = "1 N"\nresistance = "25 ohm"\ninductance = "25 mH"\n'
+    'supply_voltage = "5 V"\nhold_current = "0.2 A"\nrelease_resistance = "10 ohm"',
     "coil": COIL + 'thermal_resistance = "400 K/W"',
     "steps": COIL + 'voltage = [["0 ms", "1 V"], ["6 ms", "0.4 V"], ["15 ms", "0.2 V"]]',
     "warm": COIL + 'heat_capacity = "0.4 mJ/K"\ntemperature_rise = "20 K"',
@@ -329,6 +331,7 @@ FILES = (
         finger='touch_force = "1 N"\ncoefficient = 0.4\nviscous_coefficient = "0.1 s/m"\n'
         + LAW_BY_COEFFICIENT,
     ),
+    DEVICE.format(magnet=MAGNETS["data sheet"]),
     DEVICE.format(magnet=MAGNETS["times"] + '\npwm_frequency = "1 kHz"\npwm_duty = 0.5'),
     DEVICE.format(magnet=MAGNETS["closing steps"] + '\nheat_capacity = "1 J/K"'),
 )

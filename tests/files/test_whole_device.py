@@ -30,6 +30,13 @@ supply_voltage = "3 V"
 thermal_resistance = "100 K/W"
 """
 
+SHEET = """
+hold_force = "1 N"
+resistance = "25 ohm"
+inductance = "25 mH"
+supply_voltage = "5 V"
+"""
+
 Write = Callable[[str], Path]
 
 
@@ -123,7 +130,9 @@ def test_every_key_takes_its_usual_value_and_no_nonsense(write: Write, key: str)
     quantity = WHOLE[key]
     alone = name not in {line.partition(" ")[0] for line in COIL.splitlines()}
     coil = (
-        COIL
+        SHEET
+        if name in ("resistance", "inductance", "hold_current")
+        else COIL
         if name
         in (
             *("release_resistance", "saturation_field", "thermal_resistance", "heat_capacity"),

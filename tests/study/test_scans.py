@@ -20,6 +20,7 @@ from pindrive import Contact, Drive, Status
 from pindrive.cli.app import app
 from pindrive.cli.study_tables import sobol_report
 from pindrive.device import Coil, ControlBlock, Criteria, Device, Electromagnet, PinArray, scan
+from pindrive.device.coil import BY_SHEET
 from pindrive.device.coil import COIL as MADE_OF
 from pindrive.device.page_description import Page
 from pindrive.device.reading import Reading
@@ -39,6 +40,13 @@ from pindrive.study.spec import load_study
 from pindrive.study.workers import spread
 from scan_studies import COILED, DEVICE, GRATING, study, swept
 
+SHEET = """
+[magnet]
+hold_force = "1 N"
+resistance = "25 ohm"
+inductance = "25 mH"
+supply_voltage = "5 V"
+"""
 AROUND = ("control", "array", "scan", "criteria")
 REFUSED = Status.refused
 
@@ -259,6 +267,8 @@ def test_every_number_of_the_device_file_may_be_varied(table: str) -> None:
         if key in ("array.columns", "array.rows") or key.endswith(".exponent"):
             other = base + 1.0
         coiled = COILED if quantity.name in MADE_OF else ""
+        if quantity.name in BY_SHEET:
+            coiled = SHEET
         if quantity.name in ("lift", "closing_force"):
             coiled += OPENING
         plan = study(

@@ -21,6 +21,7 @@
 #include "pindrive/motion/motion.hpp"
 #include "pindrive/motion/period_samples.hpp"
 #include "pindrive/motion/quadrature.hpp"
+#include "pindrive/motion/skin_along.hpp"
 #include "pindrive/motion/steady_since.hpp"
 #include "pindrive/numbers/limits.hpp"
 

@@ -73,7 +73,25 @@ CoilConstruction<T> construction_by_keys(const Number& number) {
           number("magnet.saturation_field")};
 }
 
-/// Electromagnet by the keys of a device file: by its construction, or by its hold force and times.
+/// Sets the numbers of an electromagnet by its data sheet: the winding, and the pull at a current.
+template <class Number, class T>
+void set_by_data_sheet(const Number& number, MagnetParameters<T>& found) {
+  const T resistance = number("magnet.resistance"), inductance = number("magnet.inductance");
+  const T voltage = number("magnet.supply_voltage"), current = voltage / resistance;
+  const T at = number("magnet.hold_current"), share = isnan(at) ? T(1) : current / at;
+  found.hold_force = share * share * number("magnet.hold_force");
+  found.saturation = number("magnet.saturation");
+  found.winding_resistance = resistance;
+  found.outer_resistance = number("magnet.release_resistance");
+  found.rise_constant = inductance / resistance;
+  found.fall_constant = inductance / (resistance + found.outer_resistance);
+  found.power = voltage * current;
+  found.thermal_resistance = number("magnet.thermal_resistance");
+  const T capacity = number("magnet.heat_capacity");
+  if (!isnan(capacity)) found.heat_capacity = capacity;
+}
+
+/// Electromagnet by the keys of a device file: by its construction, its data sheet, or its hold force and times.
 ///
 /// `number` returns the value of a key, or the usual one; NaN without any.
 template <class Number, class T = std::decay_t<std::invoke_result_t<Number, const char*>>>
@@ -91,6 +109,8 @@ MagnetParameters<T> magnet_by_keys(const Number& number) {
     found.power = coil.power();
     found.thermal_resistance = number("magnet.thermal_resistance");
     if (given("magnet.heat_capacity")) found.heat_capacity = number("magnet.heat_capacity");
+  } else if (given("magnet.resistance")) {
+    set_by_data_sheet(number, found);
   } else {
     found.hold_force = number("magnet.hold_force");
     found.saturation = number("magnet.saturation");

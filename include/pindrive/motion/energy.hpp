@@ -8,6 +8,7 @@
 #include "pindrive/motion/contact_use.hpp"
 #include "pindrive/motion/motion.hpp"
 #include "pindrive/motion/quadrature.hpp"
+#include "pindrive/motion/skin_along.hpp"
 #include "pindrive/numbers/named_number.hpp"
 
 namespace pindrive {

@@ -7,6 +7,7 @@
 
 #include "pindrive/events/stepper.hpp"
 #include "pindrive/motion/motion.hpp"
+#include "pindrive/motion/skin_along.hpp"
 #include "pindrive/numbers/callback.hpp"
 
 namespace pindrive {

@@ -11,6 +11,7 @@ from rich.console import Console, Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from pindrive.device.coil import Coil
 from pindrive.device.geometry import COPPER, IRON, doubts, heaviest
 from pindrive.motion.coefficients import Coefficients
 from pindrive.motion.drive import Contact
@@ -358,7 +359,7 @@ def device_words(device: Device) -> list[str]:
 
 def closing_words(magnet: Electromagnet) -> list[str]:
     """Return the closing and opening times of the gap; nothing if it stays closed."""
-    if magnet.coil is None or magnet.coil.lift is None:
+    if not isinstance(magnet.coil, Coil) or magnet.coil.lift is None:
         return []
     closes, opens = (
         QUANTITIES[name].text(getattr(magnet, time))

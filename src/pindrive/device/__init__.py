@@ -6,6 +6,7 @@
 - `ControlBlock`: a threshold with hysteresis, at a sample rate, with latency
 - `Criteria`: what counts as felt
 - `Current`: the current in a coil over time
+- `DataSheet`: an electromagnet by its data sheet
 - `Decision`: where the control block stands for one coil
 - `Device`: drive, magnet, control block and pin array
 - `Electromagnet`: what an electromagnet does to the plate

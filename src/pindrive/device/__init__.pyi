@@ -1,6 +1,7 @@
 # The module of each public name; `__init__.py` describes them.
 
 from .coil import Coil as Coil
+from .coil import DataSheet as DataSheet
 from .current import Commands as Commands
 from .controller import ControlBlock as ControlBlock
 from .controller import Decision as Decision

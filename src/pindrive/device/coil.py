@@ -105,26 +105,95 @@ class Coil:
     @property
     def heat(self) -> Heat | None:
         """Heating and cooling of the coil; None without a heat capacity."""
-        if self.heat_capacity is None:
-            return None
-        return Heat(self.power, self.thermal_resistance, self.heat_capacity)
+        return _heat_of(self)
 
     @property
     def duty(self) -> float:
         """The part of the time it may be on before it warms by more than is allowed, at most 1."""
-        return min(1.0, self.temperature_rise / (self.thermal_resistance * self.power))
+        return _duty_of(self)
 
     def _number(self, name: str) -> float:
         """Return a number of the core (include/pindrive/device/magnet_construction.hpp)."""
         return _core.coil_numbers(values_of(self))[name]
 
 
+@checked_by(TABLE)
+class DataSheet:
+    """An electromagnet by its data sheet: its winding, and its pull at a current.
+
+    Args:
+        hold_force: Pull at `hold_current`, N, greater than 0.
+        resistance: R of the winding at 20 °C, ohm, greater than 0.
+        inductance: L on the plate, H, greater than 0.
+        supply_voltage: U while it is on, V, greater than 0.
+        hold_current: Current at which the pull is `hold_force`, A, greater than 0; None: the full
+            current U / R. The pull grows with the square of the current.
+        saturation: The part of the full current above which the pull is constant, in (0, 1].
+        release_resistance: Resistance of the decaying current beside R, ohm, at least 0.
+        thermal_resistance: R_th, K/W, greater than 0.
+        heat_capacity: C_th, J/K, greater than 0; None: its temperature is not simulated.
+        temperature_rise: ΔT allowed, K, greater than 0.
+
+    Raises:
+        ValueError: A value is not a number or out of its range.
+    """
+
+    hold_force: Number
+    resistance: Number
+    inductance: Number
+    supply_voltage: Number
+    hold_current: OptionalNumber = default("hold_current")
+    saturation: Number = default("saturation")
+    release_resistance: Number = default("release_resistance")
+    thermal_resistance: Number = default("thermal_resistance")
+    heat_capacity: OptionalNumber = default("heat_capacity")
+    temperature_rise: Number = default("temperature_rise")
+
+    def __post_init__(self) -> None:
+        """Validate what follows from them."""
+        refuse(values_of(self) | {"magnet.residual": None}, whole=True)
+
+    @property
+    def current(self) -> float:
+        """Full current I = U / R, A."""
+        return self.supply_voltage / self.resistance
+
+    @property
+    def power(self) -> float:
+        """U I while it is on, W."""
+        return self.supply_voltage * self.current
+
+    @property
+    def heat(self) -> Heat | None:
+        """Heating and cooling of the coil; None without a heat capacity."""
+        return _heat_of(self)
+
+    @property
+    def duty(self) -> float:
+        """The part of the time it may be on before it warms by more than is allowed, at most 1."""
+        return _duty_of(self)
+
+
+def _heat_of(coil: Coil | DataSheet) -> Heat | None:
+    if coil.heat_capacity is None:
+        return None
+    return Heat(coil.power, coil.thermal_resistance, coil.heat_capacity)
+
+
+def _duty_of(coil: Coil | DataSheet) -> float:
+    return min(1.0, coil.temperature_rise / (coil.thermal_resistance * coil.power))
+
+
 COIL: Final = tuple(field.name for field in fields(Coil))
+SHEET: Final = tuple(field.name for field in fields(DataSheet))
+BY_SHEET: Final = ("hold_current", "resistance", "inductance")
+"""Keys of a data sheet alone."""
 COIL_NEEDS: Final = tuple(field.name for field in fields(Coil) if field.default is MISSING)
 """Mandatory keys of a coil."""
 
 
-def values_of(coil: Coil) -> dict[str, float]:
+def values_of(coil: Coil | DataSheet) -> dict[str, float]:
     """The given values of a coil by the keys of a device file."""
-    values = {f"magnet.{name}": getattr(coil, name) for name in COIL}
+    names = COIL if isinstance(coil, Coil) else SHEET
+    values = {f"magnet.{name}": getattr(coil, name) for name in names}
     return {key: value for key, value in values.items() if value is not None}

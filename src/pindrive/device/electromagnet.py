@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pindrive import _core
 from pindrive.device.closing import Closing
-from pindrive.device.coil import TABLE, Coil, default, values_of
+from pindrive.device.coil import TABLE, Coil, DataSheet, default, values_of
 from pindrive.device.current import (
     CoilState,
     Commands,
@@ -34,6 +34,8 @@ from pindrive.quantities.refusal import refusal
 
 DIRECT: Final = ("hold_force", "rise_time", "fall_time", "saturation")
 """Source of the pull without a coil."""
+TIMES: Final = ("rise_time", "fall_time")
+"""Those that a data sheet gives by its winding."""
 _PLACES: Final = {
     "hold_force": 0,
     "residual": 1,
@@ -69,7 +71,7 @@ class Electromagnet:
         pwm_duty: The part of each period for which it is on then, above 0 and at most 1.
         outer_diameter: Diameter of the cylindrical magnet, m, greater than 0; None: unknown.
         height: Height of the magnet, m, greater than 0; None: unknown.
-        coil: Construction of the magnet, if known.
+        coil: Construction of the magnet or its data sheet, if known.
         steps: The coil's voltage since it was switched on; None: full. Not with pulses.
 
     Raises:
@@ -85,7 +87,7 @@ class Electromagnet:
     pwm_duty: OptionalNumber = default("pwm_duty")
     outer_diameter: OptionalNumber = default("outer_diameter")
     height: OptionalNumber = default("height")
-    coil: Coil | None = None
+    coil: Coil | DataSheet | None = None
     steps: VoltageSteps | None = None
 
     def __post_init__(self) -> None:
@@ -144,7 +146,7 @@ class Electromagnet:
     @classmethod
     def from_coil(
         cls,
-        coil: Coil,
+        coil: Coil | DataSheet,
         *,
         residual: float | str = default("residual"),
         pwm_frequency: float | str | None = default("pwm_frequency"),
@@ -153,10 +155,10 @@ class Electromagnet:
         height: float | str | None = default("height"),
         voltage: Sequence[tuple[float, float]] | None = None,
     ) -> Electromagnet:
-        """An electromagnet by how it is made; the rest as for the class.
+        """An electromagnet by how it is made or by its data sheet; the rest as for the class.
 
         Args:
-            coil: Construction of the coil.
+            coil: Construction of the coil, or its data sheet.
             residual: N.
             pwm_frequency: Hz.
             pwm_duty: A part of each period.

@@ -18,7 +18,8 @@ from uuid import UUID
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
-from pindrive.device.electromagnet import DIRECT
+from pindrive.device.coil import DataSheet
+from pindrive.device.electromagnet import DIRECT, TIMES
 from pindrive.files.device import DeviceFile
 from pindrive.files.keys import NUMERIC_KEYS, PARAMETERS
 from pindrive.motion.friction import COEFFICIENTS
@@ -159,8 +160,9 @@ def _parameters(device: DeviceFile, control: bool) -> Iterator[FmuVariable]:
                 at_rest = values[f"{contact}.{breakaway}"]
                 kinetic_value = values[f"{contact}.{kinetic}"]
                 values[f"{contact}.{static}"] = kinetic_value if at_rest is None else at_rest
-    if device.whole and device.whole.magnet().coil:
-        left_out.update(f"magnet.{name}" for name in DIRECT)
+    if device.whole and (coil := device.whole.magnet().coil):
+        follow = TIMES if isinstance(coil, DataSheet) else DIRECT
+        left_out.update(f"magnet.{name}" for name in follow)
     for key, value in values.items():
         if value is None or key in left_out or key.partition(".")[0] in elsewhere:
             continue

@@ -11,8 +11,8 @@ from functools import cache
 from math import inf
 from typing import Any, Final
 
-from pindrive.device.coil import COIL, COIL_NEEDS, Coil
-from pindrive.device.electromagnet import DIRECT, Electromagnet
+from pindrive.device.coil import BY_SHEET, COIL, COIL_NEEDS, SHEET, Coil, DataSheet
+from pindrive.device.electromagnet import DIRECT, TIMES, Electromagnet
 from pindrive.device.pin_array import PinArray
 from pindrive.files.functions import is_function, read_function
 from pindrive.files.keys import (
@@ -209,7 +209,13 @@ class Whole:
         """The electromagnet: by how it is made where the file says so, else by what it does."""
         given = table_of(self.values, "magnet")
         voltage = given.pop("voltage")
+        sheet = {name: given.get(name) for name in SHEET}
+        for name in BY_SHEET:
+            given.pop(name)
         coil = {name: given.pop(name) for name in COIL}
+        if sheet["resistance"] is not None:
+            around = {name: value for name, value in given.items() if name not in DIRECT}
+            return Electromagnet.from_coil(DataSheet(**sheet), **around, voltage=voltage)
         if all(coil[name] is None for name in COIL_NEEDS):
             return Electromagnet.from_times(**given)
         around = {name: value for name, value in given.items() if name not in DIRECT}
@@ -225,7 +231,9 @@ class Whole:
         """The value of each key, given or not; None where nothing was given and nothing holds."""
         magnet, found = self.magnet(), {key: self.values[key] for key in WHOLE}
         found |= {f"magnet.{name}": getattr(magnet.coil, name, None) for name in COIL}
-        if magnet.coil is not None:
+        if isinstance(magnet.coil, DataSheet):  # the rest is as it was given
+            found |= {f"magnet.{name}": getattr(magnet, name) for name in TIMES}
+        elif magnet.coil is not None:
             found |= {f"magnet.{name}": getattr(magnet, name) for name in DIRECT}
         if found["array.places"] is not None:
             found |= dict.fromkeys((f"array.{name}" for name in _GRID), None)

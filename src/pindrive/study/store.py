@@ -22,7 +22,7 @@ from zlib import crc32
 import numpy as np
 from numpy.typing import NDArray
 
-from pindrive.device.coil import COIL
+from pindrive.device.coil import BY_SHEET, COIL
 from pindrive.device.electromagnet import DIRECT
 from pindrive.files.keys import NUMERIC_KEYS, variable
 from pindrive.files.output import OutputError, naming
@@ -166,7 +166,7 @@ def _fixed(study: Study) -> dict[str, float]:
     swept = {*study.axes}
     if swept & {"drive.damping", "drive.damping_ratio"}:
         swept |= {"drive.damping", "drive.damping_ratio"}
-    if any(key == f"magnet.{name}" for key in swept for name in COIL):
+    if any(key == f"magnet.{name}" for key in swept for name in (*COIL, *BY_SHEET)):
         swept |= {f"magnet.{name}" for name in DIRECT}
     return {
         key: value
