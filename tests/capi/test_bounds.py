@@ -37,6 +37,7 @@ TABLES = ("drive", "plate", "finger", "magnet", "control")
 NOT_IN_C = {
     *("plate.curve", "plate.coefficient_curve", "finger.curve", "finger.coefficient_curve"),
     *("magnet.voltage", "magnet.outer_diameter", "magnet.height", "magnet.temperature_rise"),
+    *("magnet.spring_height", "magnet.pin_height"),
 }
 """Rows, and what the motion does not depend on."""
 NAMES = {quantity.key: name for name, quantity in QUANTITIES.items()}

@@ -73,6 +73,8 @@ def test_a_file_has_it(tmp_path: Path) -> None:
         Electromagnet.from_coil(SHEET),
         outer_diameter=values["magnet.outer_diameter"],
         height=values["magnet.height"],
+        spring_height=values["magnet.spring_height"],
+        pin_height=values["magnet.pin_height"],
     )
     assert values["magnet.rise_time"] == pytest.approx(2.96974e-3, rel=1e-5)
     assert (values["magnet.resistance"], values["magnet.turns"]) == (25.0, None)

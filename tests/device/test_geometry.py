@@ -13,11 +13,11 @@ import pytest
 import xarray as xr
 
 from command import GOOD, refused, run
-from pindrive import load_device
+from pindrive import Contact, Drive, load_device
 from pindrive.device import Coil, Device, Electromagnet, PinArray, scan
 from pindrive.device.coil import COIL_NEEDS
 from pindrive.device.electromagnet import DIRECT
-from pindrive.device.geometry import COPPER, doubts, nearest_pins
+from pindrive.device.geometry import COPPER, doubts, nearest_pins, tipping
 from pindrive.device.reading import Reading
 from pindrive.evaluation import evaluate
 from pindrive.files.keys import NUMERIC_KEYS, line, template
@@ -95,6 +95,38 @@ SOLID = COPPER * pi / 4.0 * 0.008**2 * 0.024
 )
 def test_doubts(made: Device, words: list[str]) -> None:
     assert [*doubts(made)] == words
+
+
+def reader(spring_height: str | None) -> Device:
+    """The default device with its spring at a height."""
+    magnet = Electromagnet.from_times(
+        outer_diameter="3.5 mm", height="12.4 mm", spring_height=spring_height
+    )
+    body = Drive(
+        mass="1 g",
+        stiffness="250 N/m",
+        damping_ratio=0.5,
+        plate=Contact(coefficient=0.225, static_coefficient=0.27),
+        finger=Contact(coefficient=0.5, static_coefficient=0.75),
+        touch_force="60 mN",
+    )
+    return Device(drive=body, magnet=magnet)
+
+
+def test_a_magnet_tips_over_its_edge() -> None:
+    """The friction of the plate against spring and finger, by hand."""
+    held = 0.27 * (1.0 + 0.001 * 9.80665)
+    for height in (None, "4 mm"):
+        moments = tipping(reader(height))
+        assert moments
+        at = 6.2e-3 if height is None else 4e-3
+        assert moments.turns == pytest.approx((held - 0.045) * at + 0.045 * 12.4e-3, rel=1e-14)
+        assert moments.stays == pytest.approx(1.75e-3 * (1.0 + 0.001 * 9.80665), rel=1e-14)
+        assert moments.tips == (height is None)
+    (tips,) = doubts(reader(None))
+    assert tips.startswith("a magnet tips before it lets its pin go: spring (227.6 mN at magnet.sp")
+    assert tips.endswith("turn it with 1.97 mN*m, and it stands with 1.77 mN*m")
+    assert [*doubts(reader("4 mm"))] == []
 
 
 def test_magnets_of_other_rows_come_as_close() -> None:

@@ -117,6 +117,7 @@ def test_template_of_a_whole_device_has_the_defaults(write: Write) -> None:
     assert plain
     reported = {key for key, value in new.in_si().items() if value != plain.in_si()[key]}
     sizes = {"magnet.outer_diameter", "magnet.height", "array.slot_length"}
+    sizes |= {"magnet.spring_height", "magnet.pin_height"}
     assert reported == {"array.columns", "array.rows", "array.spot_scale", *sizes}
 
 

@@ -123,6 +123,8 @@ inline constexpr InputQuantity input_quantities[] = {
     {"magnet.pwm_duty", "1", share, any, none},
     {"magnet.outer_diameter", "m", between(1e-6, 1), any, none},
     {"magnet.height", "m", between(1e-6, 1), any, none},
+    {"magnet.spring_height", "m", between(0, 1), any, none},
+    {"magnet.pin_height", "m", between(0, 1), any, none},
     {"magnet.hold_current", "A", between(1e-9, 1e6), any, none},
     {"magnet.resistance", "ohm", between(1e-6, 1e9), any, none},
     {"magnet.inductance", "H", between(1e-12, 1e6), any, none},

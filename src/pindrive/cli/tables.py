@@ -12,7 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 from pindrive.device.coil import Coil
-from pindrive.device.geometry import COPPER, IRON, doubts, heaviest
+from pindrive.device.geometry import COPPER, IRON, doubts, heaviest, tipping
 from pindrive.motion.coefficients import Coefficients
 from pindrive.motion.drive import Contact
 from pindrive.motion.function import Function
@@ -433,4 +433,7 @@ def meeting_words(device: Device, speed: float) -> list[str]:
             f"The magnet's size makes its density {density / 1e3:.3g} g/cm3; that of iron is "
             f"{IRON / 1e3:.3g}, of copper {COPPER / 1e3:.3g}."
         )
+    moments = tipping(device)
+    if moments and not moments.tips:
+        words.append(f"The magnet does not tip: {moments.words}.")
     return words

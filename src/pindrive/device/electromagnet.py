@@ -71,6 +71,9 @@ class Electromagnet:
         pwm_duty: The part of each period for which it is on then, above 0 and at most 1.
         outer_diameter: Diameter of the cylindrical magnet, m, greater than 0; None: unknown.
         height: Height of the magnet, m, greater than 0; None: unknown.
+        spring_height: Height above the plate at which the spring pulls on it, m, at least 0; None:
+            half of its height.
+        pin_height: Height at which the finger rubs on the pin, m, at least 0; None: its height.
         coil: Construction of the magnet or its data sheet, if known.
         steps: The coil's voltage since it was switched on; None: full. Not with pulses.
 
@@ -87,6 +90,8 @@ class Electromagnet:
     pwm_duty: OptionalNumber = default("pwm_duty")
     outer_diameter: OptionalNumber = default("outer_diameter")
     height: OptionalNumber = default("height")
+    spring_height: OptionalNumber = default("spring_height")
+    pin_height: OptionalNumber = default("pin_height")
     coil: Coil | DataSheet | None = None
     steps: VoltageSteps | None = None
 
@@ -112,6 +117,8 @@ class Electromagnet:
         pwm_duty: float | str | None = default("pwm_duty"),
         outer_diameter: float | str | None = default("outer_diameter"),
         height: float | str | None = default("height"),
+        spring_height: float | str | None = default("spring_height"),
+        pin_height: float | str | None = default("pin_height"),
     ) -> Electromagnet:
         """An electromagnet by how fast its pull comes and goes; the rest as for the class.
 
@@ -125,6 +132,8 @@ class Electromagnet:
             pwm_duty: A part of each period.
             outer_diameter: m.
             height: m.
+            spring_height: m.
+            pin_height: m.
 
         Raises:
             ValueError: A value is invalid, as for the class.
@@ -141,6 +150,8 @@ class Electromagnet:
             pwm_duty=pwm_duty,
             outer_diameter=outer_diameter,
             height=height,
+            spring_height=spring_height,
+            pin_height=pin_height,
         )
 
     @classmethod
@@ -153,6 +164,8 @@ class Electromagnet:
         pwm_duty: float | str | None = default("pwm_duty"),
         outer_diameter: float | str | None = default("outer_diameter"),
         height: float | str | None = default("height"),
+        spring_height: float | str | None = default("spring_height"),
+        pin_height: float | str | None = default("pin_height"),
         voltage: Sequence[tuple[float, float]] | None = None,
     ) -> Electromagnet:
         """An electromagnet by how it is made or by its data sheet; the rest as for the class.
@@ -164,6 +177,8 @@ class Electromagnet:
             pwm_duty: A part of each period.
             outer_diameter: m.
             height: m.
+            spring_height: m.
+            pin_height: m.
             voltage: Rows (time since it was switched on in s, V), from 0 s on, at most the supply
                 voltage; each holds until the next.
 
@@ -183,6 +198,8 @@ class Electromagnet:
             pwm_duty=pwm_duty,
             outer_diameter=outer_diameter,
             height=height,
+            spring_height=spring_height,
+            pin_height=pin_height,
             coil=coil,
             steps=None if voltage is None else VoltageSteps.of(voltage, coil.supply_voltage),
         )

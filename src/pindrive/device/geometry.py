@@ -68,6 +68,9 @@ def doubts(device: Device) -> Iterator[str]:
             f"{QUANTITIES['slot_length'].text(slot)} a pin {wide} wide (array.pin_diameter) has "
             f"{QUANTITIES['travel'].text(room)}"
         )
+    moments = tipping(device)
+    if moments and moments.tips:
+        yield f"a magnet tips before it lets its pin go: {moments.words}"
     solid = heaviest(magnet.outer_diameter, magnet.height)
     if solid is not None and device.drive.mass > solid * (1.0 + SLACK):
         mass = QUANTITIES["mass"]
@@ -76,6 +79,64 @@ def doubts(device: Device) -> Iterator[str]:
             f"cylinder as wide and high as magnet.outer_diameter and magnet.height say weighs "
             f"{mass.text(solid)} in solid copper"
         )
+
+
+@dataclass(frozen=True, slots=True)
+class Tipping:
+    """Moments about the edge of a magnet that carries its pin as far as it can.
+
+    The friction of the plate balances spring and finger: what the finger's static friction leaves
+    is the spring's.
+    """
+
+    spring: float
+    """Force of the spring, N."""
+    finger: float
+    """Force of the finger, N."""
+    spring_height: float
+    """Height of the spring, m."""
+    pin_height: float
+    """Height of the finger, m."""
+    stays: float
+    """Moment of weight and pull, which hold it, N*m."""
+
+    @property
+    def turns(self) -> float:
+        """Moment of spring and finger, N*m."""
+        return self.spring * self.spring_height + self.finger * self.pin_height
+
+    @property
+    def tips(self) -> bool:
+        """True if spring and finger win."""
+        return self.turns > self.stays * (1.0 + SLACK)
+
+    @property
+    def words(self) -> str:
+        """The moments in words."""
+        length, force = QUANTITIES["height"], QUANTITIES["plate.kinetic"]
+        return (
+            f"spring ({force.text(self.spring)} at magnet.spring_height, "
+            f"{length.text(self.spring_height)}) and finger ({force.text(self.finger)} at "
+            f"magnet.pin_height, {length.text(self.pin_height)}) turn it with "
+            f"{1e3 * self.turns:.3g} mN*m, and it stands with {1e3 * self.stays:.3g} mN*m"
+        )
+
+
+def tipping(device: Device) -> Tipping | None:
+    """The moments on a magnet of a device; None without its size."""
+    magnet, drive = device.magnet, device.drive
+    if magnet.outer_diameter is None or magnet.height is None:
+        return None
+    held = drive.plate.static_friction * device.load(magnet.sustained_pull)
+    finger = min(drive.finger.static_friction, held)
+    middle, top = 0.5 * magnet.height, magnet.height
+    return Tipping(
+        spring=held - finger,
+        finger=finger,
+        spring_height=middle if magnet.spring_height is None else magnet.spring_height,
+        pin_height=top if magnet.pin_height is None else magnet.pin_height,
+        stays=0.5 * magnet.outer_diameter * (drive.normal_force + magnet.sustained_pull),
+    )
 
 
 def heaviest(diameter: float | None, height: float | None) -> float | None:

@@ -82,6 +82,8 @@ ELSEWHERE: Final = {
     "motion.settling_band": "criterion of the evaluation: the motion does not depend on it",
     "motion.support": "the spring stands in the mouse, which the importer moves",
     "magnet.outer_diameter": "says whether the device can be built",
+    "magnet.spring_height": "says whether a magnet tips",
+    "magnet.pin_height": "says whether a magnet tips",
     "magnet.height": "says whether the device can be built",
     "magnet.temperature_rise": "limit of the warming: the motion does not depend on it",
     "control": "the importer commands the magnet, unless the unit has the control block",

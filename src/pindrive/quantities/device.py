@@ -368,6 +368,8 @@ READER: Final[dict[str, dict[str, Any]]] = {
     },
     "magnet.outer_diameter": {"default": 0.0035},
     "magnet.height": {"default": 0.0124},
+    "magnet.spring_height": {"default": 0.004},
+    "magnet.pin_height": {"default": 0.0124},
     "array.slot_length": {"default": 0.0042},
     "finger.curve": {
         "remark": "speeds from 0 m/s up; kinetic, stiffness and damping are left out then",

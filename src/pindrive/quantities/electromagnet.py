@@ -122,6 +122,24 @@ MAGNET: Final = inputs(
         example=0.0124,
         remark="diameter and height bound the mass",
     ),
+    Quantity(
+        "spring_height",
+        "h_s",
+        "m",
+        "height above the plate at which the spring pulls on the electromagnet",
+        source="assumed: the sleeve holds it at a third of its height, so that it does not tip",
+        example=0.004,
+        remark="half of the height unless given; with diameter and height, tipping is checked",
+    ),
+    Quantity(
+        "pin_height",
+        "h_p",
+        "m",
+        "height above the plate at which the finger rubs on the pin",
+        source="assumed: on top of the electromagnet",
+        example=0.0124,
+        remark="the height of the electromagnet unless given",
+    ),
 )
 """The electromagnet by what it does."""
 

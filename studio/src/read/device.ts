@@ -8,7 +8,9 @@ import type { DeviceInput } from "./scan";
 
 const OF_THE_DEVICE = ["drive", "plate", "finger", "magnet", "control", "criteria"];
 /** Keys that change neither motion nor commands. */
-const OF_THE_SIZE = ["magnet.outer_diameter", "magnet.height", "magnet.temperature_rise"];
+const OF_THE_SIZE = ["outer_diameter", "height", "spring_height", "pin_height", "temperature_rise"].map(
+  (name) => `magnet.${name}`,
+);
 
 /** Values of all keys of a design, SI. */
 export function valuesOf(design: Pick<Design, "values" | "around">): Readonly<Record<string, Value>> {
