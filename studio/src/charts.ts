@@ -25,6 +25,7 @@ const PANELS: readonly Panel[] = [
     names: ["plate_force", "finger_force"],
     channel: "force",
   },
+  { title: "Force on the housing", symbol: "H", names: ["housing_force"], channel: null },
   { title: "Skin stretch", symbol: "s", names: ["stretch"], channel: null },
 ];
 const LEAST = 5; // px of a span that is dragged

@@ -71,6 +71,8 @@ def test_a_scan_at_a_rate() -> None:
         for contact in ("plate", "finger"):
             forces = [float(r[f"{contact}_force [N]"]) for r in own]
             assert forces == motion.force(contact, since).tolist()
+        hand = [float(r["hand_force [N]"]) for r in own]
+        assert hand == scan.force_on_hand(t).tolist()
         events = [
             float(r["time [s]"]) for r in table("s-events.csv") if r["pin"] == str(pin.number)
         ]

@@ -365,6 +365,26 @@ def test_the_time_axis_zooms_and_pans(page: Any, tmp_path: Path) -> None:
     assert page.evaluate(span) == [0, end]
 
 
+def test_each_quantity_has_a_panel(page: Any, tmp_path: Path) -> None:
+    """The force on the housing is one; a finger with skin adds its stretch, damped or not."""
+
+    def titles() -> list[str]:
+        names = "plots => plots.map((plot) => plot.getAttribute('aria-label'))"
+        found = page.locator(".chart .uplot").evaluate_all(names)
+        return [title.removesuffix(" over time") for title in found]
+
+    rigid = titles()
+    assert rigid[-1] == "Force on the housing"
+    assert len(rigid) == 5
+    path = tmp_path / "skin.toml"
+    text = EXAMPLE.read_text("utf-8")
+    given = 'static = "7.5 mN"\nstiffness = "300 N/m"\ndamping = "0.3 N*s/m"'
+    path.write_text(text.replace('static = "7.5 mN"', given), "utf-8")
+    opened(page, path)
+    settled(page)
+    assert titles() == [*rigid, "Skin stretch"]
+
+
 def test_a_long_motion_leaves_the_page_free_and_is_stopped(page: Any, tmp_path: Path) -> None:
     """An undamped pin under hardly any friction turns a million times."""
     path = tmp_path / "long.toml"

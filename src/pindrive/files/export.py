@@ -105,17 +105,21 @@ def scan_to_csv(scan: Scan, path: str | PathLike[str], rate: float | str) -> Pat
 
 
 def write_scan_csv(scan: Scan, path: Path, times: NDArray[np.float64]) -> None:
-    """Write each pin at times on the path's clock (s, shape (n,)), pin after pin, a row each."""
+    """Write each pin at times on the path's clock (s, shape (n,)), pin after pin, a row each.
+
+    The last column is the force of all pins on the hand, in the rows of each pin.
+    """
+    hand = scan.force_on_hand(times)
 
     def found(pin: PinScan) -> dict[str, NDArray[Any]]:
-        return {**columns(pin.motion, pin.since(times)), "time": times}
+        return {**columns(pin.motion, pin.since(times)), "time": times, "hand_force": hand}
 
     rows = (
         row
         for pin in scan.pins
         for row in _rows([np.full(len(times), pin.number), *found(pin).values()])
     )
-    names = columns(scan.pins[0].motion, scan.pins[0].since(times[:1]))
+    names = [*columns(scan.pins[0].motion, scan.pins[0].since(times[:1])), "hand_force"]
     _write_table(path, ["pin", *_headings(names)], rows)
 
 
