@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from oracle.damped_skin import Piece, Pin, straight, wave
+from oracle.mp_damped_skin import refined
 from pindrive import Contact, Drive, Function, Profile, Release, harmonic, simulate
 
 LASTS = 0.25
@@ -85,6 +86,30 @@ def test_an_integrator_finds_the_same_motion(number: int) -> None:
     size = np.maximum(np.abs(expected).max(axis=0), [1e-6, 1e-4, 1e-6])
     assert (np.abs(found.T - expected) / size).max() < 1e-9
     assert motion.certificate().worst < 1e-11
+
+
+STRAIGHT = [
+    number
+    for number in range(60)
+    if number not in UNDECIDED
+    and all(len(piece.start) == 2 for piece in drawn(np.random.default_rng([1, number]))[2].pieces)
+][:12]
+
+
+@pytest.mark.parametrize("number", STRAIGHT)
+def test_thirty_digits(number: int) -> None:
+    """Position, velocity, stretch and the times of the events."""
+    drive, release, pin, x, v = drawn(np.random.default_rng([1, number]))
+    times = np.linspace(0.0, 0.999 * LASTS, 24)
+    _, segments = pin.follow(x, v, 0.0, times)
+    rows, events = refined(pin, (x, v, 0.0), segments, times)
+    motion, expected = simulate(drive, release, duration=LASTS), np.array(rows)
+    found = np.array([motion.position(times), motion.velocity(times), motion.stretch(times)]).T
+    size = np.maximum(np.abs(expected).max(axis=0), [1e-6, 1e-4, 1e-6])
+    assert (np.abs(found - expected) / size).max() < 3e-13
+    known = np.array(sorted({event.time for event in motion.events}))
+    for time in events:
+        assert np.abs(known - time).min() < 1e-13, time
 
 
 def finger(damping: float | None, static: float = 0.045) -> Contact:

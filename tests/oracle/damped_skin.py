@@ -21,12 +21,22 @@ Mode = tuple[int, int]
 
 PART: Final = 0.02
 """Steps over the time scales of pin and skin."""
-EVENTS: Final = 3000
-"""Most events of a motion."""
+SEGMENTS: Final = 3000
+"""Most segments of a motion."""
 LEAST: Final = 1e-15
 """Force (N) or speed (m/s) below which a guard has not fallen: of a pin at rest it is rounding."""
 DERIVATIVES: Final = 5
 """Derivatives of a guard that decide whether a mode begins."""
+
+
+class Segment(NamedTuple):
+    """One mode from an event or a change of the inputs to the next."""
+
+    piece: int
+    mode: Mode
+    lasts: float
+    fired: Sequence[int]
+    """Guards that end it."""
 
 
 class Piece(NamedTuple):
@@ -69,14 +79,16 @@ class Pin:
     skin_stiffness: float
     skin_damping: float
     pieces: Sequence[Piece]
+    kind: type = float
+    """Kind of the numbers: object for those of mpmath."""
 
     def system(self, piece: Piece, mode: Mode) -> tuple[Array, Array, Array]:
         """The matrix of a mode, the rows of its guards, and the row of the plate's velocity."""
         size = 3 + len(piece.start)
-        x, v, s, *_ = np.eye(size)
-        plate_velocity, touch, one = np.zeros((3, size))
+        x, v, s, *_ = np.eye(size, dtype=self.kind)
+        plate_velocity, touch, one = np.zeros((3, size), self.kind)
         plate_velocity[3:], touch[3:], one[3] = piece.plate_velocity, piece.touch, 1.0
-        a = np.zeros((size, size))
+        a = np.zeros((size, size), self.kind)
         a[3:, 3:] = piece.matrix
         on_plate, on_finger = mode
         if on_finger:
@@ -133,12 +145,15 @@ class Pin:
         tried += [(p, f) for p in (0, 1, -1) for f in (0, 1, -1)]
         return next(each for each in tried if self.begins(piece, z, each))
 
-    def follow(self, x: float, v: float, stretch: float, times: Array) -> tuple[Array, list[float]]:
-        """Position, velocity and stretch at times, shape (times, 3), and the times of events."""
-        y, mode, events = np.array([x, v, stretch]), (0, 0), []
+    def follow(
+        self, x: float, v: float, stretch: float, times: Array
+    ) -> tuple[Array, list[Segment]]:
+        """Position, velocity and stretch at times, shape (times, 3), and the segments."""
+        y, mode = np.array([x, v, stretch]), (0, 0)
+        segments: list[Segment] = []
         rows: list[Array] = []
         ends = [*(piece.begin for piece in self.pieces[1:]), times[-1]]
-        for piece, end in zip(self.pieces, ends, strict=True):
+        for j, (piece, end) in enumerate(zip(self.pieces, ends, strict=True)):
             z, t = np.concatenate([y, piece.start]), piece.begin
             a, guards, _ = self.system(piece, mode)
             below = guards @ z < -1e-9 * (np.abs(guards) @ np.abs(z))
@@ -154,15 +169,15 @@ class Pin:
                     while len(rows) < len(times) and times[len(rows)] <= t + at[1] + 1e-15:
                         rows.append((expm(a * (times[len(rows)] - t - at[0])) @ state)[:3])
                 z, t = expm(a * (lasts - visited[-1][0][0])) @ visited[-1][1], t + lasts
+                segments.append(Segment(j, mode, lasts, fired))
                 if fired:
                     if mode[0] == 0:
                         z[1] = plate_velocity @ z
                     mode = self.next_mode(piece, z, mode, fired)
-                    events.append(t)
-                    if len(events) > EVENTS:
+                    if len(segments) > SEGMENTS:
                         raise ArithmeticError("too many events")
             y = z[:3]
-        return np.array(rows), events
+        return np.array(rows), segments
 
     def _segment(self, a: Array, guards: Array, z: Array, most: float) -> Any:
         """The length of a segment, the guards that end it, and (from, to), state of each step."""
