@@ -16,6 +16,7 @@ import tactile_mouse
 from command import GOOD, refused, run
 from pindrive import load_device
 from pindrive.device import (
+    Coil,
     CoilState,
     Commands,
     ControlBlock,
@@ -50,7 +51,7 @@ DRIVEN = {
 def integrated(made: Electromagnet, current: Current, t: Array) -> tuple[Array, Array]:
     """The current (A) and the pull (N) at times t, by dλ/dt = U - R i(λ, gap) in SI units."""
     one = made.coil
-    assert one and one.lift is not None and one.closing_force is not None
+    assert isinstance(one, Coil) and one.lift is not None and one.closing_force is not None
     area, force = one.turns * one.pole_area, one.closing_force
     gaps = {True: one.gap, False: one.gap + one.lift}
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from math import exp
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -68,14 +69,10 @@ def test_a_file_has_it(tmp_path: Path) -> None:
     path = tmp_path / "device.toml"
     path.write_text(whole(GIVEN), "utf-8")
     file = load_device(path, whole=True)
-    values = file.values()
-    assert file.device.magnet == replace(
-        Electromagnet.from_coil(SHEET),
-        outer_diameter=values["magnet.outer_diameter"],
-        height=values["magnet.height"],
-        spring_height=values["magnet.spring_height"],
-        pin_height=values["magnet.pin_height"],
-    )
+    values: dict[str, Any] = {**file.values()}
+    sizes = ("outer_diameter", "height", "spring_height", "pin_height")
+    given = {name: values[f"magnet.{name}"] for name in sizes}
+    assert file.device.magnet == Electromagnet.from_coil(SHEET, **given)
     assert values["magnet.rise_time"] == pytest.approx(2.96974e-3, rel=1e-5)
     assert (values["magnet.resistance"], values["magnet.turns"]) == (25.0, None)
     checked = run("check", path)

@@ -12,7 +12,7 @@ import xarray as xr
 from PIL import Image
 
 from command import GOOD, refused, run
-from pindrive.device import ControlBlock, Electromagnet, PinArray, scan
+from pindrive.device import Coil, ControlBlock, Electromagnet, PinArray, scan
 from pindrive.device.reading import Reading
 from pindrive.files.device import load_device
 from pindrive.files.keys import WHOLE, template
@@ -85,7 +85,8 @@ line_pitch = "15 mm"
     file = load_device(write(more))
     assert file.whole
     device, reading = file.device, file.reading
-    assert device.magnet.coil
+
+    assert isinstance(device.magnet.coil, Coil)
     assert device.magnet.coil.turns == 300.0
     assert device.magnet.residual == 0.010
     assert device.control == ControlBlock(sample_rate=2000.0, latency=0.003, threshold=0.4)

@@ -85,10 +85,11 @@ class Pin:
     def system(self, piece: Piece, mode: Mode) -> tuple[Array, Array, Array]:
         """The matrix of a mode, the rows of its guards, and the row of the plate's velocity."""
         size = 3 + len(piece.start)
-        x, v, s, *_ = np.eye(size, dtype=self.kind)
-        plate_velocity, touch, one = np.zeros((3, size), self.kind)
+        zeros: Array = np.zeros((size + 3, size), self.kind)
+        unit: Array = np.eye(size, dtype=self.kind)
+        x, v, s, *_ = unit
+        a, (plate_velocity, touch, one) = zeros[:size], zeros[size:]
         plate_velocity[3:], touch[3:], one[3] = piece.plate_velocity, piece.touch, 1.0
-        a = np.zeros((size, size), self.kind)
         a[3:, 3:] = piece.matrix
         on_plate, on_finger = mode
         if on_finger:

@@ -11,7 +11,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pindrive.device.coil import Coil
+from pindrive.device.coil import Coil, DataSheet
 from pindrive.device.geometry import doubts
 from pindrive.device.hand import HandPath
 from pindrive.device.hand_force import LARGEST, HandForce
@@ -144,7 +144,7 @@ def inputs(scan: Scan) -> dict[str, float]:
     return values | dict(zip(("angle.largest", "angle.mean"), angles, strict=True))
 
 
-def _given(coil: Coil) -> dict[str, float]:
+def _given(coil: Coil | DataSheet) -> dict[str, float]:
     """Return the given numbers."""
     return {name: value for name, value in asdict(coil).items() if value is not None}
 

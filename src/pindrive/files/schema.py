@@ -209,7 +209,7 @@ class Whole:
         """The electromagnet: by how it is made where the file says so, else by what it does."""
         given = table_of(self.values, "magnet")
         voltage = given.pop("voltage")
-        sheet = {name: given.get(name) for name in SHEET}
+        sheet: dict[str, Any] = {name: given.get(name) for name in SHEET}
         for name in BY_SHEET:
             given.pop(name)
         coil = {name: given.pop(name) for name in COIL}
