@@ -303,6 +303,36 @@ MUTANTS = (
         "const int near = -leading_sign(segment.finger_force);",
         "const int near = 1;",
     ),
+    Mutant(
+        "damped skin pulls by its stretch alone",
+        "law/contact_point.hpp",
+        "return {{contact.damping * s.v - s.skin, T(0)}, contact.damping, contact.stiffness, T(0)};",
+        "return {{contact.damping * s.v - s.skin, T(0)}, T(0), contact.stiffness, T(0)};",
+    ),
+    Mutant(
+        "damped skin does not feel that a stop takes the velocity",
+        "events/evolution.hpp",
+        "if (pin.drive.finger.damped()) pin.state.skin -= pin.drive.finger.damping * arrives;",
+        "",
+    ),
+    Mutant(
+        "the slider of damped skin does not follow the acceleration of the pin",
+        "series/series_mode.hpp",
+        "e.skin_damping = drive_.finger.damping;",
+        "e.skin_damping = T(0);",
+    ),
+    Mutant(
+        "damped skin begins to slip from rest",
+        "law/damped_skin.hpp",
+        "+ (tension - tension_at_begin(branch)) / rise(branch);",
+        "+ T(0.5) * (tension - tension_at_begin(branch)) / rise(branch);",
+    ),
+    Mutant(
+        "damped skin grips whatever moves it",
+        "law/contact_point.hpp",
+        "const T damped = sign * by_damping(first), unloads = stretch_rate(friction);",
+        "const T damped = T(0), unloads = stretch_rate(friction);",
+    ),
     # … and these two where a motion is cut in two.
     Mutant(
         "skin that is given is a thousandth tighter",
