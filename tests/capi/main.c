@@ -64,7 +64,7 @@ static void a_motion(void) {
   pindrive_outcome outcome;
   pindrive_segment first, last;
   pindrive_event events[64];
-  double times[2] = {0, 0.02}, x[2], laws[16], energy[16], turns[64], values[64], duration;
+  double times[2] = {0, 0.02}, x[2], laws[16], energy[64], turns[64], values[64], duration;
   signed char sides[64];
   size_t i, count, all;
 
