@@ -551,7 +551,7 @@ def test_one_cursor_runs_through_all_curves(page: Any) -> None:
     places = page.evaluate(
         "[...document.querySelectorAll('.u-cursor-x')].map(e => e.style.transform.split('px')[0])"
     )
-    assert len(places) == 4 and len(set(places)) == 1
+    assert len(places) == 5 and len(set(places)) == 1
     assert page.evaluate("pindrive.release.state.cursor") > 0.01
 
 
