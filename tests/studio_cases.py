@@ -135,12 +135,12 @@ def compare(found: dict[str, Any], motion: Motion) -> None:
     assert found["status"] == int(motion.status)
     if motion.drive.finger.damping:
         t = doubles(found["times"])
-        for page, along in zip(
+        for page, true in zip(
             np.split(doubles(found["values"]), 5),
             (motion.position(t), motion.velocity(t)),
             strict=False,
         ):
-            np.testing.assert_allclose(page, along, rtol=0.0, atol=1e-9 * np.abs(along).max())
+            np.testing.assert_allclose(page, true, rtol=0.0, atol=1e-9 * np.abs(true).max())
         return
     assert found["end"] == motion.ending.end.name
     ends = [end for segment in motion.segments for end in (segment.begin, segment.end)]
