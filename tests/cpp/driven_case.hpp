@@ -40,7 +40,7 @@ struct Case {
       drive.plate.branches = pd::branches_of(speeds, rows, 3, curve.data());
       drive.plate.curve = curve.data();
     }
-    if (one_of(random, 2)) drive.finger.stiffness = drive.stiffness * between(random, 1, 50);
+    if (one_of(random, 3)) drive.finger.stiffness = drive.stiffness * between(random, 1, 50);
     if (!drive.finger.rigid() && one_of(random, 2))
       drive.finger.damping = drive.finger.stiffness * std::pow(10, between(random, -4, -2));
     for (int i = 0; i < 4; ++i) times.push_back(times.back() + between(random, 0.005, 0.08));
