@@ -17,8 +17,35 @@ TABLE: Final = Part(MAGNET + ROWS + MADE)
 default: Final = TABLE.default
 
 
+class Winding:
+    """Heating of a coil, however it is described."""
+
+    __slots__ = ()
+
+    thermal_resistance: float
+    heat_capacity: float | None
+    temperature_rise: float
+
+    @property
+    def power(self) -> float:
+        """Heat while it is on, W."""
+        raise NotImplementedError
+
+    @property
+    def heat(self) -> Heat | None:
+        """Heating and cooling of the coil; None without a heat capacity."""
+        if self.heat_capacity is None:
+            return None
+        return Heat(self.power, self.thermal_resistance, self.heat_capacity)
+
+    @property
+    def duty(self) -> float:
+        """The part of the time it may be on before it warms by more than is allowed, at most 1."""
+        return min(1.0, self.temperature_rise / (self.thermal_resistance * self.power))
+
+
 @checked_by(TABLE)
-class Coil:
+class Coil(Winding):
     """An electromagnet with two poles on a steel plate, by how it is made.
 
     The iron has no reluctance up to the saturation field, and no flux leaks: the two gaps in series
@@ -102,23 +129,13 @@ class Coil:
         """U I while it is on, W."""
         return self._number("power")
 
-    @property
-    def heat(self) -> Heat | None:
-        """Heating and cooling of the coil; None without a heat capacity."""
-        return _heat_of(self)
-
-    @property
-    def duty(self) -> float:
-        """The part of the time it may be on before it warms by more than is allowed, at most 1."""
-        return _duty_of(self)
-
     def _number(self, name: str) -> float:
         """Return a number of the core (include/pindrive/device/magnet_construction.hpp)."""
         return _core.coil_numbers(values_of(self))[name]
 
 
 @checked_by(TABLE)
-class DataSheet:
+class DataSheet(Winding):
     """An electromagnet by its data sheet: its winding, and its pull at a current.
 
     Args:
@@ -162,26 +179,6 @@ class DataSheet:
     def power(self) -> float:
         """U I while it is on, W."""
         return self.supply_voltage * self.current
-
-    @property
-    def heat(self) -> Heat | None:
-        """Heating and cooling of the coil; None without a heat capacity."""
-        return _heat_of(self)
-
-    @property
-    def duty(self) -> float:
-        """The part of the time it may be on before it warms by more than is allowed, at most 1."""
-        return _duty_of(self)
-
-
-def _heat_of(coil: Coil | DataSheet) -> Heat | None:
-    if coil.heat_capacity is None:
-        return None
-    return Heat(coil.power, coil.thermal_resistance, coil.heat_capacity)
-
-
-def _duty_of(coil: Coil | DataSheet) -> float:
-    return min(1.0, coil.temperature_rise / (coil.thermal_resistance * coil.power))
 
 
 COIL: Final = tuple(field.name for field in fields(Coil))
