@@ -11,8 +11,9 @@ PLATE = Contact(0.022, 0.0265)
 RIGID = Contact(0.005, 0.0075)
 """A finger that only rubs."""
 SKIN = Contact(0.020, 0.030, stiffness=300.0)
-DAMPED = Contact(0.020, 0.030, stiffness=300.0, damping=0.3)
 """A finger whose skin gives way."""
+DAMPED = Contact(0.020, 0.030, stiffness=300.0, damping=0.3)
+"""A finger whose skin gives way slowly."""
 
 
 def drive(finger: Contact = RIGID, plate: Contact = PLATE, **others: Any) -> Drive:

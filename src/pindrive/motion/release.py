@@ -186,8 +186,8 @@ def check_fits(drive: Drive, release: Release, duration: float | None = None) ->
     if not drive.plate.rigid:
         raise ValueError(refusal("plate stiffness", "infinite", f"{drive.plate.stiffness!r} N/m"))
     finger = drive.finger
-    falls = not finger.rigid and (finger.curved or not finger.damping)
-    if isinstance(release.finger_load, Function) and falls:
+    by_rows = not finger.rigid and (finger.curved or not finger.damping)
+    if isinstance(release.finger_load, Function) and by_rows:
         required = "a number or a Profile beside a finger stiffness without damping, or a curve"
         raise ValueError(refusal("finger_load", required, "a Function"))
     for name in LOADS:
