@@ -40,7 +40,7 @@ void run_kernel(Block& block, std::size_t count, Asked asked) {
 /// included in the friction, in the order of the kernel's blocks.
 std::array<double, Block::inputs> arguments(const pd::Numbers& at, double band) {
   const double load = at.plate_load.value(), velocity = at.mouse_velocity.value();
-  const double finger_load = at.finger_load.value();
+  const double finger_load = pindrive_c::initial(at.finger_load, at.finger.load_exponent);
   return {at.mass,
           at.stiffness,
           at.damping,
@@ -70,8 +70,8 @@ pd::Numbers pressed(pd::Numbers at) {
   const double load = at.plate_load.value();
   if (load != 1)
     for (double* force : {&at.plate.kinetic, &at.plate.static_limit}) *force *= load;
-  for (double* force : {&at.finger.kinetic, &at.finger.static_limit})
-    *force *= at.finger_load.value();
+  const double touched = pindrive_c::initial(at.finger_load, at.finger.load_exponent);
+  for (double* force : {&at.finger.kinetic, &at.finger.static_limit}) *force *= touched;
   at.plate_load = at.finger_load = {{{0, 1}}};
   return at;
 }

@@ -281,10 +281,14 @@ class Search {
 
   bool by_coefficient(int contact) const { return first_of(friction_keys[contact][1]) != nullptr; }
 
-  /// Normal force of a contact while the magnet is off, N.
+  /// Normal force of a contact while the magnet is off, by which coefficients are multiplied, N.
   double normal_force(int contact) const {
-    return contact == at_plate ? number("drive.mass") * gravity + number("plate.preload")
-                               : number("finger.touch_force");
+    const double touch = number("finger.touch_force"), reference = number("finger.reference_touch");
+    const double exponent = number("finger.load_exponent");
+    if (contact == at_plate)
+      return number("drive.mass") * gravity + number("plate.preload") +
+             (has("finger.touch_force") ? number("plate.touch_share") * touch : 0);
+    return exponent == 1 || touch == 0 ? touch : reference * std::pow(touch / reference, exponent);
   }
 
   Friction friction(int contact) const {
@@ -332,8 +336,13 @@ class Search {
     constexpr const char* touch = "finger.touch_force";
     if (coefficient && !has(touch))
       add(touch, {coefficient}, "given where a coefficient gives the finger's friction|none");
-    if (force && has(touch))
-      reject(touch, {force}, "left out where the finger's friction is given as a force");
+    for (const char* const key : {touch, "finger.reference_touch"})
+      if (force && has(key))
+        reject(key, {force}, "left out where the finger's friction is given as a force");
+    constexpr const char *exponent = "finger.load_exponent", *reference = "finger.reference_touch";
+    if (coefficient && has(exponent) && number(exponent) != 1 && !has(reference))
+      add(reference, {exponent, coefficient},
+          "given where the load exponent is not 1, as the touch at which the coefficients hold|none");
   }
 
   /// The law of a contact and its parameters.
@@ -393,7 +402,8 @@ class Search {
     if (number("finger.damping") > 0) return;  // skin that relaxes need not be held
     const Friction finger = friction(at_finger);
     const RowView load = rows("motion.finger_load");
-    const double factor = load.count > 0 ? load.at_begin() : number("motion.finger_load");
+    const double touch = load.count > 0 ? load.at_begin() : number("motion.finger_load");
+    const double factor = std::pow(touch, number("finger.load_exponent"));
     const double largest = finger.limit * finger.normal_force * factor / number("finger.stiffness");
     if (std::abs(number(stretch)) > largest)
       reject(stretch, {"finger.stiffness", finger.limit_key},
@@ -626,6 +636,7 @@ class Search {
     const pindrive_given* const given = find(key);
     if (!given || !given->values) return;
     const bool coefficients = by_coefficient(at_finger);
+    check_raised_touch(key, {given->values, given->rows});
     if (coefficients && (!has(touch) || number(touch) > 0 || std::isnan(number(touch)))) return;
     Text shown;
     if (given->rows > 0)
@@ -636,6 +647,22 @@ class Search {
         "left out where the finger's friction is %s; it needs finger.coefficient and a "
         "finger.touch_force greater than 0 N|%s",
         coefficients ? "no force" : "given as a force", shown.get());
+  }
+
+  /// Skin without damping, or with a friction curve, follows a touch by rows of its friction.
+  void check_raised_touch(const char* key, const RowView& touch) {
+    constexpr const char *exponent = "finger.load_exponent", *stiffness = "finger.stiffness";
+    const auto changes = [&](std::size_t i) { return touch.y(i) != touch.y(0); };
+    bool varies = false;
+    for (std::size_t i = 0; i < touch.count; ++i) varies = varies || changes(i);
+    const Friction finger = friction(at_finger);
+    const bool lags = has(stiffness) && !(number("finger.damping") > 0 && finger.curve.count < 2 &&
+                                          !has(finger.viscous_key));
+    if (varies && lags && number(exponent) != 1)
+      add(key, {exponent, stiffness, "finger.damping"},
+          "one value at a finger.load_exponent of %g, unless the skin has finger.damping and no "
+          "curve|one over time",
+          number(exponent));
   }
 
   std::vector<pindrive_given> given_;

@@ -73,12 +73,21 @@ std::vector<Number> DeviceParameters::list(const char* key) const {
   return found;
 }
 
-Number DeviceParameters::plate_normal_force() const {
-  return of("drive.mass") * gravity + of("plate.preload");
+device::Pressing<Number> DeviceParameters::pressing() const {
+  const Number touch = of("plate.touch_share", 1) * of("finger.touch_force");
+  return {of("drive.mass") * gravity + of("plate.preload") + touch, touch};
+}
+
+/// The touch force N by which coefficients are multiplied, N: N₀ (N/N₀)ⁿ.
+Number DeviceParameters::finger_normal_force() const {
+  const Number touch = of("finger.touch_force"), exponent = of("finger.load_exponent", 1);
+  const Number reference = of("finger.reference_touch", touch);
+  if (vanishes(exponent - 1) || touch == 0) return touch;
+  return reference * exp(exponent * log(touch / reference));
 }
 
 Number DeviceParameters::residual_load() const {
-  return 1 + of("magnet.residual") / plate_normal_force();
+  return 1 + of("magnet.residual") / pressing().normal_force;
 }
 
 /// Sets the friction of a contact: kinetic friction before static friction, which it sets.
@@ -111,6 +120,7 @@ pindrive_error DeviceParameters::fill_friction(pindrive_drive* drive, const char
   set(names.limit, "static", factor);
   set("stiffness", "stiffness", 1);
   set("damping", "damping", 1);
+  set("load_exponent", "load_exponent", 1);
   return error;
 }
 
@@ -153,8 +163,8 @@ pindrive_error DeviceParameters::fill(pindrive_drive* drive, double Number::* pa
     else
       error = pindrive_drive_set(drive, key + std::strlen(table), value.*part);
   }
-  if (!error) error = fill_friction(drive, "plate", plate_normal_force(), part);
-  if (!error) error = fill_friction(drive, "finger", of("finger.touch_force"), part);
+  if (!error) error = fill_friction(drive, "plate", pressing().normal_force, part);
+  if (!error) error = fill_friction(drive, "finger", finger_normal_force(), part);
   return error;
 }
 

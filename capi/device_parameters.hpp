@@ -9,6 +9,7 @@
 #include "pindrive.h"
 #include "pindrive/device/controller.hpp"
 #include "pindrive/device/electromagnet.hpp"
+#include "pindrive/device/pressing.hpp"
 #include "pindrive/numbers/dual.hpp"
 
 namespace pindrive_c {
@@ -38,8 +39,9 @@ class DeviceParameters {
   /// Values of "key[1]", "key[2]" …
   std::vector<Number> list(const char* key) const;
 
-  /// Normal force of the magnet on the plate without pull, N: weight and preload.
-  Number plate_normal_force() const;
+  /// What presses the magnet on the plate without pull: weight, preload and a share of the touch.
+  pindrive::device::Pressing<Number> pressing() const;
+  Number finger_normal_force() const;
   /// Plate load without a current: that of the residual pull.
   Number residual_load() const;
 

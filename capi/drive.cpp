@@ -88,6 +88,8 @@ bool pindrive_c::set(pindrive_drive& drive, const char* name, double value) {
     if (contact == &drive.finger && std::strcmp(name, "stiffness") == 0)
       number = &contact->stiffness;
     if (contact == &drive.finger && std::strcmp(name, "damping") == 0) number = &contact->damping;
+    if (contact == &drive.finger && std::strcmp(name, "load_exponent") == 0)
+      number = &contact->load_exponent;
     if (number == &contact->kinetic || number == &law.breakaway) contact->static_limit = value;
   } else {
     number = find({{"mass", &drive.mass},
@@ -293,6 +295,7 @@ pindrive_error check_contact(const char* name, const pd::ContactNumbers& contact
   static constexpr auto force = input("plate.kinetic");
   static constexpr auto stiffness = input("finger.stiffness");
   static constexpr auto damping = input("finger.damping");
+  static constexpr auto exponent = input("finger.load_exponent");
   static constexpr auto law = input("plate.law");
   static constexpr auto velocity = input("plate.stribeck_velocity");
   static constexpr auto viscous = input("plate.viscous");
@@ -322,6 +325,7 @@ pindrive_error check_contact(const char* name, const pd::ContactNumbers& contact
                   breakaway, "N");
   if (!error && contact.stiffness != infinity)
     error = check(named("stiffness"), stiffness, contact.stiffness);
+  if (!error) error = check(named("load_exponent"), exponent, contact.load_exponent);
   if (!error) error = check(named("damping"), damping, contact.damping);
   if (!error)
     error = check(named("damping"), contact.damping,
@@ -338,6 +342,27 @@ pindrive_error check_contact(const char* name, const pd::ContactNumbers& contact
 }
 
 }  // namespace
+
+/// True if the slider of the skin follows the load of the finger's friction, which then is linear in time.
+bool pindrive_c::needs_linear_touch(const pd::ContactNumbers& finger) {
+  const bool curved = !finger.curve.empty() || finger.law.viscous != 0;
+  return finger.stiffness != infinity && (finger.damping == 0 || curved);
+}
+
+/// A touch that changes under an exponent of the friction other than 1.
+pindrive_error pindrive_c::check_raised(const pd::ContactNumbers& finger, bool pieces) {
+  if (pieces)
+    return fail(PINDRIVE_UNSUPPORTED,
+                "finger_load must be constant or a profile at a finger.load_exponent of %g, not a "
+                "function",
+                finger.load_exponent);
+  if (needs_linear_touch(finger))
+    return fail(PINDRIVE_UNSUPPORTED,
+                "finger_load must be constant at a finger.load_exponent of %g beside a "
+                "finger.stiffness, unless the finger has damping and Coulomb friction",
+                finger.load_exponent);
+  return PINDRIVE_OK;
+}
 
 pindrive_error pindrive_c::check(const pindrive_drive& drive, const pindrive_release& release) {
   static constexpr auto mass = input("drive.mass");
@@ -367,12 +392,13 @@ pindrive_error pindrive_c::check(const pindrive_drive& drive, const pindrive_rel
     error = check_input("across_velocity", release.across_velocity, true, false, release.duration);
   if (!error)
     error = check_input("finger_load", release.finger_load, false, true, release.duration);
-  const bool lags =
-      drive.finger.damping == 0 || !drive.finger.curve.empty() || drive.finger.law.viscous != 0;
-  if (!error && !release.finger_load.pieces.empty() && drive.finger.stiffness != infinity && lags)
+  const bool pieces = !release.finger_load.pieces.empty();
+  if (!error && pieces && needs_linear_touch(drive.finger))
     error = fail(PINDRIVE_UNSUPPORTED,
                  "finger_load must be constant or a profile beside a finger.stiffness, unless the "
                  "finger has damping and Coulomb friction");
+  if (!error && drive.finger.load_exponent != 1 && !release.finger_load.constant())
+    error = check_raised(drive.finger, pieces);
   if (!error)
     error = check("support", release.support, release.support == 0 || release.support == 1,
                   "0 (mouse) or 1 (ground)");
@@ -387,7 +413,8 @@ pindrive_error pindrive_c::check(const pindrive_drive& drive, const pindrive_rel
     error = check("skin_stretch", stretch, release.skin_stretch);
   if (error) return error;
   const double skin = release.skin_stretch;
-  const double most = drive.finger.static_limit * initial(release.finger_load);
+  const double most =
+      drive.finger.static_limit * initial(release.finger_load, drive.finger.load_exponent);
   if (std::isnan(skin)) return PINDRIVE_OK;
   if (!std::isfinite(drive.finger.stiffness))
     return fail(PINDRIVE_UNSUPPORTED, "skin_stretch must be NaN for a rigid finger");
@@ -415,8 +442,8 @@ bool ends_or_repeats(const pindrive_release& release) {
 
 }  // namespace
 
-double pindrive_c::initial(const pd::InputNumbers& input) {
-  return pd::OwnedInput<double>(input, input).profile().from(0).value;
+double pindrive_c::initial(const pd::InputNumbers& input, double power) {
+  return pd::OwnedInput<double>(input, input).profile().to_the(power).from(0).value;
 }
 
 pindrive_error pindrive_c::check_duration(const pindrive_release& release) {
@@ -603,6 +630,7 @@ pindrive_drive* pindrive_drive_rate_new(const pindrive_drive* drive) {
                                 pd::ContactNumbers{0, 0, 0, {}, pd::LawNumbers::no_change()},
                                 pd::ContactNumbers{0, 0, 0, {}, pd::LawNumbers::no_change()},
                                 pd::StopNumbers{0, 0, 0}};
+      rate->plate.load_exponent = rate->finger.load_exponent = 0;
       rate->plate.curve.resize(drive->plate.curve.size());
       rate->finger.curve.resize(drive->finger.curve.size());
       return PINDRIVE_OK;

@@ -74,7 +74,7 @@ pindrive_error check_begin(const pindrive_scan& scan) {
 device::ScanInputs inputs_of(const pindrive_scan& scan) {
   const device::LiveHand& hand = scan.stream->hand();
   return {scan.owned->device, scan.page->raster(), hand.path(),
-          hand.plate(),       hand.finger_load(),  hand.begin()};
+          hand.plate(),       hand.touch(scan.owned->device.load_exponent),  hand.begin()};
 }
 
 constexpr std::size_t unlimited = std::numeric_limits<std::size_t>::max();
@@ -139,7 +139,7 @@ pindrive_error pindrive_scan_load(const pindrive_scan* scan, size_t pin, pindriv
       for (std::size_t j = 0; j < load.count; ++j)
         own[j] = {load.terms[j].cosine, load.terms[j].sine, load.terms[j].decay,
                   load.terms[j].frequency};
-      pieces[i] = {load.begin, {load.polynomial[0]}, own, load.count};
+      pieces[i] = {load.begin, {load.polynomial[0], load.polynomial[1]}, own, load.count};
     }
     return capacity < *count ? PINDRIVE_MORE : PINDRIVE_OK;
   });

@@ -108,7 +108,9 @@ pindrive_error check_band(double band);
 /// Checks that the core can simulate the drive, and that the direction of a derivative fits.
 pindrive_error check(const pindrive_drive& drive, const pindrive_release& release);
 /// Value of an input at the begin.
-double initial(const pd::InputNumbers& input);
+double initial(const pd::InputNumbers& input, double power = 1);
+bool needs_linear_touch(const pd::ContactNumbers& finger);
+pindrive_error check_raised(const pd::ContactNumbers& finger, bool pieces);
 pindrive_error check_duration(const pindrive_release& release);
 pindrive_error check(const char* name, double value, bool good, const char* range);
 pindrive_error check_rates(const pindrive_drive& drive, const pindrive_release& release,

@@ -53,7 +53,8 @@ struct ContactNumbers {
   double kinetic, static_limit, stiffness;
   Rows curve{};
   LawNumbers law{};
-  double damping{0};  ///< of the skin
+  double damping{0};        ///< of the skin
+  double load_exponent{1};  ///< of the friction over the load
 };
 
 /// The end stops of a drive: infinite travel is none, infinite stiffness rigid.
@@ -89,6 +90,7 @@ inline Numbers without_change(const Numbers& at) {
   along.plate.curve.resize(at.plate.curve.size());
   along.finger.curve.resize(at.finger.curve.size());
   along.plate.law = along.finger.law = LawNumbers::no_change();
+  along.plate.load_exponent = along.finger.load_exponent = 0;
   for (const auto input : {&Numbers::mouse_velocity, &Numbers::plate_load, &Numbers::force,
                            &Numbers::across_velocity, &Numbers::finger_load})
     along.*input = without_change(at.*input);
@@ -298,7 +300,8 @@ struct OwnedInputs {
                     number<T>(at.skin_stretch, along.skin_stretch),
                     force.profile(),
                     across_velocity.profile(),
-                    finger_load.profile(),
+                    finger_load.profile().to_the(
+                        number<T>(at.finger.load_exponent, along.finger.load_exponent)),
                     at.support != 0} {}
   OwnedInputs(const OwnedInputs&) = delete;
   OwnedInputs& operator=(const OwnedInputs&) = delete;

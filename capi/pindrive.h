@@ -106,6 +106,7 @@ PINDRIVE_API void pindrive_drive_free(pindrive_drive *drive);
  *   finger.kinetic, finger.static and so on: the same at the finger, which is rigid where friction falls
  *   finger.stiffness  N/m    > 0: tangential; infinite: a rigid finger, as it is at first
  *   finger.damping    N s/m  >= 0: of the skin, beside its stiffness; 0 at first
+ *   finger.load_exponent     0.1 to 2: the friction of the finger follows finger_load to this power; 1 at first
  *   travel            m      > 0: of the pin to its end stops, either way; infinite: none, as at first
  *   stop_stiffness    N/m    > 0: of the stops; infinite: rigid, as they are at first
  *   stop_damping      N s/m  >= 0: of elastic ones; 0 at first */
@@ -130,7 +131,7 @@ PINDRIVE_API void pindrive_release_free(pindrive_release *release);
  *   plate_load           >= 0: constant factor on the plate's friction; 1 at first
  *   force           N    constant external force on the pin, the way of x; 0 at first
  *   across_velocity m/s  constant velocity of the plate across the axis; 0 at first
- *   finger_load          >= 0: constant factor on the finger's friction; 1 at first
+ *   finger_load          >= 0: constant factor on the touch of the finger; 1 at first
  *   displacement    m    x(0), from the spring's rest
  *   velocity        m/s  x'(0); NaN: the plate's, as it is at first
  *   skin_stretch    m    of a compliant finger that grips; NaN: as it slides or, at rest, none
@@ -487,9 +488,9 @@ PINDRIVE_API void pindrive_device_free(pindrive_device *device);
 
 /* Sets a number by its key in a device file, in SI units; pindrive_scan_new() checks its range.
  *   drive.    mass, stiffness, damping or damping_ratio, travel, stop_stiffness, stop_damping
- *   plate.    kinetic and static, or coefficient and static_coefficient; preload
+ *   plate.    kinetic and static, or coefficient and static_coefficient; preload, touch_share
  *   finger.   kinetic and static, or coefficient and static_coefficient with touch_force
- *   finger.   stiffness, damping
+ *   finger.   stiffness, damping, load_exponent, reference_touch
  *   magnet.   hold_force, rise_time, fall_time, saturation
  *   magnet.   or in their place turns, pole_area, gap, wire_diameter, turn_length, supply_voltage,
  *   magnet.   release_resistance, saturation_field, thermal_resistance, heat_capacity
@@ -521,8 +522,8 @@ PINDRIVE_API pindrive_error pindrive_device_set_pins(pindrive_device *device, co
 typedef struct pindrive_scan pindrive_scan;
 
 /* Pins at rest over blank paper, magnets off, at a time (s), under a hand at a place (m) with a velocity (m/s);
- * finger_load (>= 0) is a factor of the finger friction, 0 for a finger that is lifted. To be freed; it keeps no
- * reference to the device. */
+ * finger_load (>= 0) is a factor of the touch, of which the plate has its share, 0 for a finger that is lifted. To be
+ * freed; it keeps no reference to the device. */
 PINDRIVE_API pindrive_error pindrive_scan_new(const pindrive_device *device, double time, double x,
                                               double y, double vx, double vy, double finger_load,
                                               pindrive_scan **scan);

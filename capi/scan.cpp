@@ -19,6 +19,17 @@ namespace {
 
 namespace device = pd::device;
 
+/// A touch that changes under skin which follows it by lines, at an exponent of the friction other than 1.
+pindrive_error check_touch(const device::Device& device, double before, double finger_load) {
+  const pd::Contact<double>& finger = device.drive.finger;
+  const bool lags = finger.compliant() && (!finger.damped() || finger.branches > 0);
+  if (finger_load == before || device.load_exponent == 1 || !lags) return PINDRIVE_OK;
+  return fail(PINDRIVE_UNSUPPORTED,
+              "finger_load must stay %.17g at a finger.load_exponent of %g beside a "
+              "finger.stiffness, unless the finger has damping and Coulomb friction",
+              before, device.load_exponent);
+}
+
 pindrive_error check_row(double time, device::Vector velocity, double finger_load) {
   pindrive_error error = check("time", time, std::isfinite(time), "finite");
   if (!error) error = check("vx", velocity.x, in_range(velocity.x, true), range_of(true));
@@ -183,6 +194,9 @@ pindrive_error pindrive_scan_move(pindrive_scan* scan, double time, double vx, d
   if (!(time > last))
     return fail(PINDRIVE_BAD_VALUE,
                 "time must be later than that of the last row, %.17g s, not %.17g", last, time);
+  const double before = scan->stream->hand().row(scan->stream->hand().size() - 1).finger_load;
+  if (const pindrive_error error = check_touch(scan->owned->device, before, finger_load))
+    return error;
   return guarded([&]() -> pindrive_error {
     scan->stream->move(scan->page->raster(), {time, {vx, vy}, finger_load});
     return PINDRIVE_OK;

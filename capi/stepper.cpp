@@ -94,6 +94,9 @@ pindrive_error pindrive_stepper_set(pindrive_stepper* stepper, const char* input
   const bool load = std::strcmp(input, "plate_load") == 0 || std::strcmp(input, "finger_load") == 0;
   if (!in_range(value, !load)) return check(input, value, false, range_of(!load));
   if (!std::isfinite(rate)) return check("rate", rate, false, "finite");
+  const pd::ContactNumbers& finger = stepper->at.finger;
+  if (rate != 0 && finger.load_exponent != 1 && std::strcmp(input, "finger_load") == 0)
+    if (const pindrive_error error = check_raised(finger, false)) return error;
   return stepper->pin->set(input, value, rate);
 }
 

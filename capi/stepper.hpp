@@ -84,6 +84,7 @@ class Followed final : public Following {
       return profile.has_breakpoints() ? profile
                                        : pd::Profile<T>(T(begin), {profile.first(), T(0)});
     };
+    const T exponent = pd::number<T>(at.finger.load_exponent, along.finger.load_exponent);
     return {input(owner.mouse_velocity_),
             pd::number<T>(at.displacement, along.displacement),
             pd::number<T>(at.velocity, along.velocity),
@@ -92,7 +93,7 @@ class Followed final : public Following {
             pd::number<T>(at.skin_stretch, along.skin_stretch),
             input(owner.force_),
             input(owner.across_velocity_),
-            input(owner.finger_load_)};
+            input(owner.finger_load_).to_the(exponent)};
   }
 
   static pd::Stepper<T> begun(const pd::Numbers& at, const pd::Numbers& along,

@@ -33,13 +33,16 @@ pindrive_error make_magnet(const Given& given, double time, Magnet& magnet) {
     magnet.control.sample = magnet.controller->sample_from(time);
   }
   magnet.coil = std::make_unique<pindrive::device::Coil<double>>(*magnet.electromagnet, time);
-  magnet.normal_force = given.parameters().plate_normal_force().value;
+  const auto pressing = given.parameters().pressing();
+  magnet.pressing = {pressing.normal_force.value, pressing.touch.value};
   return PINDRIVE_OK;
 }
 
-/// Sets the plate load by the pull of the magnet from now on.
+/// Sets the plate load by the pull of the magnet and the touch from now on.
 pindrive_error pulled(pindrive_stepper* stepper, const Magnet& magnet) {
-  return stepper->pin->set_load(magnet.load().piece);
+  const pindrive_instant now = stepper->pin->now();
+  return stepper->pin->set_load(
+      magnet.load({now.time, {now.finger_load, now.finger_load_rate}}).piece);
 }
 
 }  // namespace
@@ -275,8 +278,11 @@ pindrive_error Instance::set(std::size_t reference, double value) {
   if (error) return error;
   const Input& input = inputs[given->place / 2];
   const bool rate = given->place % 2 == 1;
-  return pindrive_stepper_set(stepper_.get(), input.name, rate ? now.*input.value : value,
-                              rate ? value : now.*input.rate);
+  error = pindrive_stepper_set(stepper_.get(), input.name, rate ? now.*input.value : value,
+                               rate ? value : now.*input.rate);
+  const bool presses = magnet_.present() && magnet_.pressing.touch != 0 &&
+                       input.value == &pindrive_instant::finger_load;
+  return error || !presses ? error : pulled(stepper_.get(), magnet_);
 }
 
 pindrive_error Instance::set_flag(std::size_t reference, bool value) {

@@ -40,7 +40,7 @@ struct Magnet {
   std::unique_ptr<pindrive::device::Coil<double>> coil;
   std::unique_ptr<const pindrive::device::Controller> controller;
   ControlState control;
-  double normal_force{0};  ///< of the plate without a pull, N
+  pindrive::device::Pressing<double> pressing{1};
 
   bool present() const { return coil != nullptr; }
   /// Time of the next change by itself, or of the next switching, s.
@@ -57,9 +57,9 @@ struct Magnet {
   }
   /// Goes beyond all samples, switchings and changes until a time, s; a switching comes before a change.
   void pass(double until);
-  /// Factor of the friction of the plate by the present piece of the pull.
-  pindrive::OwnedPiece<double> load() const {
-    return pindrive::device::load_under(coil->pull_piece(), normal_force, 0.0);
+  /// Factor of the friction of the plate by the present piece of the pull and a touch over the usual one.
+  pindrive::OwnedPiece<double> load(const pindrive::LineSince<double>& touch) const {
+    return pressing.load_under(coil->pull_piece(), 0.0, touch);
   }
 };
 

@@ -27,7 +27,7 @@ from pindrive.files.keys import (
     template,
     usual_rows,
 )
-from pindrive.motion.friction import COEFFICIENT_OF, PRESSED_BY
+from pindrive.motion.friction import COEFFICIENT_OF, GRAVITY, PRESSED_BY
 from pindrive.motion.release import INPUTS
 from pindrive.plot.style import CURVES, EVENT_SHAPE, PALETTE, SIGNS, event_name
 from pindrive.quantities import budgets
@@ -164,9 +164,10 @@ def tables() -> dict[str, Any]:
         "around": AROUND,
         "coefficients": COEFFICIENT_OF,
         "pressedBy": {
-            contact: {QUANTITIES[name].key: factor for name, factor in parts.items()}
-            for contact, parts in PRESSED_BY.items()
+            contact: [QUANTITIES[name].key for name in names]
+            for contact, names in PRESSED_BY.items()
         },
+        "gravity": GRAVITY,
         "functions": {
             kind: [checked(parameter) for parameter in parameters]
             for kind, parameters in FUNCTIONS.items()

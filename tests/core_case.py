@@ -40,6 +40,7 @@ class Case:
             "finger.static": 0.005,
             "finger.stiffness": inf,
             "finger.damping": 0.0,
+            "finger.load_exponent": 1.0,
             "travel": inf,
             "stop_stiffness": inf,
             "stop_damping": 0.0,
@@ -64,15 +65,17 @@ class Case:
         """In the order of the extension."""
         n = self.numbers
 
-        def contact(name: str, stiffness: float, damping: float = 0.0) -> tuple[Any, ...]:
+        def contact(name: str, stiffness: float, *others: float) -> tuple[Any, ...]:
             kinetic, at_rest = n[f"{name}.kinetic"], n[f"{name}.static"]
             law = tuple(n.get(f"{name}.{part}", absent) for part, absent in NO_LAW.items())
-            return kinetic, at_rest, stiffness, self.curves[name], law, damping
+            return kinetic, at_rest, stiffness, self.curves[name], law, *others
 
         return (
             *(n["mass"], n["stiffness"], n["damping"]),
-            contact("plate", inf),
-            contact("finger", n["finger.stiffness"], n["finger.damping"]),
+            contact("plate", inf, 0.0, 1.0),
+            contact(
+                "finger", *(n[f"finger.{name}"] for name in ("stiffness", "damping", "load_exponent"))
+            ),
             *(self.inputs["mouse_velocity"], self.inputs["plate_load"]),
             *(n["displacement"], n["velocity"], n["skin_stretch"], self.inputs["force"]),
             self.inputs["across_velocity"],
@@ -126,6 +129,7 @@ class Case:
             **{name: n[name] for name in ("mass", "stiffness", "damping", *names)},
             plate=contact("plate", inf),
             finger=contact("finger", n["finger.stiffness"], n["finger.damping"]),
+            load_exponent=n["finger.load_exponent"],
         )
         inputs: dict[str, Any] = {name: given(rows) for name, rows in self.inputs.items()}
         start: dict[str, Any] = {name: n[name] for name in ("displacement", "velocity")}
@@ -167,7 +171,7 @@ def _made(found: dict[str, list[float]]) -> Case:
     return Case(
         numbers
         | {"finger.stiffness": found["skin"][0] or inf, "skin_stretch": nan}
-        | {"finger.damping": found.get("skin_damping", [0.0])[0]}
+        | {"finger.damping": found.get("skin_damping", [0.0])[0], "finger.load_exponent": 1.0}
         | {"travel": travel, "stop_stiffness": stop_stiffness or inf, "stop_damping": stop_damping},
         {name: curve if len(curve) > 1 else [] for name, curve in curves.items()},
         {

@@ -111,6 +111,8 @@ def as_input(drive: Drive, release: Release) -> dict[str, Any]:
     skin: dict[str, Any] = {} if drive.finger.rigid else {"finger.stiffness": stiffness}
     if drive.finger.damping:
         skin["finger.damping"] = drive.finger.damping
+    if drive.load_exponent != 1.0:
+        skin["finger.load_exponent"] = drive.load_exponent
     curves = {"plate": drive.plate.curve, "finger": drive.finger.curve}
     velocity: Any = {} if release.velocity is None else {"velocity": release.velocity}
     return {

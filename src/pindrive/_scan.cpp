@@ -48,7 +48,8 @@ nb::tuple piece_of(const pd::InputPiece<T>& piece, Number&& number) {
     terms.append(nb::make_tuple(number(term.cosine), number(term.sine), number(term.decay),
                                 number(term.frequency)));
   }
-  return nb::make_tuple(number(piece.begin), nb::make_tuple(number(piece.polynomial[0])),
+  return nb::make_tuple(number(piece.begin),
+                        nb::make_tuple(number(piece.polynomial[0]), number(piece.polynomial[1])),
                         nb::tuple(terms));
 }
 nb::tuple piece_of(const pd::InputPiece<double>& piece) {
@@ -73,7 +74,7 @@ nb::tuple table_of(const device::CoilCourse<double>& course) {
   nb::list pulls;
   for (const device::PullPiece<double>& pull : course.pulls) {
     // The load on a plate with a normal force of 1 N is 1 more.
-    pd::OwnedPiece<double> given = device::load_under(pull, 1.0, 0.0);
+    pd::OwnedPiece<double> given = device::Pressing<double>{1.0}.load_under(pull, 0.0);
     given.piece.polynomial[0] = pull.constant;
     pulls.append(piece_of(given.piece));
   }
@@ -125,10 +126,13 @@ nb::tuple coil_course(const MagnetNumbers& magnet, const CoilNumbers& from,
   return table_of(course);
 }
 
-/// Derivative of the pieces of a load along numbers of the magnet, of its normal force and of a delay of all
+/// Normal force of a plate and its part that is touch, each with its derivative.
+using PressingNumbers = std::pair<std::pair<double, double>, std::pair<double, double>>;
+
+/// Derivative of the pieces of a load along numbers of the magnet, of what presses and of a delay of all
 /// switchings.
 nb::list load_along(const MagnetNumbers& magnet, const MagnetNumbers& along,
-                    std::pair<double, double> normal_force, const CoilNumbers& from,
+                    const PressingNumbers& pressing, const pd::Rows& touch, const CoilNumbers& from,
                     const Column& switchings, double delay, double begin, double end) {
   const auto electromagnet = magnet_with<Dual>(
       magnet, along, [](double value, double slope) -> Dual { return {value, slope}; });
@@ -139,12 +143,14 @@ nb::list load_along(const MagnetNumbers& magnet, const MagnetNumbers& along,
   device::CoilCourse<Dual> course;
   course.follow(electromagnet, {since, flux, warming, level, commanded, on, command}, times.data(),
                 times.size(), begin, end, std::numeric_limits<std::size_t>::max());
-  const Dual pressed{normal_force.first, normal_force.second};
+  const auto& [normal_force, touch_part] = pressing;
+  const device::Pressing<Dual> pressed{{normal_force.first, normal_force.second},
+                                       {touch_part.first, touch_part.second}};
+  const pd::OwnedInput<double> touched(pd::InputNumbers{touch}, pd::InputNumbers{touch});
   nb::list found;
-  for (const device::PullPiece<Dual>& pull : course.pulls) {
-    const pd::OwnedPiece<Dual> load = device::load_under(pull, pressed, Dual(begin));
+  for (const pd::OwnedPiece<Dual>& load :
+       device::loads_under(course.pulls, pressed, Dual(begin), touched.profile()))
     found.append(piece_of(load.piece, [](const Dual& of) { return of.slope; }));
-  }
   return found;
 }
 
@@ -179,15 +185,15 @@ void bind_scan(nb::module_& m) {
   m.def("coil_course", &coil_course, "magnet"_a, "state"_a, "switchings"_a, "begin"_a, "end"_a,
         "most"_a,
         "Pieces of a coil under commands, those of its pull (N), and its state at the end.");
-  m.def("load_along", &load_along, "magnet"_a, "along"_a, "normal_force"_a, "state"_a,
+  m.def("load_along", &load_along, "magnet"_a, "along"_a, "pressing"_a, "touch"_a, "state"_a,
         "switchings"_a, "delay"_a, "begin"_a, "end"_a,
         "Derivative of the pieces of the factor of the plate friction: begin, polynomial, terms.");
   m.def("closest_approaches", &closest_approaches, "motions"_a, "pairs"_a, "duration"_a,
         "Smallest x(behind) - x(ahead) of each pair of motions, m, and its time, s.");
   nb::class_<OwnedDevice>(m, "Device", "Device whose pins are alike.")
-      .def(nb::init<const DriveNumbers&, double, const MagnetNumbers&, const ControlNumbers&,
+      .def(nb::init<const DriveNumbers&, std::pair<double, double>, const MagnetNumbers&, const ControlNumbers&,
                     double, const Table&>(),
-           "drive"_a, "normal_force"_a, "magnet"_a, "control"_a, "axis"_a, "spots"_a);
+           "drive"_a, "pressing"_a, "magnet"_a, "control"_a, "axis"_a, "spots"_a);
   nb::class_<Scan>(m, "Scan", "Pins under a hand that moves over a page.")
       .def(nb::init<const OwnedDevice&, RasterNumbers, PathNumbers, const pd::Rows&,
                     const std::vector<StateNumbers>&>(),

@@ -9,7 +9,7 @@ import {
   frictionOf,
   frictionParts,
   givenFriction,
-  normalForce,
+  pressRate,
   type Value,
   type Values,
 } from "./friction";
@@ -66,6 +66,7 @@ export function valueFor(values: Values, key: string): Value | null {
 const OPTIONAL: readonly (readonly [string, string])[] = [
   ["finger.stiffness", "finger.stiffness"],
   ["finger.damping", "finger.damping"],
+  ["finger.load_exponent", "finger.load_exponent"],
   ...STOPS.map((name) => [name, `drive.${name}`] as const),
   ...CONTACTS.flatMap((contact) =>
     ["law", "stribeck_velocity", "exponent"].map(
@@ -92,7 +93,7 @@ export function coreInput(values: Values): Input {
   }
   for (const [name, key] of OPTIONAL) {
     const value = values[key];
-    if (typeof value === "number") drive[name] = value;
+    if (typeof value === "number" && value !== DRIVE.get(key)!.absent) drive[name] = value;
   }
   const release: Record<string, number> = {};
   for (const name of RELEASED) {
@@ -231,7 +232,7 @@ export function direction(values: Values, key: string, part: number): Input {
     if (coefficients) relative[`${contact}.static`] = still;
   }
   follow(true);
-  for (const [name, key] of OPTIONAL) if (of(key)) drive[name] = of(key) * input.drive[name]!;
+  for (const [name, key] of OPTIONAL) if (of(key)) drive[name] = of(key) * (values[key] as number);
   const release: Record<string, number> = {};
   for (const name of RELEASED) {
     const rate = of(`motion.${name}`);
@@ -243,16 +244,6 @@ export function direction(values: Values, key: string, part: number): Input {
     if (rows) profiles[name] = scaled(rows, of(`motion.${name}`)); // no parameter of a function is varied
   }
   return { drive, curves, release, profiles, functions: {} };
-}
-
-/** Relative change of the normal force on a contact. */
-function pressRate(values: Values, contact: string, of: (key: string) => number): number {
-  const parts = Object.entries(TABLES.pressedBy[contact]!);
-  const sizes = parts.map(
-    ([key, factor]) => factor * ((valueFor(values, key) as number | null) ?? 0) * of(key),
-  );
-  const load = normalForce(values, contact);
-  return load ? sizes.reduce((sum, size) => sum + size, 0) / load : 0;
 }
 
 /** The keys with a value of their own that is not 0, which derivatives and fits may change. */

@@ -74,11 +74,37 @@ export function byCoefficient(values: Found, contact: string): boolean {
   return frictionKeys(contact, true).some((key) => values[key] != null);
 }
 
-/** Normal force on a contact while the magnet is off, N. */
+/** What presses on a contact, by the keys of its normal force; the touch of a finger with a force is 0. */
+function pressing(values: Found, contact: string): number[] {
+  return TABLES.pressedBy[contact]!.map((key) => (values[key] ?? DRIVE.get(key)!.absent ?? 0) as number);
+}
+
+/** Normal force by which the coefficients of a contact are multiplied while the magnet is off, N. */
 export function normalForce(values: Found, contact: string): number {
-  const parts = Object.entries(TABLES.pressedBy[contact]!);
-  const sizes = parts.map(([key, factor]) => factor * ((values[key] ?? DRIVE.get(key)!.absent) as number));
-  return sizes.slice(1).reduce((sum, size) => sum + size, sizes[0]!);
+  const parts = pressing(values, contact);
+  if (contact === "plate") {
+    const [mass, preload, share, touch] = parts as [number, number, number, number];
+    return TABLES.gravity * mass + preload + share * touch;
+  }
+  const [touch, exponent, reference] = parts as [number, number, number];
+  return exponent === 1 || !reference ? touch : reference * (touch / reference) ** exponent;
+}
+
+/** Relative change of the normal force on a contact by those of its keys. */
+export function pressRate(values: Found, contact: string, of: (key: string) => number): number {
+  const parts = pressing(values, contact);
+  const rates = TABLES.pressedBy[contact]!.map(of);
+  const load = normalForce(values, contact);
+  if (!load) return 0;
+  if (contact === "plate") {
+    const [mass, preload, share, touch] = parts as [number, number, number, number];
+    const sizes = [TABLES.gravity * mass, preload, share * touch, share * touch];
+    return sizes.reduce((sum, size, i) => sum + size * rates[i]!, 0) / load;
+  }
+  const [touch, exponent, reference] = parts as [number, number, number];
+  const [byTouch, byExponent, byReference] = rates as [number, number, number];
+  if (!reference) return byTouch;
+  return exponent * (byTouch + Math.log(touch / reference) * byExponent) + (1 - exponent) * byReference;
 }
 
 /** Notation of friction: by forces or by coefficients. */
@@ -116,7 +142,7 @@ function times({ kinetic, still, curve, rest, viscous }: Friction, load: number)
 export function frictionParts(key: string): readonly string[] {
   const own = TABLES.coefficients[key];
   if (own === undefined) return [];
-  return [own, ...(DRIVE.get(own)!.follows ?? []), ...Object.keys(TABLES.pressedBy[key.split(".")[0]!]!)];
+  return [own, ...(DRIVE.get(own)!.follows ?? []), ...TABLES.pressedBy[key.split(".")[0]!]!];
 }
 
 /** Friction in the alternative notation, within rounding; a finger then has this touch force, N. */
@@ -128,7 +154,7 @@ export function withKind(values: Values, contact: string, coefficients: boolean)
   const next = Object.fromEntries(Object.entries(values).filter(([key]) => !before.includes(key)));
   if (contact === "finger") {
     if (coefficients) next[touch] = DRIVE.get(touch)!.example!;
-    else delete next[touch];
+    else for (const key of [touch, "finger.load_exponent", "finger.reference_touch"]) delete next[key];
   }
   const found = coefficients ? times(forces, 1 / normalForce(next, contact)) : forces;
   const [ofKinetic, ofStatic, ofCurve, ofRest, ofViscous] = frictionKeys(contact, coefficients);

@@ -63,9 +63,9 @@ export function mapTask(
   const origin = flat(base);
   const ones = new Float64Array(SIZE).fill(1);
   const adds = (contact: string): boolean =>
-    contact in TABLES.pressedBy &&
+    contact === "plate" &&
     byCoefficient(values, contact) &&
-    [x, y].every((key) => key in TABLES.pressedBy[contact]!);
+    [x, y].every((key) => TABLES.pressedBy[contact]!.includes(key));
   const varied: Record<string, Product> = {};
   for (const name of Object.keys(origin)) {
     const changes = (line: readonly Flat[]): boolean => line.some((at) => at[name] !== origin[name]);

@@ -20,7 +20,8 @@ export function mapKeys(state: ReleaseState): string[] {
   return [...DRIVE.keys()].filter((key) => {
     const value = values[key];
     if (typeof value !== "number") return false;
-    if (DRIVE.get(key)!.choices || key.endsWith(".exponent")) return false;
+    if (DRIVE.get(key)!.choices || key.endsWith("exponent")) return false;
+    if (key === "plate.touch_share") return false; // with a touch neither a product nor a sum
     return key !== "motion.duration" && key !== "motion.settling_band";
   });
 }

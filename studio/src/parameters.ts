@@ -29,7 +29,7 @@ export function meant(key: string, values: Values): boolean {
   if (key === "finger.damping") return !falling && applies(values, key);
   const curve = DRIVE.get(key)!.rowsOf?.endsWith("curve") === true;
   if (curve && lawOf(values, contact) !== "table") return false;
-  if (key in TABLES.pressedBy[contact]!) return coefficients || values[key] !== undefined;
+  if (TABLES.pressedBy[contact]!.includes(key)) return coefficients || values[key] !== undefined;
   return !frictionKeys(contact, !coefficients).includes(key);
 }
 

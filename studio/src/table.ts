@@ -67,8 +67,10 @@ interface Tables {
   readonly around: readonly string[];
   /** The coefficient by which a friction force may be given instead, by key. */
   readonly coefficients: Readonly<Record<string, string>>;
-  /** Normal force on each contact: keys, and their factors. */
-  readonly pressedBy: Readonly<Record<string, Readonly<Record<string, number>>>>;
+  /** Keys of the normal force on each contact. */
+  readonly pressedBy: Readonly<Record<string, readonly string[]>>;
+  /** Standard gravity, m/s². */
+  readonly gravity: number;
   /** Parameters of functions of time, by the name of the function; one without a unit has that of its input. */
   readonly functions: Readonly<Record<string, readonly Quantity[]>>;
   /** Functions that each input may be. */

@@ -513,6 +513,6 @@ def test_derivatives_have_the_bits_of_python(c: Interface) -> None:
 def rate_as_core(rate: Case) -> tuple[Any, ...]:
     """Along a direction the stiffness of the plate stays infinite."""
     numbers = list(rate.as_core())
-    kinetic, at_rest, _, rows, law, _ = numbers[3]
-    numbers[3] = (kinetic, at_rest, 0.0, rows, law, 0.0)
+    kinetic, at_rest, _, rows, law, *_ = numbers[3]
+    numbers[3] = (kinetic, at_rest, 0.0, rows, law, 0.0, 0.0)
     return tuple(numbers)

@@ -69,7 +69,7 @@ class Piece(ctypes.Structure):
     def numbers(self) -> tuple[float, tuple[float, ...], tuple[tuple[float, ...], ...]]:
         """As Python has a piece of a load."""
         terms = tuple(term.numbers for term in self.terms[: self.count])
-        return self.begin, (self.polynomial[0],), terms
+        return self.begin, tuple(self.polynomial[:2]), terms
 
 
 class Reading:
@@ -89,6 +89,7 @@ class Reading:
             "finger.coefficient": friction,
             "finger.static_coefficient": 1.4 * friction,
             "finger.touch_force": TOUCH,
+            "plate.touch_share": (0.0, 0.5, 1.0)[seed % 3],
             "magnet.hold_force": random.uniform(0.8, 2.0),
             "magnet.rise_time": 0.002,
             "magnet.fall_time": 0.004,
@@ -103,6 +104,8 @@ class Reading:
             self.numbers["finger.stiffness"] = skin
         if damping:
             self.numbers["finger.damping"] = damping
+        if damping or skin == inf:
+            self.numbers |= {"finger.load_exponent": 0.7, "finger.reference_touch": 2 * TOUCH}
         n = self.numbers
         drive = Drive(
             mass=n["drive.mass"],
@@ -117,6 +120,9 @@ class Reading:
                 damping=damping,
             ),
             touch_force=TOUCH,
+            touch_share=n["plate.touch_share"],
+            load_exponent=n.get("finger.load_exponent", 1.0),
+            reference_touch=n.get("finger.reference_touch"),
         )
         array = PinArray.grid(2, 2, 0.004, axis=n["array.axis"])
         magnet = Electromagnet.from_times(
@@ -235,7 +241,9 @@ def pin_pull(pin: Any, t: float) -> float:
     """Pull of the magnet from the factor of the plate friction, N."""
     load, since = pin.load, t - pin.begin
     factor = load if isinstance(load, float) else load(since)
-    return float((factor - 1.0) * pin.drive.normal_force)
+    touch = pin.finger_load if isinstance(pin.finger_load, float) else pin.finger_load(since)
+    touched = pin.drive.plate_touch * (touch - 1.0)
+    return float((factor - 1.0) * pin.drive.normal_force - touched)
 
 
 def test_where_it_is_cut_does_not_change_a_bit(c_library: Path) -> None:

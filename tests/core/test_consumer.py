@@ -50,6 +50,7 @@ PUBLIC = {
         "monotone_pieces",
         "pin_evaluation",
         "pin_follower",
+        "pressing",
         "printed_lines",
         "raster",
         "scan",

@@ -65,7 +65,7 @@ void the_bits_of_a_scan() {
   device::LiveHand hand(rows[0], {0, 5e-5}, device.axis);
   for (std::size_t i = 1; i < rows.size(); ++i) hand.add(rows[i], device.axis);
   const device::ScanInputs inputs{device,       page.raster(),      hand.path(),
-                                  hand.plate(), hand.finger_load(), hand.begin()};
+                                  hand.plate(), hand.touch(1), hand.begin()};
   Random random(47);
   const auto found = streamed(device, page, rows, nullptr, false);
   for (std::size_t i = 0; i < found.size(); ++i) {

@@ -1,6 +1,8 @@
 // What goes into the core: friction curves as branches, inputs over time, and the transitions of a contact.
 #include "pindrive/model/model.hpp"
 
+#include <cmath>
+
 #include "check.hpp"
 
 namespace pd = pindrive;
@@ -45,6 +47,37 @@ void inputs() {
          "a number is a profile");
 }
 
+void raised_inputs() {
+  const double times[] = {1, 2, 3}, values[] = {1, 0, 4}, power = 2.0 / 3;
+  const pd::Profile<double> profile = pd::Profile<double>(times, values, 3).to_the(power);
+  const pd::Curve<double> falling = profile.from(1.5);
+  expect(check::near(falling.value, std::pow(0.5, power), 1e-15) && falling.raised &&
+             !falling.straight() && !profile.straight(),
+         "a line between rows is raised to a power");
+  expect(check::near(falling.at(0.25), std::pow(0.25, power), 1e-15) &&
+             check::near(falling.from(0.25).rate, -power * std::pow(0.25, power - 1), 1e-14),
+         "at later times too");
+  expect(check::near(falling.second(), power * (power - 1) * std::pow(0.5, power - 2), 1e-14),
+         "with its derivatives");
+  const double chord = profile.next_breakpoint(1.5);
+  expect(chord < 2 && 2 - chord < 2e-10 && profile.from(chord).straight() &&
+             profile.next_breakpoint(chord) == 2,
+         "close to zero it is a chord");
+  expect(profile.from(2.0).value == 0 && profile.from(2.0).straight() &&
+             profile.next_breakpoint(2.0) - 2 < 1e-10,
+         "and from zero on");
+  const double least = std::pow(pd::RaisedLine<double>::least, power);
+  expect(std::abs(profile.from(chord).value - least) < 1e-6 * least, "which begins at the power");
+  expect(profile.from(3.0).value == profile.from(9.0).value && profile.from(3.0).steady() &&
+             check::near(profile.first(), 1, 1e-15) &&
+             check::near(profile.from(3.0).value, std::pow(4, power), 1e-15),
+         "a constant is raised as well");
+  expect(profile.given_from(1.5).value == 0.5 && profile.turns(1.5, 2.5) && !profile.turns(1, 1.9),
+         "what it is made of is known");
+  const pd::Profile<double> one = pd::Profile<double>(times, values, 3).to_the(1);
+  expect(one.straight() && one.from(1.5).straight(), "a power of 1 is a line");
+}
+
 void transitions() {
   const auto stick = ContactState::stick, back = ContactState::slip_backward,
              on = ContactState::slip_forward, skin = ContactState::elastic_stick;
@@ -64,6 +97,7 @@ void transitions() {
 int main() {
   curves();
   inputs();
+  raised_inputs();
   transitions();
   return check::status();
 }

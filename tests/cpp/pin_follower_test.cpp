@@ -71,7 +71,12 @@ struct Setting {
                hand.page.path(),
                plate,
                {hand.touch_times.data(), hand.touches.data(), hand.touches.size()},
-               0} {}
+               0} {
+    if (random() % 2 == 0) device.pressing.touch = 0.02;
+    if (!device.drive.finger.rigid() || random() % 2 == 0) return;
+    device.load_exponent = random() % 2 == 0 ? 2.0 / 3 : 1.5;
+    inputs.finger_load = inputs.finger_load.to_the(device.load_exponent);
+  }
   Setting(const Setting&) = delete;
   Setting& operator=(const Setting&) = delete;
 };
@@ -165,7 +170,9 @@ void a_scan_in_two_parts() {
     const double begin = other.begin();
     std::vector<double> later = s.hand.touch_times;
     for (double& time : later) time -= begin;
-    const pd::Profile<double> touch(later.data(), s.hand.touches.data(), later.size());
+    const pd::Profile<double> touch =
+        pd::Profile<double>(later.data(), s.hand.touches.data(), later.size())
+            .to_the(s.device.load_exponent);
     device::PinRun run;
     run.energise({s.device, s.inputs.raster, one, first, s.inputs.finger_load, 0}, 0, {}, 1U << 20);
     run.simulate({s.device, s.inputs.raster, one, first, s.inputs.finger_load, 0}, {},

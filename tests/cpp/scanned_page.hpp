@@ -28,7 +28,8 @@ inline pindrive::device::Device device_with(double skin = std::numeric_limits<do
   pindrive::Drive<double> drive{0.005, 200, 1.2, {0.006, 0.007}, {0.008, 0.009}};
   drive.finger.stiffness = skin;
   return {drive,
-          0.05,
+          {0.05},
+          1,
           pindrive::device::Electromagnet<double>({2, 0, 1, 1e-3, 2e-3}),
           {1000, 0.002, 0.5, 0.1},
           pindrive::device::Axis(0),

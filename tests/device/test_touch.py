@@ -25,7 +25,7 @@ LIFTS = Profile([0.15, 0.17, 0.45, 0.5], [0.010, 0.0, 0.0, 0.030])
 
 def device(finger: Contact = RIGID, touch_force: float = 0.010, pins: int = 1) -> Device:
     return Device(
-        drive=drive(finger, touch_force=touch_force),
+        drive=drive(finger, touch_force=touch_force, touch_share=0.0),
         magnet=Electromagnet.from_times(hold_force=1.2),
         array=PinArray.grid(pins, 1, 0.002),
     )

@@ -75,11 +75,14 @@ damping_ratio = 0.5
 coefficient = 0.225
 static_coefficient = 0.27
 preload = "5 mN"
+touch_share = 0.6
 
 [finger]
 coefficient = 0.5
 static_coefficient = 0.6
 touch_force = "30 mN"
+load_exponent = 0.8
+reference_touch = "60 mN"
 
 [motion]
 displacement = "0 mm"
@@ -164,6 +167,32 @@ def test_commands_lead_to_what_a_scan_has(
         )
     print(f"{magnet}, FMI {version}: within {worst:.1e}, {astray} states gone back to")
     assert worst < 1e-12 and astray > 5
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_a_touch_that_changes_presses_on_the_plate_too(version: int, tmp_path: Path) -> None:
+    """Its friction follows by the exponent, and the load of the plate by its share."""
+    device, usual = scanned("times", tmp_path)
+    touch = Profile([0.0, 0.2, 0.35, 0.5], [0.030, 0.010, 0.050, 0.040])
+    (pin,) = scan(device, usual.scene, usual.path, touch=touch).pins
+    hand, load = pin.release.mouse_velocity, pin.finger_load
+    assert isinstance(hand, Profile) and isinstance(load, Profile)
+    unit = Unit(*unpacked(device, tmp_path / "pin.fmu", version)).begin(mouse_velocity=0.0)
+    switchings = pin.commands.times - pin.begin
+    stops, on = np.unique([*hand.times, *load.times, *switchings, pin.end - pin.begin]), False
+    size = np.abs(pin.position(np.linspace(pin.begin, pin.end, 500))).max()
+    for begin, end in pairwise(stops):
+        given = {}
+        for name, rows in (("mouse_velocity", hand), ("finger_load", load)):
+            ahead = rows(0.5 * (begin + end)) - rows(begin)
+            given |= {name: rows(begin), f"{name}_rate": 2.0 * ahead / (end - begin)}
+        unit.set(**given)
+        if begin in switchings:
+            on = not on
+            unit.command(magnet_on=on)
+        unit.step(end)
+        assert unit.get("position")[0] == pytest.approx(pin.position(end), abs=1e-9 * size)
+    assert len(pin.events) > 8
 
 
 @pytest.mark.parametrize("version", [2, 3])
@@ -390,7 +419,10 @@ def test_a_parameter_does_what_the_key_does(version: int, tmp_path: Path) -> Non
                 "plate.coefficient": 0.2,
                 "plate.static_coefficient": 0.25,  # the file would keep its ratio
                 "plate.preload": 0.02,
+                "plate.touch_share": 0.3,
                 "finger.touch_force": 0.01,
+                "finger.load_exponent": 0.7,
+                "finger.reference_touch": 0.1,
                 "motion.displacement": 0.0002,
                 "magnet.hold_force": 0.7,
                 "magnet.rise_time": 0.004,

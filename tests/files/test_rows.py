@@ -127,7 +127,8 @@ def test_file_written_from_its_values_is_equal(write: Write, tmp_path: Path) -> 
 
 UNITS = {"preload": "N", "mass": "kg", "damping": "N*s/m", "stiffness": "N/m", "curve": "N",
          "kinetic": "N", "static": "N", "displacement": "m", "duration": "s", "plate_load": "",
-         "finger_load": "", "force": "N", "settling_band": ""}  # fmt: skip
+         "finger_load": "", "force": "N", "settling_band": "", "touch_share": "",
+         "load_exponent": ""}  # fmt: skip
 
 
 def _toml(key: str, value: object) -> str:

@@ -240,8 +240,8 @@ def test_scan_of_a_letter(device: Path) -> None:
     result = run("scan", device, "--text", "A", "-o", "a.nc")
     assert result.exit_code == 0, result.output
     (line,) = result.stderr.splitlines()
-    assert line.startswith("warning: the pins push the hand with up to 1.04 N, more than 0.77 N")
-    assert "The pins push the hand with up to 1.04 N (at " in result.stdout
+    assert line.startswith("warning: the pins push the hand with up to 1.26 N, more than 0.77 N")
+    assert "The pins push the hand with up to 1.26 N (at " in result.stdout
     assert "Wrote a.nc" in result.stdout
     assert "The hand's path takes " in result.stdout
     reported = xr.load_dataset("a.nc", engine="h5netcdf")
@@ -356,6 +356,6 @@ def test_a_table_of_pins_cuts_no_number_off(device: Path) -> None:
     result = run("scan", device, "--grating", "4 mm", "--set", "hold_force=1 mN")
     assert result.exit_code == 0
     assert "…" not in result.stdout
-    assert "A magnet does not carry its pin: it holds with 2.918 mN of friction" in result.stdout
+    assert "A magnet does not carry its pin: it holds with 19.12 mN of friction" in result.stdout
     title = run("scan", device, "--text", r"a\nb").stdout.splitlines()[0]
     assert title.strip() == 'Pins, over text "a / b"'

@@ -27,6 +27,10 @@ DRIVE = Drive(**BODY, plate=PLATE, finger=FINGER, touch_force=0.010)
 RELEASE = Release(0.060, 2e-3)
 CURVE = ((0.0, 0.225), (0.05, 0.15))
 CURVED = replace(DRIVE, plate=Contact(static_coefficient=0.27, coefficient_curve=CURVE))
+PRESSED = 0.010 * G + 0.010
+"""Weight and touch: the finger presses the pin on the plate."""
+LIGHT = replace(DRIVE, load_exponent=2 / 3, reference_touch=0.080, touch_share=0.5)
+"""Half of the touch is on the plate, and its friction falls less than the touch."""
 
 FILE = """
 [drive]
@@ -66,22 +70,45 @@ def by_force(drive: Drive) -> Drive:
 
 
 def test_forces_are_coefficients_times_what_presses() -> None:
-    weight = 0.010 * G
-    assert forces(DRIVE) == pytest.approx((0.225 * weight, 0.27 * weight, 0.005, 0.0075))
-    assert DRIVE.normal_force == pytest.approx(weight)
+    assert forces(DRIVE) == pytest.approx((0.225 * PRESSED, 0.27 * PRESSED, 0.005, 0.0075))
+    assert DRIVE.normal_force == pytest.approx(PRESSED)
     pressed = DRIVE.replace(preload="50 mN", touch_force=0.020)
-    assert forces(pressed) == pytest.approx(
-        (0.225 * (weight + 0.05), 0.27 * (weight + 0.05), 0.010, 0.015)
-    )
-    assert CURVED.plate.curve == ((0.0, 0.225 * weight), (0.05, 0.15 * weight))
+    normal = PRESSED + 0.05 + 0.010
+    assert forces(pressed) == pytest.approx((0.225 * normal, 0.27 * normal, 0.010, 0.015))
+    assert CURVED.plate.curve == ((0.0, 0.225 * PRESSED), (0.05, 0.15 * PRESSED))
     assert np.isnan(PLATE.kinetic)  # the weight is not known
+
+
+def test_the_plate_has_a_share_of_the_touch() -> None:
+    weight = 0.010 * G
+    for share in (0.0, 0.25, 1.0):
+        drive = replace(DRIVE, touch_share=share)
+        assert drive.normal_force == pytest.approx(weight + share * 0.010)
+        assert drive.plate.kinetic == pytest.approx(0.225 * (weight + share * 0.010))
+        assert drive.by_forces.normal_force == pytest.approx(drive.normal_force)
+    without = Drive(**BODY, plate=PLATE, finger=Contact(0.005))
+    assert without.normal_force == pytest.approx(weight)
+    assert Coefficients.of(DRIVE).pressing == "weight and touch"
+    assert Coefficients.of(DRIVE.replace(preload=0.1)).pressing == "weight, preload and touch"
+
+
+def test_friction_of_the_finger_over_its_touch() -> None:
+    eighth = LIGHT.finger.kinetic  # of the reference, with a quarter of the friction
+    assert eighth == pytest.approx(0.5 * 0.080 / 4, rel=1e-14)
+    assert LIGHT.finger.static_friction == pytest.approx(1.5 * eighth, rel=1e-14)
+    for exponent in (0.1, 1.0, 2.0):
+        at_reference = replace(LIGHT, load_exponent=exponent, touch_force=0.080)
+        assert at_reference.finger.kinetic == pytest.approx(0.040, rel=1e-14)
+    assert replace(LIGHT, load_exponent=1.0).finger.kinetic == 0.5 * 0.010
+    assert replace(LIGHT, touch_force=0.0).finger.kinetic == 0.0
 
 
 def test_friction_follows_mass_where_it_is_a_coefficient_and_not_where_it_is_a_force() -> None:
     fixed = by_force(DRIVE)
     for mass in (0.005, 0.020):
         heavier = replace(DRIVE, mass=mass)
-        assert forces(heavier)[:2] == pytest.approx((0.225 * mass * G, 0.27 * mass * G))
+        normal = mass * G + 0.010
+        assert forces(heavier)[:2] == pytest.approx((0.225 * normal, 0.27 * normal))
         assert forces(heavier)[2:] == forces(DRIVE)[2:]
         assert forces(replace(fixed, mass=mass)) == forces(DRIVE)
         assert Coefficients.of(heavier).kinetic == pytest.approx(0.225)
@@ -99,7 +126,7 @@ def test_a_magnet_adds_its_pull_to_weight_and_preload() -> None:
     drive = DRIVE.replace(preload=0.05)
     device = Device(drive=drive, magnet=Electromagnet(hold_force=1.0))
     held = drive.plate.static_friction * device.load(1.0)
-    assert held == pytest.approx(0.27 * (0.010 * G + 0.05 + 1.0))
+    assert held == pytest.approx(0.27 * (PRESSED + 0.05 + 1.0))
 
 
 # ---- derivatives ---------------------------------------------------------------------------------
@@ -108,6 +135,9 @@ CHANGED: dict[str, Callable[[Drive, float], Drive]] = {
     "mass": lambda d, f: replace(d, mass=d.mass * f),
     "preload": lambda d, f: replace(d, preload=d.preload * f),
     "touch_force": lambda d, f: replace(d, touch_force=(d.touch_force or 0.0) * f),
+    "touch_share": lambda d, f: replace(d, touch_share=d.touch_share * f),
+    "load_exponent": lambda d, f: replace(d, load_exponent=d.load_exponent * f),
+    "reference_touch": lambda d, f: replace(d, reference_touch=(d.reference_touch or 0.0) * f),
     "plate_coefficient": lambda d, f: replace(d, plate=scaled(d.plate, "coefficient", f)),
     "plate_static_coefficient": lambda d, f: replace(
         d, plate=scaled(d.plate, "static_coefficient", f)
@@ -128,9 +158,14 @@ def scaled(contact: Contact, name: str, factor: float) -> Contact:
 @pytest.mark.parametrize("curved", [False, True])
 def test_derivatives_are_the_limits_of_differences(name: str, curved: bool) -> None:
     base = replace(CURVED if curved else DRIVE, preload=0.02)
+    if name in ("touch_force", "touch_share", "load_exponent", "reference_touch"):
+        light = {n: getattr(LIGHT, n) for n in ("touch_share", "load_exponent", "reference_touch")}
+        base = replace(base, **light)
     if curved and name == "plate_static_coefficient":
         base = replace(base, plate=Contact(static_coefficient=0.27, coefficient=0.225))
     size = {"mass": 0.010, "preload": 0.02, "touch_force": 0.010}.get(name)
+    if name in ("touch_share", "load_exponent", "reference_touch"):
+        size = getattr(base, name)
     if size is None:
         table, part = re.split("[._]", name, maxsplit=1)
         size = getattr(getattr(base, table), part)
@@ -155,7 +190,7 @@ def test_a_parameter_that_the_drive_has_not_is_refused() -> None:
     motion = simulate(replace(DRIVE, plate=Contact(0.02)), RELEASE)
     with pytest.raises(ValueError, match="parameter must be one that this motion was given"):
         motion.sensitivity(["plate_coefficient"])
-    with pytest.raises(ValueError, match=r"one of mass, .*touch_force, or a row"):
+    with pytest.raises(ValueError, match=r"one of mass, .*touch_force, .* or a row"):
         motion.sensitivity(["coefficient"])
 
 
@@ -175,6 +210,21 @@ def test_a_batch_of_masses_coefficients_and_touches_is_that_of_single_motions() 
         *("ok", "ok", "bad_plate_kinetic", "bad_plate_kinetic"),
     ]
     assert over.plate_coefficient.attrs["symbol"] == "μ_p"
+
+
+def test_a_batch_of_shares_and_exponents_is_that_of_single_motions() -> None:
+    varied = {
+        "touch_share": [0.0, 0.5, 1.0, 1.0],
+        "load_exponent": [1.0, 0.5, 2 / 3, 1.5],
+        "reference_touch": [0.01, 0.02, 0.08, 0.02],
+    }
+    found = simulate_batch(DRIVE, RELEASE, **varied)
+    for i, each in enumerate(zip(*varied.values(), strict=True)):
+        drive = replace(DRIVE, **dict(zip(varied, each, strict=True)))
+        single = simulate(drive, RELEASE).transient.settling_time
+        assert float(found.transient_settling_time[i]) == pytest.approx(single, rel=1e-12)
+    with pytest.raises(ValueError, match="reference_touch must be given where the load exponent"):
+        simulate_batch(DRIVE, RELEASE, load_exponent=[1.0, 0.5])
 
 
 def test_a_batch_refuses_a_coefficient_beside_a_force() -> None:
@@ -229,6 +279,24 @@ def test_a_batch_refuses_a_coefficient_beside_a_force() -> None:
             "0.01 N",
         ),
         (
+            lambda: replace(DRIVE, load_exponent=0.5),
+            "reference_touch must be given where the load exponent is not 1, as the touch at which "
+            "the coefficients hold, got none",
+        ),
+        (
+            lambda: Drive(**BODY, plate=PLATE, finger=Contact(0.005), reference_touch=0.01),
+            "reference_touch must be left out where the finger's friction is given as a force, got "
+            "0.01 N",
+        ),
+        (
+            lambda: replace(LIGHT, load_exponent=0.0),
+            "load_exponent must be finite and at least 0.1 and at most 2, got 0.0",
+        ),
+        (
+            lambda: replace(DRIVE, touch_share=1.5),
+            "touch_share must be finite and at least 0 and at most 1, got 1.5",
+        ),
+        (
             lambda: replace(DRIVE, touch_force=-0.01),
             "touch_force must be finite and at least 0 N, got -0.01 N",
         ),
@@ -262,6 +330,10 @@ def test_a_file_has_the_drive_of_its_coefficients() -> None:
     assert values["plate.kinetic"] == DRIVE.plate.kinetic
     assert (values["finger.touch_force"], values["plate.preload"]) == (0.010, 0.0)
     heavier = load_device("device.toml", {"mass": "20 g", "touch_force": "20 mN"}).drive
+    assert load_device(
+        "device.toml",
+        {"load_exponent": 2 / 3, "finger.reference_touch": "80 mN", "plate.touch_share": 0.5},
+    ).drive == LIGHT
     assert forces(heavier) == pytest.approx([2.0 * force for force in forces(DRIVE)])
     # Static friction and the skin's stretch keep their ratio.
     kept = load_device("device.toml", {"plate.coefficient": 0.45})
@@ -269,7 +341,8 @@ def test_a_file_has_the_drive_of_its_coefficients() -> None:
     Path("device.toml").write_text(WITH_CURVE)
     curved = load_device("device.toml", {"plate.coefficient": 0.45, "mass": 0.02}).drive.plate
     assert curved.coefficient_curve == ((0.0, 0.45), (0.05, 0.3))
-    assert curved.curve == ((0.0, 0.45 * 0.02 * G), (0.05, 0.3 * 0.02 * G))
+    normal = 0.02 * G + 0.010
+    assert curved.curve == ((0.0, 0.45 * normal), (0.05, 0.3 * normal))
 
 
 @pytest.mark.usefixtures("folder")

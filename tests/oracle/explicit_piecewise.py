@@ -73,12 +73,14 @@ class ExplicitModes:
         self.plate, self.finger = Law(inputs["plate"]), Law(inputs["finger"])
         self.soft = not self.finger.absent and self.finger.stiffness < inf
         self.mouse, self.load = (np.array(inputs[n], float).T for n in ("mouse_velocity", "load"))
-        self.pulls = inputs.get("load_pieces")  # begin, constant, terms (amplitude, decay)
+        # begin, value and rate of the line, terms (amplitude, decay)
+        self.pulls = inputs.get("load_pieces")
         if self.pulls:
-            values = [constant + sum(a for a, _ in terms) for _, constant, terms in self.pulls]
+            values = [value + sum(a for a, _ in terms) for _, value, _, terms in self.pulls]
             self.load = np.array([[begin for begin, *_ in self.pulls], values])
         self.push = np.array(inputs.get("force", [[0.0, 0.0]]), float).T
-        self.touch = np.array(inputs.get("touch", [[0.0, 1.0]]), float).T  # no steps, no skin
+        self.touch = np.array(inputs.get("touch", [[0.0, 1.0]]), float).T  # no steps
+        self.power = float(inputs.get("touch_power", 1.0))
         self.across = np.array(inputs.get("across", [[0.0, 0.0]]), float).T
         self.oblique = bool(self.across[1].any())  # then it never is 0
         self.samples, self.tool = list(samples), tool
@@ -127,12 +129,13 @@ class ExplicitModes:
 
     def load_at(self, t: float) -> float:
         if self.pulls:
-            begin, constant, terms = self.pull
-            return float(constant + sum(a * exp(-d * (t - begin)) for a, d in terms))
+            begin, value, rate, terms = self.pull
+            fading = sum(a * exp(-d * (t - begin)) for a, d in terms)
+            return float(value + rate * (t - begin) + fading)
         return float(self.lam + self.rise * (t - self.t0))
 
     def touch_at(self, t: float) -> float:
-        return float(np.interp(t, *self.touch))
+        return float(np.interp(t, *self.touch) ** self.power)
 
     # -- forces on the pin ---------------------------------------------------------------------
 
@@ -166,11 +169,11 @@ class ExplicitModes:
         """The tension of skin that grips."""
         return float(self.finger.stiffness * s + self.finger.damping * v)
 
-    def stretching(self, v: float, s: float) -> float:
-        """The rate of the stretch: of damped skin that slips, under constant friction."""
+    def stretching(self, t: float, v: float, s: float) -> float:
+        """The rate of the stretch: of damped skin that slips, under Coulomb friction."""
         if self.grips or not self.finger.damping:
             return v if self.grips else 0.0
-        pull = self.f * self.finger(0, 0.0) - self.finger.stiffness * s
+        pull = self.f * self.touch_at(t) * self.finger(0, 0.0) - self.finger.stiffness * s
         return float(pull / self.finger.damping)
 
     def free(self, t: float, x: float, v: float) -> float:
@@ -197,7 +200,7 @@ class ExplicitModes:
 
     def rhs(self, t: float, y: State) -> list[float]:
         v = 0.0 if self.on_finger else self.mouse_at(t) if self.on_plate else y[1]
-        return [v, self.acceleration(t, y), self.stretching(v, y[2])]
+        return [v, self.acceleration(t, y), self.stretching(t, v, y[2])]
 
     # -- what ends a mode ----------------------------------------------------------------------
 
@@ -233,7 +236,7 @@ class ExplicitModes:
     def rubbing(self, t: float, y: State) -> float:
         """The speed of sliding at the finger."""
         v = self.moving(t, y)
-        slips = v - self.stretching(v, y[2]) if self.finger.damping else v
+        slips = v - self.stretching(t, v, y[2]) if self.finger.damping else v
         return float(self.f * slips)
 
     def plate_static(self, t: float) -> float:

@@ -78,6 +78,7 @@ def _inputs(pin: PinScan) -> dict[str, Any]:
         "load": [[0.0, load]] if isinstance(load, float) else [],
         "load_pieces": None if isinstance(load, float) else [*map(_pull, load.pieces)],
         "touch": touch.rows if isinstance(touch, Profile) else [[0.0, touch]],
+        "touch_power": motion.drive.load_exponent,
         "across": across.rows if isinstance(across, Profile) else [[0.0, across]],
         "displacement": 0.0,
         "velocity": 0.0,
@@ -85,8 +86,9 @@ def _inputs(pin: PinScan) -> dict[str, Any]:
     }
 
 
-def _pull(piece: InputPiece) -> tuple[float, float, list[tuple[float, float]]]:
-    return piece.begin, piece.polynomial[0], [(term.cosine, term.decay) for term in piece.terms]
+def _pull(piece: InputPiece) -> tuple[float, float, float, list[tuple[float, float]]]:
+    value, rate = (*piece.polynomial, 0.0)[:2]
+    return piece.begin, value, rate, [(term.cosine, term.decay) for term in piece.terms]
 
 
 def _contact(surface: Contact) -> dict[str, Any]:

@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 
-from pindrive import Contact, Drive, Profile, Release, simulate
+from pindrive import Contact, Drive, Profile, Release, simulate, simulate_batch
 from pindrive.paper import as_printed, formulas, maps, population
 from pindrive.paper.claims_of_analysis import has_closed_form
 from pindrive.paper.equations import damping_ratio, where_good
@@ -222,7 +222,9 @@ def test_the_curves_are_the_simulations(made: Report) -> None:
             at = {"parameter": parameter.argument}
             value = float(time.value.sel(at).isel(point=point))
             p = base | {parameter.argument: value}
-            p["finger_kinetic"] = 0.5 * p.get("touch_force", 0.01)
+            touch = p.get("touch_force", 0.01)
+            p["finger_kinetic"] = 0.5 * touch
+            p["plate_kinetic"] *= (0.01 * 9.80665 + touch) / (0.01 * 9.80665 + 0.01)
             fall = p.get("fall_time", 0.0)
             drive = Drive(
                 mass=p["mass"],
@@ -244,7 +246,7 @@ def test_the_curves_are_the_simulations(made: Report) -> None:
             mass=mass,
             stiffness=100.0,
             damping=0.32,
-            plate=Contact(0.022 * mass / 0.01),
+            plate=Contact(0.022 * (mass * 9.80665 + 0.01) / (0.01 * 9.80665 + 0.01)),
             finger=Contact(0.005),
         )
         numbers = simulate(heavy, Release(0.06, 2e-3)).transient
@@ -267,6 +269,28 @@ def test_load_and_fall_of_the_pull(made: Report) -> None:
     for e in ("time", "displacement"):
         rows = [row[0] for row in made.exhibits[f"influence-on-{e}"].table]
         assert "mass, friction follows the weight" in rows
+
+
+def test_what_the_share_of_the_touch_changes() -> None:
+    """The figures of the sentence on the supporting surface."""
+    touches = np.linspace(1e-3, 0.04, 40)
+    times, ways = [], []
+    for share in (0.0, 1.0):
+        coefficient = 0.022 / (0.01 * 9.80665 + share * 0.01)
+        pressed = Drive(
+            mass=0.01,
+            stiffness=100.0,
+            damping=0.32,
+            plate=Contact(coefficient=coefficient),
+            finger=Contact(coefficient=0.5),
+            touch_force=0.01,
+            touch_share=share,
+        )
+        found = simulate_batch(pressed, Release(0.06, 2e-3), touch_force=touches)
+        times.append(found.transient_settling_time.to_numpy())
+        ways.append(found.transient_peak_displacement.to_numpy())
+    assert np.abs(times[0] / times[1] - 1.0).max() == pytest.approx(0.09, abs=0.01)
+    assert np.abs(ways[0] / ways[1] - 1.0).max() == pytest.approx(0.0011, abs=1e-4)
 
 
 def test_the_maps_are_the_simulations(made: Report) -> None:

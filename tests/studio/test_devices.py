@@ -277,11 +277,14 @@ def read(node: Ask, texts: list[str]) -> list[Any]:
 
 BY_COEFFICIENTS = (
     template()
-    .replace('kinetic = "22 mN"', 'coefficient = 0.2\npreload = "30 mN"', 1)
+    .replace(
+        'kinetic = "22 mN"', 'coefficient = 0.2\npreload = "30 mN"\ntouch_share = 0.7', 1
+    )
     .replace('static = "26.5 mN"', "static_coefficient = 0.3", 1)
     .replace(
         'kinetic = "5 mN"',
-        'coefficient = 0.5\ntouch_force = "12 mN"\nstiffness = "1000 N/m"',
+        'coefficient = 0.5\ntouch_force = "12 mN"\nload_exponent = 0.8\n'
+        'reference_touch = "40 mN"\nstiffness = "1000 N/m"',
         1,
     )
     .replace('static = "7.5 mN"', "static_coefficient = 0.75", 1)
@@ -445,6 +448,7 @@ def test_followers_of_a_set_value_equal_python(node: Ask, tmp_path: Path, text: 
         ("drive.mass", "plate.preload"),
         ("drive.mass", "plate.coefficient"),
         ("finger.touch_force", "plate.preload"),
+        ("finger.touch_force", "finger.reference_touch"),
         ("finger.coefficient", "finger.touch_force"),
         ("drive.travel", "drive.stop_stiffness"),
     ],

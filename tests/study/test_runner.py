@@ -102,7 +102,7 @@ def test_file_has_all_results() -> None:
         assert set(data.coords) == {
             *("mass", "stiffness", "damping", "plate_kinetic", "finger_kinetic"),
             *("preload", "mouse_velocity", "displacement", "plate_load", "settling_band"),
-            *("force", "across_velocity", "finger_load"),
+            *("force", "across_velocity", "finger_load", "touch_share", "load_exponent"),
         }
         assert data.transient_plate_reversals.notnull().all()
         assert "transient_peak_stretch" not in data, "the finger is rigid"

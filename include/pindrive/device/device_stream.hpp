@@ -96,7 +96,8 @@ class DeviceStream {
 
  private:
   ScanInputs inputs(const Raster& raster) const {
-    return {device_, raster, hand_.path(), hand_.plate(), hand_.finger_load(), hand_.begin()};
+    return {device_,      raster, hand_.path(), hand_.plate(), hand_.touch(device_.load_exponent),
+            hand_.begin()};
   }
 
   const Device& device_;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "pindrive/device/hand_path.hpp"
+#include "pindrive/device/pressing.hpp"
 #include "pindrive/device/printed_lines.hpp"
 #include "pindrive/model/model.hpp"
 #include "pindrive/motion/motion.hpp"
@@ -83,7 +84,8 @@ struct ScanSetting {
   const Way* way;
   const std::vector<double>* turnings;  ///< stops and turns of the path, s
   double latency;                       ///< latency of the control block, s
-  double residual_load;  ///< factor of the plate friction of a magnet that is switched off
+  Pressing<double> pressing;
+  double residual;  ///< pull of a magnet that is switched off, N
   Criteria criteria;
 };
 

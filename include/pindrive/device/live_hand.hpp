@@ -17,7 +17,7 @@ class LiveHand {
   struct Row {
     double time;         ///< s
     Vector velocity;     ///< m/s
-    double finger_load;  ///< factor of the finger friction
+    double finger_load;  ///< touch over the usual one
   };
 
   /// Hand that begins at a place.
@@ -58,7 +58,8 @@ class LiveHand {
     return {times_.data(), vx_.data(), vy_.data(), x_.data(), y_.data(), times_.size()};
   }
   const PlateVelocity& plate() const { return plate_; }
-  Profile<double> finger_load() const { return plate_.profile(loads_); }
+  /// Touch over the usual one, to the power of its friction.
+  Profile<double> touch(double power) const { return plate_.profile(loads_).to_the(power); }
 
  private:
   void add(const Row& row, Place place, const Axis& axis) {

@@ -183,8 +183,9 @@ class PinEvaluation {
 
   /// Deflection at which the spring balances the dragging plate, m; 0 in stick on the finger.
   double drag(double t) const {
-    const double pressed = pin_.motion->inputs().finger_load.from(t).value;
-    return drag_of_plate(drive_, drive_.plate.kinetic * setting_.residual_load, pressed);
+    const Profile<double>& touch = pin_.motion->inputs().finger_load;
+    const double load = setting_.pressing.load(setting_.residual, touch.given_from(t).value);
+    return drag_of_plate(drive_, drive_.plate.kinetic * load, touch.from(t).value);
   }
 
   /// True if the pin had not come back from the pull before when a pull moved it on.

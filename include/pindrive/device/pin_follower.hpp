@@ -39,7 +39,7 @@ class PinFollower {
         sampled_(begin_),
         decision_(from.decision),
         pending_(from.pending),
-        stepper_(from.motion ? Stepper<double>(device_->drive, *from.motion)
+        stepper_(from.motion ? Stepper<double>(device_->drive, *from.motion, begun(scan))
                              : Stepper<double>(device_->drive, release(scan, from))) {
     pass(scan, 0, {});
   }
@@ -51,7 +51,7 @@ class PinFollower {
         passed_(state.passed),
         decision_(state.decision),
         pending_(state.pending),
-        stepper_(device_->drive, state.motion) {}
+        stepper_(device_->drive, state.motion, begun(scan)) {}
   PinFollower(const PinFollower&) = delete;
   PinFollower& operator=(const PinFollower&) = delete;
 
@@ -109,16 +109,26 @@ class PinFollower {
     const Held<double> along = detail::held_from(0.0, plate.along().from(0));
     Inputs<double> inputs{
         along,    from.position, std::isnan(from.velocity) ? along.line.value : from.velocity,
-        infinity, load(),        scan.held_stretch(from.stretch)};
+        infinity, load(scan, 0), scan.held_stretch(from.stretch)};
     inputs.across_velocity = detail::held_from(0.0, plate.across().from(0));
-    inputs.finger_load = {0, scan.finger_load.from(0).line()};
+    inputs.finger_load = begun(scan).finger_load;
     return inputs;
   }
-  /// Load by the present piece of the pull.
-  Held<double> load() {
-    load_ = load_under(coil_.pull_piece(), device_->normal_force, begin_);
-    if (load_.piece.straight()) return {load_.piece.polynomial[0]};
-    return Held<double>(load_.piece);
+  /// The touch at the begin, with the power of its friction.
+  static Inputs<double> begun(const ScanInputs& scan) {
+    Inputs<double> inputs{0.0, 0, 0};
+    const Profile<double> touch(0, scan.finger_load.given_from(0).line());
+    inputs.finger_load = touch.to_the(scan.finger_load.power());
+    return inputs;
+  }
+  /// Load by the present piece of the pull and the touch at a time, s since the begin; `turns`: at a row of the touch.
+  Held<double> load(const ScanInputs& scan, double time, bool turns = false) {
+    const LineSince<double> touch = scan.touch(time);
+    load_ = device_->pressing.load_under(coil_.pull_piece(), begin_, touch);
+    if (turns) load_ = later(load_, touch.since);
+    const InputPiece<double>& piece = load_.piece;
+    if (!piece.straight()) return Held<double>(piece);
+    return {piece.begin, {piece.polynomial[0], piece.polynomial[1]}};
   }
   /// A coil beyond the changes until a time since the begin, s.
   static Coil<double> passed(Coil<double> coil, double begin, double time) {
@@ -150,13 +160,15 @@ class PinFollower {
       else
         coil_.pass(at);
     }
-    if (pulls) lines.plate_load = load().from(time);
-    if (scan.next_row(passed_) <= time) {
+    const bool rows = scan.next_row(passed_) <= time;
+    if (rows) {
       const PlateVelocity& plate = scan.plate;
       lines.plate_velocity = plate.along().from(time);
       lines.across_velocity = plate.across().from(time);
-      lines.finger_load = scan.finger_load.from(time);
+      lines.finger_load = scan.finger_load.given_from(time);
     }
+    const bool turns = !pulls && device_->pressing.touch != 0 && rows && scan.finger_load.turns(passed_, time);
+    if (pulls || turns) lines.plate_load = load(scan, time, turns).from(time);
     passed_ = time;
     // A switching that is due may be known or not, by the times at which the caller pauses.
     const double horizon = std::min(coil_.next() - begin_, scan.next_row(passed_));

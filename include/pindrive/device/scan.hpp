@@ -47,9 +47,7 @@ struct PinRun {
     coil.follow(scan.device.magnet, from.coil, switchings.data(), switchings.size(), begin, end,
                 most);
     if (coil.idle()) coil.end = from.coil;
-    owned.clear();
-    for (const PullPiece<double>& pull : coil.pulls)
-      owned.push_back(load_under(pull, scan.device.normal_force, begin));
+    owned = loads_under(coil.pulls, scan.device.pressing, begin, scan.finger_load);
     loads.clear();
     for (const OwnedPiece<double>& load : owned) loads.push_back(load.piece);
   }
@@ -77,7 +75,7 @@ struct PinRun {
     const Profile<double> along = plate.whole_along();
     const double velocity = std::isnan(from.velocity) ? along.from(0).value : from.velocity;
     Inputs<double> found{along, from.position, velocity, plate.end()};
-    if (loads.size() == 1 && loads[0].straight())
+    if (loads.size() == 1 && loads[0].straight() && loads[0].polynomial[1] == 0)
       found.plate_load = {loads[0].polynomial[0]};
     else
       found.plate_load = {loads.data(), loads.size()};

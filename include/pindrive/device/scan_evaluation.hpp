@@ -139,7 +139,8 @@ class ScanEvaluation {
                  &way_,
                  &turnings_,
                  scan.device.controller.latency,
-                 scan.device.load(scan.device.magnet.given().residual),
+                 scan.device.pressing,
+                 scan.device.magnet.given().residual,
                  criteria} {}
   ScanEvaluation(const ScanEvaluation&) = delete;
   ScanEvaluation& operator=(const ScanEvaluation&) = delete;

@@ -13,35 +13,27 @@
 #include "pindrive/device/controller.hpp"
 #include "pindrive/device/electromagnet.hpp"
 #include "pindrive/device/hand_path.hpp"
+#include "pindrive/device/pressing.hpp"
 #include "pindrive/device/raster.hpp"
 #include "pindrive/events/stepper_state.hpp"
 #include "pindrive/model/model.hpp"
 
 namespace pindrive::device {
 
-/// Factor of the friction of a plate with a normal force (N) under a piece of a pull, on a clock that begins at a
-/// time, s.
-template <class T>
-OwnedPiece<T> load_under(const PullPiece<T>& pull, T normal_force, T begin) {
-  OwnedPiece<T> found;
-  found.piece.begin = pull.begin - begin;
-  found.piece.polynomial[0] = 1 + pull.constant / normal_force;
-  if (pull.once != 0) found.add({pull.once / normal_force, T(0), pull.rate, T(0)});
-  if (pull.twice != 0) found.add({pull.twice / normal_force, T(0), 2 * pull.rate, T(0)});
-  return found;
-}
-
 /// Device whose pins are alike.
 struct Device {
   Drive<double> drive;
-  double normal_force;  ///< normal force of the plate without a pull, N
+  Pressing<double> pressing;
+  double load_exponent;  ///< of the finger friction over the touch
   Electromagnet<double> magnet;
   Controller controller;
   Axis axis;
   std::vector<Place> spots;  ///< offset of the spot of each pin from the hand, m
 
-  /// Factor of the plate friction under a pull, N.
-  double load(double pull) const { return 1 + pull / normal_force; }
+  /// Factor of the plate friction under a pull (N) and a touch, over the usual one.
+  double load(double pull, double touch = 1) const {
+    return pressing.load(pull, touch);
+  }
 };
 
 /// State of a pin, its coil and its control block at the begin of a scan.
@@ -144,13 +136,15 @@ struct ScanInputs {
   Raster raster;
   HandPath path;
   const PlateVelocity& plate;
-  Profile<double> finger_load;  ///< over the time since the begin
+  Profile<double> finger_load;  ///< touch over the usual one to the power of its friction, over the time since the begin
   double begin;                 ///< of the scan, s
 
   /// Luminance under the spot of a pin.
   double luminance(std::size_t pin, double t) const {
     return raster.at(path.position(t) + device.spots[pin]);
   }
+  /// Touch over the usual one at a time, s since the begin.
+  LineSince<double> touch(double time) const { return finger_load.given_line(time); }
   /// Time of the next row of the hand or the touch after a time, s since the begin.
   double next_row(double after) const {
     return std::min(plate.along().next_breakpoint(after), finger_load.next_breakpoint(after));

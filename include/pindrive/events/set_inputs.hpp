@@ -62,7 +62,8 @@ Inputs<T> continued(const StepperState<T>& state, const Inputs<T>& begun) {
                          state.pin.v, never, input(begun.plate_load, state.plate_load),
                          std::numeric_limits<T>::quiet_NaN(), input(begun.force, state.force),
                          input(begun.across_velocity, state.across_velocity),
-                         input(begun.finger_load, state.finger_load)});
+                         input(begun.finger_load, state.finger_load)
+                             .to_the(begun.finger_load.power())});
 }
 
 /// True if a number and its derivative are zero.
@@ -88,7 +89,7 @@ T change_to(const T& given, const Held<T>& held, T now) {
 template <class T>
 bool differs(const Curve<T>& given, const Profile<T>& input, T now) {
   if (input.has_breakpoints()) return false;
-  const Curve<T> continued = input.from(now);
+  const Curve<T> continued = input.given_from(now);
   if (!given.straight() || !continued.straight()) return given.piece != continued.piece;
   return !is_zero(change_to(given.value, input.held(), now)) ||
          !is_zero(given.rate - continued.rate);

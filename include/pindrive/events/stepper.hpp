@@ -105,7 +105,8 @@ class Stepper {
     return !stopped;
   }
 
-  /// Sets the inputs from now on, values and rates; a falling load stops at zero. The plate load may be a
+  /// Sets the inputs from now on, values and rates; a falling load stops at zero. The finger load is that before it
+  /// is raised to the power of the release's. The plate load may be a
   /// piece of a function with at most two terms, and so may a velocity, whose piece must outlive the stepper.
   ///
   /// A jump of the mouse velocity moves the housing in no time: the pin keeps its velocity relative
@@ -165,10 +166,11 @@ class Stepper {
   const Event& event() const { return event_; }  ///< transitions of the contacts now
   Mode mode() const { return segment_.mode; }    ///< mode of the contacts from now on
   const Drive<T>& drive() const { return drive_; }
+  /// Inputs now, as they are set.
   InputCurves<T> inputs() const {
     return {inputs_.mouse_velocity.from(now_), inputs_.plate_load.from(now_),
             inputs_.across_velocity.from(now_), inputs_.force.from(now_),
-            inputs_.finger_load.from(now_)};
+            inputs_.finger_load.given_from(now_)};
   }
 
   /// Present segment, its duration until now, and its inputs from its begin on.

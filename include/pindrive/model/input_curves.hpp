@@ -76,7 +76,7 @@ struct InputCurves {
  private:
   /// Time of which an input has the rounding, s: sinusoids have that of their phase.
   [[gnu::noinline]] static T resolved(const Curve<T>& input, T time) {
-    const auto fastest = input.straight() ? T(0) : T(input.piece->fastest());
+    const auto fastest = T(input.fastest());
     return fastest > 0 ? time + 1 / fastest : time;
   }
   /// True if both velocities are zero within the resolution of time.
@@ -90,7 +90,7 @@ struct InputCurves {
     using std::abs;
     if (input.straight()) return input.is_zero();
     const T known = input.rounding(), turns = detail::least_across<T> * time * abs(input.second());
-    return abs(input.value) <= known && abs(input.rate) <= known * input.piece->fastest() + turns;
+    return abs(input.value) <= known && abs(input.rate) <= known * input.fastest() + turns;
   }
 };
 

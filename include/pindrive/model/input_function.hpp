@@ -203,7 +203,8 @@ inline constexpr std::size_t beginning_orders = 9;
 
 }  // namespace detail
 
-/// Input from an instant on, until the next breakpoint: a line, or a part of a piece.
+/// Input from an instant on, until the next breakpoint: a line, a line that is raised to a power, or a part of a
+/// piece.
 template <class T>
 struct Curve {
   using Real = detail::Real<T>;
@@ -212,6 +213,8 @@ struct Curve {
   T value{0}, rate{0};
   const InputPiece<T>* piece{nullptr};  ///< null for a line
   T since{0};                           ///< time since the begin of the piece, s
+  T power{1};                           ///< of a raised line, > 0
+  bool raised{false};  ///< true for a line to a power: value·(1 + rate τ/(power·value))^power
 
   Curve() = default;
   constexpr Curve(T at, T change) noexcept : value(at), rate(change) {}
@@ -245,7 +248,17 @@ struct Curve {
     return rest.straight() ? rest : Curve(of, after);
   }
 
-  bool straight() const { return piece == nullptr; }
+  bool straight() const { return piece == nullptr && !raised; }
+  /// A line, which is not zero, raised to a power.
+  [[gnu::noinline]] Curve to_the(T exponent) const {
+    using detail::exp, detail::log;
+    Curve found;
+    found.value = exp(exponent * log(value));
+    found.rate = exponent * found.value / value * rate;
+    found.power = exponent;
+    found.raised = rate != 0;
+    return found;
+  }
   /// True if the value does not change.
   bool steady() const { return straight() && rate == 0; }
   /// True if the value is and remains zero.
@@ -254,14 +267,18 @@ struct Curve {
   Line<T> line() const { return {value, rate}; }
   PINDRIVE_INLINE T at(T tau) const {
     if (straight()) return value + rate * tau;
+    if (piece == nullptr) return value * growth(tau, power);
     return value + (piece->at(since + tau) - piece->at(since));
   }
-  T rate_at(T tau) const { return straight() ? rate : derivatives(tau)[1]; }
+  T rate_at(T tau) const {
+    if (straight()) return rate;
+    return piece == nullptr ? rate * growth(tau, power - 1) : derivatives(tau)[1];
+  }
   /// Sum of the sizes of its terms after τ.
   detail::Real<T> size(T tau) const {
     using std::abs;
     if (straight()) return abs(plain(value)) + abs(plain(rate * tau));
-    return piece->size(since + tau);
+    return raised ? abs(plain(at(tau))) + abs(plain(rate_at(tau) * tau)) : piece->size(since + tau);
   }
   /// Rounding of the value after τ: the terms of a function may cancel.
   detail::Real<T> rounding(T tau = T(0)) const {
@@ -274,11 +291,41 @@ struct Curve {
   template <std::size_t count>
   [[gnu::noinline]] std::array<T, count> coefficients() const {
     std::array<T, count> c{};
-    if (!straight()) piece->expand(since, T(1), c, static_cast<int>(count) - 1);
+    if (!straight()) expand(T(0), T(1), c, static_cast<int>(count) - 1);
     c[0] = value;
     c[1] = rate;
     return c;
   }
+  /// Computes the Taylor coefficients after τ up to an order, in the time σ = (t − τ)/step; not of a line.
+  template <std::size_t size>
+  void expand(T tau, T step, std::array<T, size>& c, int order) const {
+    if (piece != nullptr) return piece->expand(since + tau, step, c, order);
+    expand_raised(c.data(), tau, step, order);
+  }
+  /// Time after τ over which the Taylor terms beyond an order stay within rounding, s; not of a line.
+  Real reach(T tau, int order, Real longest) const {
+    using std::abs;
+    if (piece != nullptr) return piece->reach(since + tau, order, longest);
+    const Real part = abs(plain(relative_rate() / (1 + relative_rate() * tau)));
+    return raised_part / part;
+  }
+  /// Bound of the Taylor terms beyond an order, over a step within reach; not of a line.
+  Real beyond(Real step, int order) const {
+    using std::abs;
+    if (piece != nullptr) return piece->beyond(since, step, order);
+    const Real part = std::min(abs(plain(relative_rate())) * step, 2 * raised_part);
+    Real power_of{1};
+    for (int n = 0; n <= order; ++n) power_of *= part;
+    return abs(plain(value)) * power_of / (1 - part);
+  }
+  /// Largest rate of its terms, 1/s: bounds the rate of what is `beyond`.
+  Real fastest() const {
+    using std::abs;
+    if (straight()) return Real(0);
+    return raised ? most_orders * abs(plain(relative_rate())) / raised_part : piece->fastest();
+  }
+  /// True if it is a sum of at most so many terms beside a polynomial.
+  std::size_t terms() const { return piece == nullptr ? 0 : piece->count; }
   /// The same input from τ on.
   Curve from(T tau) const {
     Curve later = *this;
@@ -289,6 +336,21 @@ struct Curve {
   }
 
  private:
+  static constexpr Real raised_part{0.2};   ///< of the time to the zero of a raised line, in a step
+  static constexpr Real most_orders{64};
+
+  [[gnu::noinline]] void expand_raised(T* c, T tau, T step, int order) const {
+    const T part = relative_rate() / (1 + relative_rate() * tau) * step;
+    c[0] = at(tau);
+    for (int n = 0; n < order; ++n) c[n + 1] = c[n] * part * ((power - T(n)) / T(n + 1));
+  }
+  /// Rate of a raised line over its value, 1/s.
+  T relative_rate() const { return rate / (power * value); }
+  /// Ratio of a raised line's value after τ to that now, to another power of the line.
+  [[gnu::noinline]] T growth(T tau, T exponent) const {
+    using detail::exp, detail::log1p;
+    return exp(exponent * log1p(relative_rate() * tau));
+  }
   /// Corrects the value close to an extremum at which the function only touches zero, as its terms cancel there: the
   /// value follows from its derivatives. `known`: the rounding of the value.
   [[gnu::noinline]] void refine_beside_touch(Real known) {
@@ -312,7 +374,7 @@ struct Curve {
   }
   [[gnu::noinline]] std::array<T, 4> derivatives(T tau) const {
     std::array<T, 4> c;
-    piece->expand(since + tau, T(1), c, 3);
+    expand(tau, T(1), c, 3);
     c[2] *= T(2);
     c[3] *= T(6);
     return c;

@@ -33,7 +33,7 @@ class Sinusoids {
   /// Adds those of an input from a time on; false if the input neither repeats nor is constant.
   bool add(const Curve<T>& input) {
     constant_ = constant_ && input.steady();
-    if (input.straight()) return input.rate == 0;
+    if (input.piece == nullptr) return input.rate == 0;
     const InputPiece<T>& piece = *input.piece;
     for (int n = 1; n <= InputPiece<T>::degree; ++n)
       if (piece.polynomial[n] != 0) return false;
@@ -51,8 +51,7 @@ class Sinusoids {
 
   /// True if an input repeats after a number of periods of the slowest sinusoid.
   bool repeats(const Curve<T>& input, int periods) const {
-    if (input.straight()) return true;
-    for (std::size_t j = 0; j < input.piece->count; ++j) {
+    for (std::size_t j = 0; j < input.terms(); ++j) {
       const Real<T> turns = plain(input.piece->terms[j].frequency / slowest_) * periods;
       if (std::abs(turns - std::round(turns)) > 16 * rounding<Real<T>> * turns) return false;
     }

@@ -212,8 +212,46 @@ struct Held {
   T decayed() const { return since + piece->decayed(); }
 };
 
-/// Input over time: held, or linear between its breakpoints and constant outside, or a function of pieces.
-/// Owns no memory.
+/// Line from a time on, s.
+template <class T>
+struct LineSince {
+  T since{0};
+  Line<T> line{};
+};
+
+/// Line >= 0 that is raised to a power; a chord close to zero.
+///
+/// The rate of a power has no bound where the line is zero. Below `least` of the usual load the power is its chord from
+/// zero, which changes the impulse of the friction by less than 1e-11 of that at the usual load.
+template <class T>
+struct RaisedLine {
+  static constexpr double least{1e-10};
+
+  LineSince<T> of;
+  T power;
+
+  /// From a time on at which the value of the line is known.
+  Curve<T> at(T t, const T& value) const {
+    const T& rate = of.line.rate;
+    const bool below = rate == 0 ? value < least : (t < passes_least()) == (rate > 0);
+    if (!below) return Curve<T>(std::max(value, T(least)), rate).to_the(power);
+    const T chord = Curve<T>(T(least), T(0)).to_the(power).value / least;
+    return {chord * std::max(value, T(0)), chord * rate};
+  }
+  /// Time at which the chord begins or ends, s; infinite if never after t.
+  T next_breakpoint(T t) const {
+    constexpr T never = std::numeric_limits<T>::infinity();
+    if (of.line.rate == 0) return never;
+    const T time = passes_least();
+    return t < time ? time : never;
+  }
+
+ private:
+  T passes_least() const { return of.since + (least - of.line.value) / of.line.rate; }
+};
+
+/// Input over time: held, or linear between its breakpoints and constant outside, or a function of pieces; may be
+/// raised to a power if it is not a function. Owns no memory.
 template <class T>
 class Profile {
  public:
@@ -231,31 +269,57 @@ class Profile {
 
   /// Input from time t on, until the next breakpoint.
   PINDRIVE_INLINE Curve<T> from(T t) const {
+    return raised() ? raised_from(t) : given_from(t);
+  }
+  /// The same before it is raised to a power.
+  PINDRIVE_INLINE Curve<T> given_from(T t) const {
     if (count_ == 0) return held_.from(t);
     const std::size_t i = breakpoints_until(t);
     if (pieces_ != nullptr) return part_of_function(i, t);
-    if (i == 0) return {first(), T(0)};
+    if (i == 0) return {held_.line.value, T(0)};
     if (i == count_) return {values_[count_ - 1], T(0)};
-    const T rate = (values_[i] - values_[i - 1]) / (times_[i] - times_[i - 1]);
+    const Line<T> line = between(i);
     const T after = t - times_[i - 1];  // a time after a row within rounding is at the row
-    return {after > detail::rounding<T> * t ? values_[i - 1] + rate * after : values_[i - 1], rate};
+    return {after > detail::rounding<T> * t ? line.at(after) : line.value, line.rate};
+  }
+  /// The line at time t of an input that is not a function, before it is raised to a power.
+  [[gnu::noinline]] LineSince<T> given_line(T t) const {
+    if (count_ == 0) return t < held_.ends ? LineSince<T>{held_.since, held_.line} : LineSince<T>{};
+    const std::size_t i = breakpoints_until(t);
+    if (i == 0) return {times_[0], {values_[0], T(0)}};
+    return {times_[i - 1], i == count_ ? Line<T>{values_[i - 1], T(0)} : between(i)};
+  }
+  /// True if the line at a time is not that at an earlier one, beyond rounding.
+  bool turns(T before, T t) const {
+    using std::abs;
+    const LineSince<T> was = given_line(before), is = given_line(t);
+    const T value = was.line.at(is.since - was.since);
+    return is.line.rate != was.line.rate ||
+           abs(is.line.value - value) > detail::rounding<T> * abs(value);
   }
   /// First breakpoint after time t, s; infinite without one.
   T next_breakpoint(T t) const {
-    if (count_ == 0) return held_.next_breakpoint(t);
-    const std::size_t i = breakpoints_until(t);
-    constexpr T never = std::numeric_limits<T>::infinity();
-    if (pieces_ == nullptr) return i == count_ ? never : times_[i];
-    const T next = i == count_ ? never : pieces_[i].begin;
-    if (i == 0) return next;
-    const T decayed = pieces_[i - 1].begin + pieces_[i - 1].decayed();
-    return t < decayed ? std::min(next, decayed) : next;
+    return raised() ? next_of_raised(t) : next_given(t);
   }
   bool constant() const { return constant_; }           ///< the input is one number and remains so
-  bool straight() const { return pieces_ == nullptr; }  ///< linear between breakpoints
+  /// True if it is linear between breakpoints.
+  bool straight() const { return pieces_ == nullptr && (constant_ || !raised()); }
   /// True if the input is made of rows or pieces, and so changes by itself.
   bool has_breakpoints() const { return count_ > 0; }
-  T first() const { return held_.line.value; }  ///< value before the first breakpoint
+  /// Value before the first breakpoint.
+  T first() const {
+    return raised() ? RaisedLine<T>{{}, power_}.at(T(0), given_first()).value : given_first();
+  }
+  /// The same before it is raised to a power.
+  T given_first() const { return held_.line.value; }
+
+  /// The input raised to a power > 0, unless it is a function.
+  Profile to_the(const T& power) const {
+    Profile found = *this;
+    if (pieces_ == nullptr) found.power_ = power;
+    return found;
+  }
+  const T& power() const { return power_; }
 
   /// Line of an input without breakpoints, to be set during the simulation; the input is not
   /// constant any more.
@@ -266,6 +330,31 @@ class Profile {
   const Held<T>& held() const { return held_; }
 
  private:
+  bool raised() const {
+    using detail::vanishes;
+    return !vanishes(power_ - T(1));
+  }
+  [[gnu::noinline]] Curve<T> raised_from(T t) const {
+    return RaisedLine<T>{given_line(t), power_}.at(t, given_from(t).value);
+  }
+  [[gnu::noinline]] T next_of_raised(T t) const {
+    return std::min(next_given(t), RaisedLine<T>{given_line(t), power_}.next_breakpoint(t));
+  }
+  /// Line between two rows, from the row before the i-th on.
+  Line<T> between(std::size_t i) const {
+    return {values_[i - 1], (values_[i] - values_[i - 1]) / (times_[i] - times_[i - 1])};
+  }
+  /// First breakpoint of the input before it is raised.
+  T next_given(T t) const {
+    if (count_ == 0) return held_.next_breakpoint(t);
+    const std::size_t i = breakpoints_until(t);
+    constexpr T never = std::numeric_limits<T>::infinity();
+    if (pieces_ == nullptr) return i == count_ ? never : times_[i];
+    const T next = i == count_ ? never : pieces_[i].begin;
+    if (i == 0) return next;
+    const T decayed = pieces_[i - 1].begin + pieces_[i - 1].decayed();
+    return t < decayed ? std::min(next, decayed) : next;
+  }
   /// Function from time t on, after i of its begins.
   [[gnu::noinline]] Curve<T> part_of_function(std::size_t i, T t) const {
     if (i == 0) return {first(), T(0)};
@@ -288,6 +377,7 @@ class Profile {
   const T* values_{nullptr};
   const InputPiece<T>* pieces_{nullptr};
   std::size_t count_{0};  ///< of breakpoints, or of pieces
+  T power_{1};
 };
 
 /// Release at t = 0 and inputs from then on.

@@ -31,7 +31,7 @@ class DrivenMotion {
   static bool holds(const SeriesEquation<T>& e) {
     std::size_t terms = e.skin_decay != 0 ? 3 : 2;
     for (const Curve<T>* input : {&e.pushes, &e.plate_velocity, &e.load, &e.finger_load})
-      if (!input->straight()) terms += input->piece->count;
+      terms += input->terms();
     return terms <= std::size_t{TermSum<T>::most_terms};
   }
 
@@ -109,7 +109,7 @@ class DrivenMotion {
       least = std::min(least, sum->from(tau).reach());
     for (const Curve<T>& load : loads_)
       if (!load.straight())
-        least = std::min(least, load.piece->reach(load.since + tau, series_order, longest_input));
+        least = std::min(least, load.reach(T(tau), series_order, longest_input));
     return least;
   }
 

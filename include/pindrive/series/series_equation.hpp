@@ -85,7 +85,7 @@ struct SeriesEquation {
     Real<T> least = std::numeric_limits<Real<T>>::infinity();
     for (const Curve<T>* input : {&pushes, &plate_velocity, &load, &across, &finger_load, &surface})
       if (!input->straight())
-        least = std::min(least, input->piece->reach(input->since, series_order, longest_input));
+        least = std::min(least, input->reach(T(0), series_order, longest_input));
     return least;
   }
 

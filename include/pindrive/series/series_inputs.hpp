@@ -21,8 +21,8 @@ class InputSeries {
   InputSeries() = default;
   InputSeries(const Curve<T>& curve, Real step) : curve_(curve), step_(step) {
     if (!curve.straight()) {
-      degree_ = curve.piece->count == 0 ? InputPiece<T>::degree : N + 1;
-      curve.piece->expand(curve.since, T(step), c_, degree_);
+      degree_ = curve.raised || curve.terms() > 0 ? N + 1 : InputPiece<T>::degree;
+      curve.expand(T(0), T(step), c_, degree_);
     }
     c_[0] = curve.value;
     c_[1] = curve.rate * step;
@@ -96,10 +96,10 @@ class InputSeries {
   /// Bounds beyond the last order: of the terms of the input, and of the terms of its rate (1/s).
   Real missed() const {
     if (curve_.straight()) return Real(0);
-    return curve_.piece->beyond(curve_.since, step_, N);
+    return curve_.beyond(step_, N);
   }
   Real missed_rate() const {
-    return curve_.straight() ? Real(0) : curve_.piece->fastest() * missed();
+    return curve_.fastest() * missed();
   }
 
  private:

@@ -63,7 +63,7 @@ class SeriesMode {
     };
     const bool follows = is_slip(mode_.finger) && !drive_.finger.rigid();
     const bool damped = follows && drive_.finger.damped();
-    return mode_.plate != ContactState::slip_oblique &&
+    return mode_.plate != ContactState::slip_oblique && !inputs_.finger_load.raised &&
            constant(mode_.plate, drive_.plate, mode_.plate_branch, inputs_.plate_load) &&
            constant(mode_.finger, drive_.finger, mode_.finger_branch, inputs_.finger_load) &&
            (damped ? finger().slope == 0 : !has_slider_state()) &&

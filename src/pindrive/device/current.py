@@ -90,7 +90,7 @@ class Current:
         """Return the current of a course of the core."""
         pieces, pulls, end = course
         on = pieces.pop("on").view(np.bool_)
-        whole = [(begin, (*constant, *5 * (0.0,)), terms) for begin, constant, terms in pulls]
+        whole = [(begin, (*constant, *4 * (0.0,)), terms) for begin, constant, terms in pulls]
         return cls(**pieces, on=on, heat=heat, pulls=whole, state=CoilState.of(end))
 
     @classmethod

@@ -52,7 +52,7 @@ class Device:
         drive, control, array = self.drive, self.control, self.array
         return _core.Device(
             drive_numbers(drive),
-            drive.normal_force,
+            (drive.normal_force, drive.plate_touch),
             self.magnet.core_numbers,
             (control.sample_rate, control.latency, control.threshold, control.hysteresis),
             array.axis,
@@ -98,12 +98,15 @@ class Device:
 
         Args:
             angle: Angle between the motion of the hand and the drive axis, rad.
-            finger_load: Factor on the finger's friction, 0 where it is lifted.
+            finger_load: Touch over `touch_force`, 0 where the finger is lifted.
         """
-        plate = self.drive.plate.kinetic * self.load(self.magnet.residual) * abs(cos(angle))
-        if plate <= self.drive.finger.static_friction * finger_load:
+        drive, finger = self.drive, self.drive.finger
+        touched = drive.plate_touch * (finger_load - 1.0)
+        plate = drive.plate.kinetic * self.load(self.magnet.residual + touched) * abs(cos(angle))
+        pressed = finger_load**drive.load_exponent
+        if plate <= finger.static_friction * pressed:
             return 0.0
-        return (plate - self.drive.finger.kinetic * finger_load) / self.drive.stiffness
+        return (plate - finger.kinetic * pressed) / drive.stiffness
 
     @overload
     def load(self, pull: float) -> float: ...

@@ -82,7 +82,7 @@ class ScanInputs:
 
     @property
     def finger_load(self) -> float | Profile:
-        """Factor on the finger's friction, over the time since the begin."""
+        """Touch of the finger over `touch_force` of the drive, over the time since the begin."""
         return finger_load(self.device.drive, self.touch, self.path.begin)
 
     @property
@@ -184,7 +184,7 @@ class PinScan:
         state, axis, pressed = given.states[self.number], given.device.array.axis, given.finger_load
         stretch = state.skin_stretch
         if stretch is not None:
-            stretch = held_stretch(stretch, self.drive.finger, pressed)
+            stretch = held_stretch(stretch, self.drive, pressed)
         load = function_of(self.core.load(self.number), "1")
         return Release(
             given.path.plate_velocity(axis),
@@ -265,7 +265,7 @@ class PinScan:
 
     @property
     def finger_load(self) -> float | Profile:
-        """Factor on the finger's friction, over the time since `begin`: 0 where it is lifted."""
+        """Touch over `touch_force` of the drive, over the time since `begin`; 0: lifted."""
         return cast("float | Profile", self.release.finger_load)
 
     @property

@@ -1,18 +1,18 @@
-"""Touch of the finger during a scan: load of its friction, and times of contact."""
+"""Touch of the finger during a scan: its factor on the usual touch, and times of contact."""
 
 from __future__ import annotations
 
 from itertools import pairwise
 from math import copysign, inf
 
-from pindrive.motion.drive import Contact, Drive, values_of
+from pindrive.motion.drive import Drive, values_of
 from pindrive.motion.profile import Profile
 from pindrive.motion.release import initial, input_of
 from pindrive.quantities.contradictions import refuse
 
 
 def finger_load(drive: Drive, touch: float | str | Profile | None, begin: float) -> float | Profile:
-    """The factor on the finger's friction, over the time since `begin`.
+    """The touch over the usual one, over the time since `begin`.
 
     Args:
         drive: Drive of each pin, with the friction under its `touch_force`.
@@ -49,9 +49,9 @@ def spans(load: float | Profile) -> list[tuple[float, float]]:
     return found
 
 
-def held_stretch(stretch: float, finger: Contact, load: float | Profile) -> float:
+def held_stretch(stretch: float, drive: Drive, load: float | Profile) -> float:
     """Return the skin stretch (m) kept as a load begins: beyond it, undamped skin slips at once."""
-    pressed = initial(load)
+    finger, pressed = drive.finger, initial(load) ** drive.load_exponent
     if finger.damping or abs(stretch) <= finger.static_friction * pressed / finger.stiffness:
         return stretch
     return copysign(finger.kinetic * pressed / finger.stiffness, stretch)

@@ -35,7 +35,7 @@ def device_text(
         _put(tables, key, Path(os.path.relpath(path, target.parent)).as_posix())
     for name in ("plate", "finger"):
         if f"{name}.kinetic" in values:  # a force in place of a coefficient
-            for other in (*COEFFICIENTS.values(), "touch_force"):
+            for other in (*COEFFICIENTS.values(), "touch_force", "reference_touch"):
                 tables.get(name, {}).pop(other, None)
     for key, value in values.items():
         _put(tables, key, value)

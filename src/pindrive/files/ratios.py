@@ -7,7 +7,7 @@ from typing import Final
 
 from pindrive.files.functions import with_parameters
 from pindrive.files.keys import DRIVE, Given, friction_parts
-from pindrive.motion.friction import COEFFICIENT_OF, COEFFICIENTS, friction_force
+from pindrive.motion.friction import COEFFICIENT_OF, COEFFICIENTS, OPTIONAL, friction_force
 from pindrive.motion.function import Function
 from pindrive.quantities.quantity import Rows
 from pindrive.quantities.table import QUANTITIES
@@ -73,8 +73,8 @@ def _value(given: GivenValues, key: str) -> float | None:
         return found if isinstance(found, float) else None
     table, _, name = key.partition(".")
     if key in COEFFICIENT_OF and f"{table}.{COEFFICIENTS['kinetic']}" in given:
-        parts = [_value(given, part) for part in friction_parts(key)]
-        if None not in parts:
+        optional = {QUANTITIES[name].key for name in OPTIONAL[table]}
+        if all(_value(given, p) is not None for p in friction_parts(key) if p not in optional):
             return float(friction_force(key, lambda n: _value(given, QUANTITIES[n].key)))
     curve = given.get(f"{table}.curve") if name == "kinetic" else None
     if isinstance(curve, tuple):

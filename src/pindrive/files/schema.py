@@ -27,7 +27,7 @@ from pindrive.files.keys import (
     usual_rows,
 )
 from pindrive.motion.drive import Contact, Drive, law_name
-from pindrive.motion.friction import normal_force
+from pindrive.motion.friction import PRESSING, normal_force
 from pindrive.motion.function import Function
 from pindrive.motion.profile import Profile
 from pindrive.motion.release import INPUTS, Release, input_of
@@ -159,7 +159,7 @@ def contact_of(values: Mapping[str, Value], table: str) -> Contact:
     given = {
         name: value
         for name, value in table_of(values, table).items()
-        if f"{table}.{name}" in QUANTITIES  # preload and touch force are the drive's
+        if f"{table}.{name}" in QUANTITIES  # what presses is the drive's
     }
     stiffness, damping = given.pop("stiffness", None), given.pop("damping", None)
     given["law"] = law_name(given.get("law"))
@@ -178,7 +178,7 @@ def drive_of(values: Mapping[str, Value]) -> Drive:
     """
     given = table_of(values, "drive")
     given |= {name: contact_of(values, name) for name in ("plate", "finger")}
-    given |= {"preload": values["plate.preload"], "touch_force": values["finger.touch_force"]}
+    given |= {name: values[QUANTITIES[name].key] for name in PRESSING}
     return Drive(**given)
 
 

@@ -31,7 +31,7 @@ from pindrive.quantities.table import FUNCTION_PARAMETERS, QUANTITIES, check
 
 DRIVE: Final = (
     *("mass", "stiffness", "damping", "damping_ratio", "plate.kinetic", "plate.static"),
-    *("finger.kinetic", "finger.static", "finger.stiffness", "finger.damping"),
+    *("finger.kinetic", "finger.static", "finger.stiffness", "finger.damping", "load_exponent"),
     *(
         f"{contact}.{name}"
         for contact in ("plate", "finger")
@@ -231,6 +231,9 @@ def _start(key: str, numbers: CoreNumbers, release: Release) -> float:
             required = f"a row of it, like {key}[0].value, where it changes over time"
             raise ValueError(refusal("free", required, key))
         return float(rows[0][1])
+    if key == "load_exponent" and len(_rows(numbers, "finger_load")) < 2:
+        required = "left out where the release has no finger_load that changes"
+        raise ValueError(refusal("free", required, key))
     if key == "finger.stiffness" and isinf(numbers[4][2]):
         start = QUANTITIES["finger.stiffness"].example
         assert start
@@ -360,6 +363,7 @@ class Assembly:
             plate=made[0],
             finger=made[1],
             preload=self._drive.preload,
+            load_exponent=float(self.numbers(theta, 0)[4][6]),
             travel=self._drive.travel,
             stop_stiffness=self._drive.stop_stiffness,
             stop_damping=self._drive.stop_damping,
@@ -401,7 +405,7 @@ class Assembly:
 
 
 def _made_contact(numbers: Any, given: Contact, static_free: bool) -> Contact:
-    kinetic, static, give, curve, (law, breakaway, velocity, _, viscous), damping = numbers
+    kinetic, static, give, curve, (law, breakaway, velocity, _, viscous), damping, _ = numbers
     rows = [(float(speed), float(force)) for speed, force in curve] or None
     known = given.static is not None or static_free
     return Contact(
@@ -454,6 +458,7 @@ def _assembled(
     contacts = []
     for name, contact in (("plate", plate), ("finger", finger)):
         touched = any(key.startswith((f"{name}.", f"{name}_curve")) for key in values)
+        touched = touched or (name == "finger" and "load_exponent" in values)
         contacts.append(_contact(values, name, contact) if touched else contact)
     plate_velocity = _input(values, "mouse_velocity", plate_velocity, functions)
     load = _input(values, "plate_load", load, functions)
@@ -474,7 +479,8 @@ def _assembled(
 
 
 def _contact(values: Mapping[str, Any], name: str, contact: Any) -> Any:
-    kinetic, static, give, curve, (law, breakaway, velocity, exponent, viscous), damping = contact
+    kinetic, static, give, curve, of_law, damping, power = contact
+    law, breakaway, velocity, exponent, viscous = of_law
     falls = law in FALLING_NUMBERS
     rest = breakaway if falls else kinetic
     ratio = static / rest if rest else 1.0
@@ -502,7 +508,9 @@ def _contact(values: Mapping[str, Any], name: str, contact: Any) -> Any:
     velocity = values.get(f"{name}.stribeck_velocity", velocity)
     viscous = values.get(f"{name}.viscous", viscous)
     damping = values.get(f"{name}.damping", damping)
-    return kinetic, static, give, curve, (law, breakaway, velocity, exponent, viscous), damping
+    if name == "finger":
+        power = values.get("load_exponent", power)
+    return kinetic, static, give, curve, (law, breakaway, velocity, exponent, viscous), damping, power
 
 
 def _table(values: Mapping[str, Any], name: str, rows: Any) -> Any:

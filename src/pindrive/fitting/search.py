@@ -27,7 +27,7 @@ SINGLE: Final = 1024
 COARSE: Final = 40
 """Samples of each recording at which candidates are compared."""
 _OTHER: Final = (
-    *("finger.stiffness", "finger.damping", "skin_stretch"),
+    *("finger.stiffness", "finger.damping", "load_exponent", "skin_stretch"),
     *("force", "across_velocity", "finger_load", "travel", "stop_stiffness", "stop_damping"),
     *(name for name, place in PLACES.items() if place[1:2] == (LAW_PLACE,)),
 )

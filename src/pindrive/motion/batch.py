@@ -12,7 +12,13 @@ from numpy.typing import ArrayLike, NDArray
 from pindrive import _core
 from pindrive.lazy import xr
 from pindrive.motion.drive import Drive
-from pindrive.motion.friction import COEFFICIENT_OF, COEFFICIENTS, PRESSED_BY, friction_force
+from pindrive.motion.friction import (
+    COEFFICIENT_OF,
+    COEFFICIENTS,
+    PRESSED_BY,
+    PRESSING,
+    friction_force,
+)
 from pindrive.motion.function import Function
 from pindrive.motion.profile import Profile
 from pindrive.motion.release import Release, check_fits
@@ -55,13 +61,12 @@ _STOPS: Final = {name: QUANTITIES[name] for name in ("travel", "stop_stiffness",
 _OTHERS: Final = _STOPS | {"finger_damping": QUANTITIES["finger.damping"]}
 # Arguments in place of friction forces.
 _FORCES: Final = [name for name in COEFFICIENT_OF if name.endswith(("kinetic", "static"))]
-_PRESSING: Final = [n for parts in PRESSED_BY.values() for n in parts if n not in _ARGUMENTS]
 _TAKEN: Final = (
     _ARGUMENTS
     | _OTHERS
     | {
         name.replace(".", "_"): QUANTITIES[name]
-        for name in ("damping_ratio", *(COEFFICIENT_OF[n] for n in _FORCES), *_PRESSING)
+        for name in ("damping_ratio", *(COEFFICIENT_OF[n] for n in _FORCES), *PRESSING)
     }
 )
 _ARGUMENT_NAMES: Final = Names(
@@ -151,7 +156,8 @@ def simulate_batch(
             `plate_kinetic`, `plate_static`, `finger_kinetic`, `finger_static`, `finger_stiffness`
             (infinite: rigid), `finger_damping`; in place of forces, of a contact given by
             coefficients, `plate_coefficient`, `plate_static_coefficient`, `preload`,
-            `finger_coefficient`, `finger_static_coefficient` and `touch_force`; of the release
+            `touch_share`, `finger_coefficient`, `finger_static_coefficient`, `touch_force`,
+            `load_exponent` and `reference_touch`; of the release
             `mouse_velocity`, `displacement`, `velocity`, `plate_load`; of the end stops `travel`,
             `stop_stiffness`
             and `stop_damping`; and `duration` (infinite: long enough to see each ending) and
@@ -333,9 +339,9 @@ def _friction(drive: Drive, varied: Collection[str]) -> dict[str, float | None]:
         found |= {f"{table}_{name}": getattr(contact, name) for name in (own, static)}
         if by_coefficient:
             found |= {name: getattr(drive, name) for name in PRESSED_BY[table] if name != "mass"}
-        elif table == "finger" and "touch_force" in varied:
+        elif table == "finger" and (given := sorted(varied & {"touch_force", "reference_touch"})):
             required = "left out where the finger's friction is given as a force"
-            raise ValueError(refusal("touch_force", required, "it"))
+            raise ValueError(refusal(given[0], required, "it"))
     return found
 
 
@@ -382,9 +388,15 @@ def _damping(given: Mapping[str, NDArray[np.float64]]) -> dict[str, NDArray[np.f
 def _forces(given: Mapping[str, NDArray[np.float64]]) -> dict[str, NDArray[np.float64]]:
     """Return the friction forces of the coefficients; NaN if a part is rejected."""
 
-    def value(name: str) -> NDArray[np.float64]:
-        return _allowed(name, given[name.replace(".", "_")])
+    def value(name: str) -> NDArray[np.float64] | None:
+        key = name.replace(".", "_")
+        return _allowed(name, given[key]) if key in given else None
 
+    if "finger_coefficient" in given and "reference_touch" not in given:
+        other = given["load_exponent"][given["load_exponent"] != 1.0]
+        if other.size:
+            pressed = {"finger.coefficient": None, "finger.touch_force": None}
+            refuse(pressed | {"finger.load_exponent": float(other[0])})
     return {
         name.replace(".", "_"): friction_force(name, value)
         for name in _FORCES

@@ -27,8 +27,8 @@ class Coefficients:
     static: float
     normal_force: float
     """That force, N."""
-    preloaded: bool
-    """True if the normal force exceeds the weight."""
+    pressing: str
+    """What presses: "weight", "weight, preload and touch"."""
     given: bool
     """True if the friction was given by coefficients, not by forces."""
 
@@ -38,7 +38,10 @@ class Coefficients:
         plate, force = drive.plate, drive.normal_force
         given = plate.coefficient is not None
         kinetic, static = plate.kinetic / force, plate.static_friction / force
-        return cls(kinetic, static, force, drive.preload > 0.0, given)
+        touched = drive.plate_touch > 0.0
+        parts = ["preload"] * (drive.preload > 0.0) + ["touch"] * touched
+        pressing = " and ".join(filter(None, [", ".join(["weight", *parts[:-1]]), *parts[-1:]]))
+        return cls(kinetic, static, force, pressing, given)
 
     @property
     def words(self) -> str:
@@ -46,12 +49,8 @@ class Coefficients:
         over = QUANTITIES["normal_force"].text(self.normal_force)
         return (
             f"friction coefficient {self.kinetic:.3f}, static {self.static:.3f}: its friction over "
-            f"{over} of {self._presses}"
+            f"{over} of {self.pressing}"
         )
-
-    @property
-    def _presses(self) -> str:
-        return "weight and preload" if self.preloaded else "weight"
 
     @property
     def doubt(self) -> str | None:
@@ -66,7 +65,7 @@ class Coefficients:
                 low, high = range_
                 over = QUANTITIES["normal_force"].text(self.normal_force)
                 how = "as it is given" if self.given else f"plate.{name} over {over}"
-                of = "" if self.given else f" of {self._presses}"
+                of = "" if self.given else f" of {self.pressing}"
                 shown = next(s for n in range(3, 18) if float(s := f"{value:.{n}g}") not in range_)
                 return (
                     f"the plate's {name} friction coefficient is {shown}, outside the "

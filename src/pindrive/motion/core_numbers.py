@@ -17,8 +17,8 @@ Place = tuple[int, ...]
 
 LawNumbers = tuple[float, float, float, float, float]
 """Number of the law, breakaway, Stribeck velocity, exponent, viscous."""
-ContactNumbers = tuple[float, float, float, Rows, LawNumbers, float]
-"""Kinetic and static friction, stiffness, curve, law, damping."""
+ContactNumbers = tuple[float, float, float, Rows, LawNumbers, float, float]
+"""Kinetic and static friction, stiffness, curve, law, damping, exponent of the load."""
 
 
 DriveNumbers = tuple[
@@ -62,6 +62,7 @@ PLACES: Final[dict[str, tuple[int, ...]]] = {
     "finger.static": (4, 1),
     "finger.stiffness": (4, 2),
     "finger.damping": (4, 5),
+    "load_exponent": (4, 6),
     **{
         f"{contact}.{name}": (i, LAW_PLACE, j)
         for i, contact in ((3, "plate"), (4, "finger"))

@@ -8,7 +8,14 @@ from functools import partial
 from math import inf, isinf, nan, sqrt
 from typing import Any, Final
 
-from pindrive.motion.friction import COEFFICIENTS, FALLING, LAW, SKIN, normal_force
+from pindrive.motion.friction import (
+    COEFFICIENTS,
+    FALLING,
+    LAW,
+    PRESSED_BY,
+    SKIN,
+    normal_force,
+)
 from pindrive.quantities.contradictions import refuse, refuse_contact
 from pindrive.quantities.drive import DRIVE_QUANTITIES, FRICTION_LAWS, PARTS
 from pindrive.quantities.part import Part
@@ -321,11 +328,19 @@ class Drive:
         damping: Viscous, N*s/m, from 0 to 1e12.
         damping_ratio: Damping ratio b / (2 sqrt(m k)) in place of damping, 0 or from 1e-11 to 1e6.
         plate: Friction of the moving plate on the body; given by a coefficient it is
-            that of weight and preload (and the pull, by which a load multiplies it).
+            that of weight, preload and a share of the touch force (and the pull, by which a load
+            multiplies it).
         finger: Friction of the resting fingertip on the pin; by a coefficient, of `touch_force`.
         preload: Force that presses the body on the plate beside weight and pull, N, from 0 to 1e12.
         touch_force: Force of the finger on the pin, N, from 0 to 1e12; for a finger given by a
             coefficient alone.
+        touch_share: Part of the touch force that presses the body on the plate, from 0 to 1: all of
+            it unless the spring carries the touch.
+        load_exponent: Exponent n of the finger's friction over its touch force, from 0.1 to 2. The
+            friction is coefficient · N₀ (N/N₀)ⁿ at the touch N; 1 is Coulomb friction. A factor λ
+            on the touch during a motion makes λⁿ times the friction.
+        reference_touch: Touch force N₀ at which the coefficients of the finger hold, N, from 1e-12
+            to 1e12; needed where `load_exponent` is not 1.
         travel: Travel of the pin from the rest position of the spring to an end stop, either way,
             m, from 1e-12 to 1e12; None: no stops.
         stop_stiffness: Stiffness of the end stops, N/m, from 1e-12 to 1e12; None: rigid and plastic
@@ -345,6 +360,9 @@ class Drive:
     finger: Contact
     preload: float
     touch_force: float | None
+    touch_share: float
+    load_exponent: float
+    reference_touch: float | None
     travel: float | None
     stop_stiffness: float | None
     stop_damping: float | None
@@ -360,6 +378,9 @@ class Drive:
         finger: Contact,
         preload: float | str = default("preload"),
         touch_force: float | str | None = default("touch_force"),
+        touch_share: float | str = default("touch_share"),
+        load_exponent: float | str = default("load_exponent"),
+        reference_touch: float | str | None = default("reference_touch"),
         travel: float | str | None = default("travel"),
         stop_stiffness: float | str | None = default("stop_stiffness"),
         stop_damping: float | str | None = default("stop_damping"),
@@ -373,8 +394,11 @@ class Drive:
         put(self, "plate", plate)
         put(self, "finger", finger)
         put(self, "preload", check("preload", preload))
+        put(self, "touch_share", check("touch_share", touch_share))
+        put(self, "load_exponent", check("load_exponent", load_exponent))
         optional = {
             "touch_force": touch_force,
+            "reference_touch": reference_touch,
             "travel": travel,
             "stop_stiffness": stop_stiffness,
             "stop_damping": stop_damping,
@@ -424,8 +448,13 @@ class Drive:
 
     @property
     def normal_force(self) -> float:
-        """Normal force on the plate without magnetic pull, N: weight and preload."""
+        """Normal force on the plate without magnetic pull, N: weight, preload and share of touch."""
         return float(normal_force("plate", partial(getattr, self)))
+
+    @property
+    def plate_touch(self) -> float:
+        """Part of that normal force that is touch, N."""
+        return self.touch_share * (self.touch_force or 0.0)
 
     @property
     def by_forces(self) -> Drive:
@@ -434,7 +463,9 @@ class Drive:
             Contact(**{name: getattr(c, name) for name in (*COEFFICIENTS, *LAW, *SKIN)})
             for c in (self.plate, self.finger)
         )
-        return self.replace(plate=plate, finger=finger, touch_force=None)
+        preload = self.preload + self.plate_touch
+        pressing = {"preload": preload, "touch_force": None, "reference_touch": None}
+        return self.replace(plate=plate, finger=finger, **pressing)
 
     @property
     def rigid_travel(self) -> float | None:
@@ -468,7 +499,8 @@ def values_of(drive: Drive) -> dict[str, Any]:
     """The given values of a drive by the keys of a device file, friction as it is given."""
     own = ("mass", "stiffness", "damping", "travel", "stop_stiffness", "stop_damping")
     values = {f"drive.{name}": getattr(drive, name) for name in own}
-    values |= {"plate.preload": drive.preload, "finger.touch_force": drive.touch_force}
+    pressing = {"plate": ("preload", "touch_share"), "finger": PRESSED_BY["finger"]}
+    values |= {f"{table}.{n}": getattr(drive, n) for table, names in pressing.items() for n in names}
     for table, contact in (("plate", drive.plate), ("finger", drive.finger)):
         names = COEFFICIENTS if contact.coefficient is None else COEFFICIENTS.values()
         values |= {f"{table}.{name}": getattr(contact, name) for name in names}

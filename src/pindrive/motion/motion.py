@@ -454,7 +454,8 @@ class Motion(lazy.NotebookHtml):
             if contact.coefficient is not None:
                 parts = {n: getattr(contact, n) for n in COEFFICIENTS.values()}
                 values |= {f"{name}.{n}": value for n, value in parts.items() if value is not None}
-                values |= {n: getattr(drive, n) for n in PRESSED_BY[name] if n != "mass"}
+                pressing = {n: getattr(drive, n) for n in PRESSED_BY[name] if n != "mass"}
+                values |= {n: value for n, value in pressing.items() if value is not None}
         if not drive.finger.rigid:
             values["finger.stiffness"] = drive.finger.stiffness
         if drive.finger.damping:

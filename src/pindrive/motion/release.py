@@ -50,9 +50,10 @@ class Release:
         across_velocity: W, the velocity of the plate across the axis of the pin, m/s, up to 1e12
             either way; constant, a `Profile` or a `Function`, without steps. While it is not 0 the
             plate slips: its friction opposes the whole sliding velocity.
-        finger_load: Factor on the finger's friction, from 0 to 1e12: how the touch force changes,
-            over the `touch_force` of a drive whose finger has a coefficient; constant or a
-            `Profile`, which may have steps.
+        finger_load: Factor λ on the touch of the finger, from 0 to 1e12: the touch force over time,
+            over the `touch_force` of a drive whose finger has a coefficient. Its friction changes
+            as λⁿ, with the `load_exponent` n of the drive. Constant or a `Profile`, which may have
+            steps.
         support: "mouse" for a spring that is fixed in the housing of the mouse, which accelerates
             with the mouse velocity, so that m dv/dt acts on the pin; "ground" for a spring that
             stands on the ground, while only the plate, such as a belt, has that velocity.
@@ -190,6 +191,8 @@ def check_fits(drive: Drive, release: Release, duration: float | None = None) ->
     if isinstance(release.finger_load, Function) and by_rows:
         required = "a number or a Profile beside a finger stiffness without damping, or a curve"
         raise ValueError(refusal("finger_load", required, "a Function"))
+    if drive.load_exponent != 1.0 and not isinstance(release.finger_load, float):
+        _check_raised(drive, release.finger_load, by_rows)
     for name in LOADS:
         refused = negative_load(name, getattr(release, name), duration)
         if refused:
@@ -230,6 +233,16 @@ def core_numbers(drive: Drive, release: Release, duration: float | None) -> Core
     )
 
 
+def _check_raised(drive: Drive, load: Profile | Function, by_rows: bool) -> None:
+    """Refuse a touch that changes under a `load_exponent` in a way that is not followed."""
+    exponent = f"at a load_exponent of {drive.load_exponent:g}"
+    if isinstance(load, Function):
+        raise ValueError(refusal("finger_load", f"a number or a Profile {exponent}", "a Function"))
+    if by_rows and load.changes:
+        skin = "beside a finger stiffness without damping, or a curve"
+        raise ValueError(refusal("finger_load", f"constant {exponent} {skin}", "a Profile"))
+
+
 def drive_numbers(drive: Drive) -> DriveNumbers:
     """A drive as the core has it."""
     plate, finger = drive.plate, drive.finger
@@ -237,13 +250,13 @@ def drive_numbers(drive: Drive) -> DriveNumbers:
         drive.mass,
         drive.stiffness,
         drive.damping,
-        _contact_numbers(plate),
-        _contact_numbers(finger),
+        _contact_numbers(plate, 1.0),
+        _contact_numbers(finger, drive.load_exponent),
         stop_numbers(drive),
     )
 
 
-def _contact_numbers(contact: Contact) -> ContactNumbers:
+def _contact_numbers(contact: Contact, load_exponent: float) -> ContactNumbers:
     return (
         contact.kinetic,
         contact.static_friction,
@@ -251,6 +264,7 @@ def _contact_numbers(contact: Contact) -> ContactNumbers:
         contact.curve or (),
         contact.law_numbers,
         contact.damping or 0.0,
+        load_exponent,
     )
 
 

@@ -27,7 +27,7 @@ from pindrive.motion.core_numbers import (
     replaced,
 )
 from pindrive.motion.drive import Contact, Drive
-from pindrive.motion.friction import COEFFICIENTS, PRESSED_BY, normal_force
+from pindrive.motion.friction import COEFFICIENTS, PRESSED_BY, PRESSING, normal_force, normal_force_by
 from pindrive.motion.function import Function, rates_of
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import counted
@@ -53,7 +53,7 @@ _COEFFICIENTS = (
         for table in PRESSED_BY
         for part in ("kinetic", "static", "breakaway", "viscous")
     ),
-    *(name for parts in PRESSED_BY.values() for name in parts if name not in _PLACES),
+    *PRESSING,
 )
 """Parameters that the core knows by the forces that follow from them."""
 _INPUTS = tuple(name for name in ROWS if name in PLACES)
@@ -324,13 +324,13 @@ def direction_of(motion: pindrive.Motion, given: str) -> tuple[CoreNumbers, floa
             follows = 0.5 * drive.damping / getattr(drive, own)
             along = replaced(along, PLACES["damping"], follows)
         return along, size
-    if (name := _key_as_name(given)) in _COEFFICIENTS:
+    if (name := key_as_name(given)) in _COEFFICIENTS:
         return _along_friction(motion, name)
     if along := _along_function(motion, name):
         return along
     places = _places(numbers, given)
     size = max(abs(entry(numbers, place)) for place in places) or _natural_size(motion, places[0])
-    for contact, (kinetic, static, _, curve, law, _) in ((3, numbers[3]), (4, numbers[4])):
+    for contact, (kinetic, static, _, curve, law, *_) in ((3, numbers[3]), (4, numbers[4])):
         first_row = [(contact, 3, 0, 1)] if curve else []
         if law[1]:  # friction at rest is another number
             if (contact, 4, 1) in places and static == law[1]:
@@ -370,6 +370,8 @@ def _along_function(motion: pindrive.Motion, given: str) -> tuple[CoreNumbers, f
 def _along_friction(motion: pindrive.Motion, name: str) -> tuple[CoreNumbers, float]:
     """Return the derivative by a coefficient, or by the normal force on a coefficient."""
     slopes = _friction_slopes(motion.drive, name)
+    if name == "load_exponent":
+        slopes[PLACES[name]] = 1.0
     table, _, part = name.partition("_")
     owner = getattr(motion.drive, table) if part in COEFFICIENTS.values() else motion.drive
     value = getattr(owner, name if owner is motion.drive else part)
@@ -385,6 +387,7 @@ def _along_friction(motion: pindrive.Motion, name: str) -> tuple[CoreNumbers, fl
 def _friction_slopes(drive: Drive, name: str) -> dict[Place, float]:
     """Return the derivative of friction forces given by coefficients: (μ N)' = μ' N + μ N'."""
     found: dict[Place, float] = {}
+    value = partial(getattr, drive)
     for i, table in ((3, "plate"), (4, "finger")):
         contact = getattr(drive, table)
         if contact.coefficient is None:
@@ -393,12 +396,12 @@ def _friction_slopes(drive: Drive, name: str) -> dict[Place, float]:
         at_rest = own_static
         if at_rest is None:
             at_rest = contact.breakaway_coefficient or contact.coefficient
-        pressed = PRESSED_BY[table].get(name, 0.0)
+        pressed = normal_force_by(table, name, value) if name in PRESSED_BY[table] else 0.0
         if pressed:
             found[i, 0], found[i, 1] = contact.coefficient * pressed, at_rest * pressed
             found |= {(i, 3, j, 1): each * pressed for j, (_, each) in enumerate(rows)}
             found |= {place: each * pressed for place, each in _law_coefficients(contact, i)}
-        force = normal_force(table, partial(getattr, drive))
+        force = normal_force(table, value)
         if name == f"{table}_coefficient":
             tied = [(i, 1)] if at_rest == contact.coefficient and not contact.falls else []
             found |= dict.fromkeys([(i, 0), *([(i, 3, 0, 1)] if rows else []), *tied], force)
@@ -418,11 +421,11 @@ def _law_coefficients(contact: Contact, i: int) -> list[tuple[Place, float]]:
     return [((i, 4, j), each) for j, each in coefficients if each is not None]
 
 
-_PRESSING = {QUANTITIES[name].key: name for name in ("preload", "touch_force")}
+_PRESSING = {QUANTITIES[name].key: name for name in PRESSING}
 """Names of the forces that press on a contact, by their keys."""
 
 
-def _key_as_name(given: str) -> str:
+def key_as_name(given: str) -> str:
     """A device file's key as the name of a parameter."""
     return _PRESSING.get(given) or re.sub(r"^(plate|finger)\.", r"\1_", given)
 
@@ -441,7 +444,7 @@ def _unit(given: str) -> str:
 
 def _places(numbers: CoreNumbers, given: str) -> list[Place]:
     """Return the places of the numbers of a parameter."""
-    name = _key_as_name(given)
+    name = key_as_name(given)
     if row := _ROW.fullmatch(name):
         table, index, column = (group for group in row.groups() if group)
         rows = entry(numbers, ROWS[table])
@@ -455,7 +458,7 @@ def _places(numbers: CoreNumbers, given: str) -> list[Place]:
         time = rows[int(index)][0]
         return [(*ROWS[table], i, 0) for i, (t, _) in enumerate(rows) if t == time]
     if name not in _PLACES:
-        names = ", ".join((*_PLACES, *_COEFFICIENTS))
+        names = ", ".join(dict.fromkeys((*_PLACES, *_COEFFICIENTS)))
         known = f"one of {names}, or a row like mouse_velocity[0].value"
         raise ValueError(refusal("parameter", known, repr(given)))
     place = _PLACES[name]
@@ -526,7 +529,7 @@ def _in_range(numbers: CoreNumbers) -> bool:
         and law[2] > 0.0
         and law[4] >= 0.0
         and damping >= 0.0
-        for kinetic, static, give, curve, law, damping in (plate, finger)
+        for kinetic, static, give, curve, law, damping, _ in (plate, finger)
     )
     return (
         mass > 0.0

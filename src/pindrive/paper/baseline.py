@@ -47,11 +47,11 @@ PRESSED: Final = Drive(
     mass=MASS,
     stiffness=STIFFNESS,
     damping=DRIVE.damping,
-    plate=Contact(coefficient=VALUES["plate.kinetic"] / (MASS * GRAVITY)),
+    plate=Contact(coefficient=VALUES["plate.kinetic"] / (MASS * GRAVITY + TOUCH_FORCE)),
     finger=Contact(coefficient=FINGER_COEFFICIENT),
     touch_force=TOUCH_FORCE,
 )
-"""The drive with friction that follows the weight and the touch force."""
+"""The drive with friction that follows what presses: the finger loads both contacts, as in the paper."""
 HOLD: Final = 12.0
 """The magnet's pull while it holds, as a factor on the plate's friction."""
 RELEASE: Final = Release(VALUES["mouse_velocity"], VALUES["displacement"])

@@ -34,7 +34,7 @@ SYMBOLS: Final = (
     ("$\\zeta$", "damping ratio, $b/2\\sqrt{mk}$", "1", "damping factor, perhaps"),
     ("$F_p$", "friction force of the plate, sliding", "N", "$F_1$ in (1), $F_2$ from (2) on"),
     ("$F_f$", "friction force of the finger, sliding", "N", "$F_2$ in (1), $F_1 = 0$ from (2) on"),
-    ("$N_p$", "normal force of the plate: weight, preload and pull", "N", "none"),
+    ("$N_p$", "normal force of the plate: weight, preload, touch and pull", "N", "none"),
     ("$N_f$", "touch force of the finger on the pin", "N", "system load"),
     ("$v_p$", "velocity of the plate past the mouse", "m/s", "$v_p$, defined twice"),
     ("$x_0$", "deflection at the release", "m", "$x_0$"),
@@ -85,7 +85,7 @@ def device() -> Exhibit:
             "the plate passes under it, against the mouse's own motion. The pin is released at "
             "x_0 with the plate's velocity v_p.",
             "All forces drawn act on the moving body, electromagnet and pin. From the plate: its "
-            "normal force N_p, which carries weight, preload and the magnet's pull, and its "
+            "normal force N_p, which carries weight, preload, touch and the magnet's pull, and its "
             "friction F_p, against ẋ − v_p. From the fingertip: the touch force N_f and its "
             "friction F_f, against ẋ; the arrows of friction show the pin as it returns, ẋ < 0. "
             "Plate and finger feel the opposite of each.",

@@ -93,9 +93,9 @@ ARRAY: Final = inputs(
         "l_s",
         "m",
         "length of the slot in which a pin moves, along the drive axis",
-        source="the pin's diameter and 1.35 mm either way: a pin goes up to 1.29 mm, and slots are "
-        "cut to 0.1 mm (ISO 2768-1, medium, 3-6 mm); 0.8 mm of wall is left at a pitch of 5 mm",
-        example=0.0042,
+        source="the pin's diameter and 1.4 mm either way: a pin goes up to 1.36 mm, and slots are "
+        "cut to 0.1 mm (ISO 2768-1, medium, 3-6 mm); 0.7 mm of wall is left at a pitch of 5 mm",
+        example=0.0043,
         remark="without it, the ends of the slot are not checked",
     ),
     Quantity(
@@ -366,11 +366,14 @@ READER: Final[dict[str, dict[str, Any]]] = {
         "default": 0.060,
         "source": "assumed: 1 N of a finger on sixteen pins",
     },
+    "finger.load_exponent": {"default": 1.0},
+    "finger.reference_touch": {"default": 1.0},
+    "plate.touch_share": {"default": 1.0},
     "magnet.outer_diameter": {"default": 0.0035},
     "magnet.height": {"default": 0.0124},
     "magnet.spring_height": {"default": 0.004},
     "magnet.pin_height": {"default": 0.0124},
-    "array.slot_length": {"default": 0.0042},
+    "array.slot_length": {"default": 0.0043},
     "finger.curve": {
         "remark": "speeds from 0 m/s up; kinetic, stiffness and damping are left out then",
         "rows": ((0.0, 0.030), (0.05, 0.024)),

@@ -28,6 +28,11 @@ STEEL: Final = (
     "steel on steel, friction coefficient 0.15-0.30 (handbook tables), {} of a weight of 98 mN"
 )
 FINGER: Final = "ROBOMECH J. 2017, 10.1186/s40648-017-0080-8, Table 1"
+EXPONENT: Final = (
+    "fingers: 1 on rough or fresh contacts, 2/3 to 1 on smooth ones after some 10 s (Dzidek et al. "
+    "2014 and 2017, 10.1098/rsif.2016.0935), 0.8 from 1 to 20 N (Seo et al. 2009, "
+    "10.1080/00140130802471595), also above 1 (10.3390/applmech3020038)"
+)
 
 # The parts of a drive stay within 1e±12 SI as its inputs do (include/pindrive/device/inputs.hpp).
 #
@@ -313,7 +318,7 @@ _CONTACTS: Final = (
     *_friction(
         "plate",
         "p",
-        words=(", at plate_load 1", "the plate", "weight, preload and pull"),
+        words=(", at plate_load 1", "the plate", "weight, preload, touch and pull"),
         kinetic=(0.022, STEEL.format("0.225 (the middle)")),
         static=(0.0265, STEEL.format("0.27 (oxidised)")),
         curve=(((0.0, 0.022), (0.05, 0.015)), STEEL.format("0.225 falling to 0.15 (the lowest)")),
@@ -339,6 +344,15 @@ _CONTACTS: Final = (
             source="assumed: none, the weight alone presses",
             example=0.0,
             seen=between(0.0, 1e3),
+        ),
+        Quantity(
+            "touch_share",
+            "s_f",
+            "1",
+            "part of the touch force that presses the body on the plate",
+            source="the pin is pressed on the supporting surface (the paper); less where the "
+            "spring carries the touch",
+            example=1.0,
         ),
     ),
     *_friction(
@@ -372,6 +386,25 @@ _CONTACTS: Final = (
             example=0.010,
             remark="needed where a coefficient gives the finger's friction",
             seen=between(0.0, 1e3),
+        ),
+        Quantity(
+            "load_exponent",
+            "n_f",
+            "1",
+            "exponent of the finger's friction over its touch force",
+            source=EXPONENT,
+            example=1.0,
+            remark="1 (Coulomb) unless given; another needs reference_touch",
+        ),
+        Quantity(
+            "reference_touch",
+            "N_0",
+            "N",
+            "touch force at which the finger's coefficients hold",
+            source="assumed: coefficients of a whole finger are measured near 1 N",
+            example=1.0,
+            remark="without effect at a load_exponent of 1",
+            seen=between(1e-4, 1e3),
         ),
     ),
     *inputs(
@@ -454,7 +487,7 @@ _MOTION: Final = (
         "finger_load",
         "λ_f",
         "1",
-        "factor on the finger's friction: its touch force over time, over touch_force",
+        "factor on the finger's touch: the touch force over time, over touch_force",
         source="assumed: a finger that lifts off the pin within 20 ms",
         remark="one value, rows over time, or a CSV of them",
         example=1.0,
@@ -581,7 +614,7 @@ _PARTS: Final = (
         "normal_force",
         "N",
         "N",
-        "normal force of a contact: weight, preload and pull, or the touch force",
+        "normal force of a contact: weight, preload, touch and pull, or the touch alone",
         bounds=NON_NEGATIVE,
     ),
     Quantity("profile.time", "t", "s", "time of a profile's row", bounds=FINITE),

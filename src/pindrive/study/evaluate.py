@@ -17,7 +17,7 @@ from pindrive.files.keys import variable
 from pindrive.files.ratios import scaled_rows
 from pindrive.motion.batch import batched
 from pindrive.motion.drive import Contact, Drive, law_name
-from pindrive.motion.friction import COEFFICIENT_OF, COEFFICIENTS, LAW
+from pindrive.motion.friction import COEFFICIENT_OF, COEFFICIENTS, LAW, PRESSING
 from pindrive.motion.function import Function
 from pindrive.motion.motion import Motion
 from pindrive.motion.profile import Profile
@@ -259,7 +259,7 @@ def _numbers(given: Mapping[str, Any]) -> dict[str, Any]:
 
 def _motion(given: Mapping[str, Any]) -> Motion:
     body = {name: given[name] for name in ("mass", "stiffness", "damping")}
-    body |= {name: given[name] for name in ("preload", "touch_force", *_STOPS)}
+    body |= {name: given[name] for name in (*PRESSING, *_STOPS)}
     for table, stiffness in (("plate", inf), ("finger", given["finger_stiffness"] or inf)):
         own = {n: given[f"{table}_{n}"] for pair in COEFFICIENTS.items() for n in pair}
         own |= {n: given[f"{table}_{n}"] for n in LAW}

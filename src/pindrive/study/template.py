@@ -46,6 +46,7 @@ finger.touch_force = ["40 mN", "80 mN"]
 # with --tolerances: either way, as a normal distribution with this standard deviation, or between
 # two values.
 finger.touch_force = "50 %"
+finger.load_exponent = { uniform = [0.7, 1.1] }
 plate.coefficient = "15 %"
 control.latency = { uniform = ["2 ms", "10 ms"] }
 scan.hand_speed = { normal = "15 %" }

@@ -9,7 +9,7 @@ import numpy as np
 
 from pindrive.files.keys import NUMERIC_KEYS
 from pindrive.motion.coefficients import KINETIC, within
-from pindrive.motion.friction import COEFFICIENTS, normal_force
+from pindrive.motion.friction import COEFFICIENTS, PRESSED_BY, normal_force
 from pindrive.quantities import budgets
 from pindrive.quantities.contradictions import problems_of
 from pindrive.quantities.table import QUANTITIES
@@ -169,7 +169,8 @@ def coefficient_range(study: Study, *, tolerances: bool) -> tuple[float, float] 
     links = study.tolerance_links if tolerances else study.links
     by_coefficient = study.device.drive.plate.coefficient is not None
     own = "plate.coefficient" if by_coefficient else "plate.kinetic"
-    followed = [own] if by_coefficient else [own, "drive.mass", "plate.preload"]
+    pressing = [QUANTITIES[name].key for name in PRESSED_BY["plate"]]
+    followed = [own] if by_coefficient else [own, *pressing]
     for key in followed:  # and what they follow, and so on
         if key in links:
             followed += [of for of in (links[key].of, links[key].over) if of and of not in followed]
