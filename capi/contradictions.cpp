@@ -342,7 +342,8 @@ class Search {
     constexpr const char *exponent = "finger.load_exponent", *reference = "finger.reference_touch";
     if (coefficient && has(exponent) && number(exponent) != 1 && !has(reference))
       add(reference, {exponent, coefficient},
-          "given where the load exponent is not 1, as the touch at which the coefficients hold|none");
+          "given where the load exponent is not 1, as the touch at which the coefficients "
+          "hold|none");
   }
 
   /// The law of a contact and its parameters.

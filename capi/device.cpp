@@ -84,14 +84,14 @@ pindrive_error pindrive_c::made_of(const pindrive_device& device,
       finger(drive.finger, drive.finger);
   const auto owned = std::make_shared<OwnedDevice>(
       OwnedDevice{plate, finger,
-                  pd::device::Device{{},
-                                     {parameters.pressing().normal_force.value,
-                                      parameters.pressing().touch.value},
-                                     parameters.number("finger.load_exponent"),
-                                     *parameters.magnet(),
-                                     parameters.controller(),
-                                     pd::device::Axis(number("array.axis")),
-                                     device.spots},
+                  pd::device::Device{
+                      {},
+                      {parameters.pressing().normal_force.value, parameters.pressing().touch.value},
+                      parameters.number("finger.load_exponent"),
+                      *parameters.magnet(),
+                      parameters.controller(),
+                      pd::device::Axis(number("array.axis")),
+                      device.spots},
                   criteria});
   owned->plate.contact.curve = owned->plate.branches.data();
   owned->finger.contact.curve = owned->finger.branches.data();

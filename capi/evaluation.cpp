@@ -73,8 +73,12 @@ pindrive_error check_begin(const pindrive_scan& scan) {
 /// Inputs of a scan under its hand so far.
 device::ScanInputs inputs_of(const pindrive_scan& scan) {
   const device::LiveHand& hand = scan.stream->hand();
-  return {scan.owned->device, scan.page->raster(), hand.path(),
-          hand.plate(),       hand.touch(scan.owned->device.load_exponent),  hand.begin()};
+  return {scan.owned->device,
+          scan.page->raster(),
+          hand.path(),
+          hand.plate(),
+          hand.touch(scan.owned->device.load_exponent),
+          hand.begin()};
 }
 
 constexpr std::size_t unlimited = std::numeric_limits<std::size_t>::max();

@@ -74,7 +74,8 @@ class Case:
             *(n["mass"], n["stiffness"], n["damping"]),
             contact("plate", inf, 0.0, 1.0),
             contact(
-                "finger", *(n[f"finger.{name}"] for name in ("stiffness", "damping", "load_exponent"))
+                "finger",
+                *(n[f"finger.{name}"] for name in ("stiffness", "damping", "load_exponent")),
             ),
             *(self.inputs["mouse_velocity"], self.inputs["plate_load"]),
             *(n["displacement"], n["velocity"], n["skin_stretch"], self.inputs["force"]),

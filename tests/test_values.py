@@ -125,7 +125,7 @@ def test_representation_has_the_given_values() -> None:
     assert repr(drive()) == (
         "Drive(mass=0.01, stiffness=100, damping=0.32, "
         "plate=Contact(kinetic=0.022, static=0.0265, curve=<3 values>, stiffness=inf), "
-        "finger=Contact(kinetic=0.02, static=0.03, stiffness=1000), preload=0)"
+        "finger=Contact(kinetic=0.02, static=0.03, stiffness=1000), preload=0, …)"
     )
     assert "mouse_velocity=Profile(times=<1000 values>" in repr(made("release"))
 

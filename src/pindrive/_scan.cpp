@@ -191,8 +191,8 @@ void bind_scan(nb::module_& m) {
   m.def("closest_approaches", &closest_approaches, "motions"_a, "pairs"_a, "duration"_a,
         "Smallest x(behind) - x(ahead) of each pair of motions, m, and its time, s.");
   nb::class_<OwnedDevice>(m, "Device", "Device whose pins are alike.")
-      .def(nb::init<const DriveNumbers&, std::pair<double, double>, const MagnetNumbers&, const ControlNumbers&,
-                    double, const Table&>(),
+      .def(nb::init<const DriveNumbers&, std::pair<double, double>, const MagnetNumbers&,
+                    const ControlNumbers&, double, const Table&>(),
            "drive"_a, "pressing"_a, "magnet"_a, "control"_a, "axis"_a, "spots"_a);
   nb::class_<Scan>(m, "Scan", "Pins under a hand that moves over a page.")
       .def(nb::init<const OwnedDevice&, RasterNumbers, PathNumbers, const pd::Rows&,

@@ -128,8 +128,9 @@ inline CoilNumbers numbers_of(const device::CoilState<double>& s) {
 /// Device with the arrays to which it refers.
 class OwnedDevice {
  public:
-  OwnedDevice(const DriveNumbers& drive, std::pair<double, double> pressing, const MagnetNumbers& magnet,
-              const ControlNumbers& control, double axis, const Table& spots)
+  OwnedDevice(const DriveNumbers& drive, std::pair<double, double> pressing,
+              const MagnetNumbers& magnet, const ControlNumbers& control, double axis,
+              const Table& spots)
       : plate_(contact_of(std::get<3>(drive)), contact_of(std::get<3>(drive))),
         finger_(contact_of(std::get<4>(drive)), contact_of(std::get<4>(drive))),
         device_{drive_of(drive),
@@ -174,8 +175,12 @@ class Scan {
         path_(std::move(path)),
         touch_(touch, touch),
         velocity_(path_of(path_), device.view().axis),
-        inputs_{device.view(), raster_of(raster_), path_of(path_),
-                velocity_,     touch_.profile().to_the(device.view().load_exponent),   path_of(path_).begin()} {
+        inputs_{device.view(),
+                raster_of(raster_),
+                path_of(path_),
+                velocity_,
+                touch_.profile().to_the(device.view().load_exponent),
+                path_of(path_).begin()} {
     for (const auto& [position, velocity, stretch, coil, decision, pending, motion] : states)
       states_.push_back(
           {position, velocity, stretch, coil_of(coil), decision, pending, motion_of(motion)});

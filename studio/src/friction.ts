@@ -90,7 +90,7 @@ export function normalForce(values: Found, contact: string): number {
   return exponent === 1 || !reference ? touch : reference * (touch / reference) ** exponent;
 }
 
-/** Relative change of the normal force on a contact by those of its keys. */
+/** Relative change of the normal force on a contact by the changes of its keys. */
 export function pressRate(values: Found, contact: string, of: (key: string) => number): number {
   const parts = pressing(values, contact);
   const rates = TABLES.pressedBy[contact]!.map(of);
@@ -145,7 +145,20 @@ export function frictionParts(key: string): readonly string[] {
   return [own, ...(DRIVE.get(own)!.follows ?? []), ...TABLES.pressedBy[key.split(".")[0]!]!];
 }
 
-/** Friction in the alternative notation, within rounding; a finger then has this touch force, N. */
+/** The values with other coefficients of the plate, by which its forces stay as they were. */
+function withForcesKept(before: Values, after: Values): Values {
+  if (!byCoefficient(after, "plate")) return after;
+  const part = normalForce(before, "plate") / normalForce(after, "plate");
+  const next: Record<string, Value> = { ...after };
+  for (const key of frictionKeys("plate", true)) {
+    const value = next[key];
+    if (typeof value === "number") next[key] = value * part;
+    else if (value !== undefined) next[key] = (value as Rows).map(([u, y]) => [u, y * part] as const);
+  }
+  return next;
+}
+
+/** Friction in the alternative notation, within rounding; a finger then has a usual touch force, N. */
 export function withKind(values: Values, contact: string, coefficients: boolean): Values {
   if (byCoefficient(values, contact) === coefficients) return values;
   const touch = "finger.touch_force";
@@ -163,5 +176,5 @@ export function withKind(values: Values, contact: string, coefficients: boolean)
   next[ofKinetic] = found.kinetic;
   if (values[before[1]] !== undefined) next[ofStatic] = found.still;
   if (found.curve) next[ofCurve] = found.curve.map(([u, y], i) => [u, i ? y : found.kinetic] as const);
-  return next;
+  return contact === "finger" ? withForcesKept(values, next) : next;
 }

@@ -64,7 +64,7 @@ void the_bits_of_a_scan() {
   const auto rows = shaking();
   device::LiveHand hand(rows[0], {0, 5e-5}, device.axis);
   for (std::size_t i = 1; i < rows.size(); ++i) hand.add(rows[i], device.axis);
-  const device::ScanInputs inputs{device,       page.raster(),      hand.path(),
+  const device::ScanInputs inputs{device,       page.raster(), hand.path(),
                                   hand.plate(), hand.touch(1), hand.begin()};
   Random random(47);
   const auto found = streamed(device, page, rows, nullptr, false);

@@ -20,7 +20,8 @@ void places_and_rows() {
   const device::Place middle = hand.path().position(1.05);
   expect(std::abs(middle.x - 0.0175) < 1e-16, "in between the velocity is linear");
   expect(std::abs(hand.touch(1).from(0.05).value - 0.75) < 1e-15, "so is the touch");
-  expect(std::abs(hand.touch(2).from(0.05).value - 0.5625) < 1e-15, "its friction by a power of it");
+  expect(std::abs(hand.touch(2).from(0.05).value - 0.5625) < 1e-15,
+         "its friction by a power of it");
   expect(hand.plate().times()[1] == 1.1 - 1 && hand.plate().across_axis().rows[1] == 0.1,
          "the plate has the time since the begin");
 }

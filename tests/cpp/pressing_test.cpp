@@ -22,10 +22,12 @@ void a_touch_of_which_the_plate_has_a_share() {
   const pd::Profile<double> touch(times, factors, 3);
   const device::Pressing<double> pressing{0.08, 0.03};
   const auto loads = device::loads_under(pulls, pressing, 1.0, touch);
-  expect(loads.size() == 5, "a load has a piece for each line of the touch and each piece of the pull");
+  expect(loads.size() == 5,
+         "a load has a piece for each line of the touch and each piece of the pull");
   double worst = 0;
   for (std::size_t i = 0; i < loads.size(); ++i) {
-    const double begin = loads[i].piece.begin, end = i + 1 < loads.size() ? loads[i + 1].piece.begin : 0.4;
+    const double begin = loads[i].piece.begin,
+                 end = i + 1 < loads.size() ? loads[i + 1].piece.begin : 0.4;
     for (const double part : {0.01, 0.3, 0.9}) {
       const double time = begin + part * (end - begin), touched = touch.from(time).value;
       const double normal = 0.08 - 0.03 + 0.03 * touched + pull_at(1 + time);

@@ -125,8 +125,8 @@ def test_a_magnet_tips_over_its_edge() -> None:
         assert moments.stays == pytest.approx(1.75e-3 * pressed, rel=1e-14)
         assert moments.tips == (height is None)
     (tips,) = doubts(reader(None))
-    assert tips.startswith("a magnet tips before it lets its pin go: spring (227.6 mN at magnet.sp")
-    assert tips.endswith("turn it with 1.97 mN*m, and it stands with 1.77 mN*m")
+    assert tips.startswith("a magnet tips before it lets its pin go: spring (243.8 mN at magnet.sp")
+    assert tips.endswith("turn it with 2.07 mN*m, and it stands with 1.87 mN*m")
     assert [*doubts(reader("4 mm"))] == []
 
 

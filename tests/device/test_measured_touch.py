@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from math import inf
-
 import numpy as np
 import pytest
 
 from oracle.scan_cycles import distance
 from pindrive import Contact, Drive, Profile
-from pindrive.device import Device, Electromagnet, HandPath, PinArray, Scan, Scene, scan, strokes
+from pindrive.device import Device, Electromagnet, PinArray, Scan, Scene, scan, strokes
 from random_scans import sampled
 
 

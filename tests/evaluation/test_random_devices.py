@@ -102,7 +102,13 @@ def commands_and_loads(done: Scan) -> int:
         current = reference.current(commands, CoilState(pin.begin), pin.begin, pin.end)
         assert isinstance(pin.load, Function)
         t = np.linspace(pin.begin, pin.end, 401)
-        load = device.load(reference.pull_of(current, t))
+        touch = (
+            pin.finger_load
+            if isinstance(pin.finger_load, float)
+            else pin.finger_load(t - pin.begin)
+        )
+        touched = device.drive.plate_touch * (touch - 1.0)
+        load = device.load(reference.pull_of(current, t) + touched)
         np.testing.assert_allclose(pin.load(t - pin.begin), load, rtol=1e-11)
     return len(pin.commands.times)
 

@@ -111,7 +111,10 @@ def test_every_commented_line_of_the_template_works(write: Write, table: str, li
     if name.startswith("stop_"):  # of stops, which are elastic
         needed = tuple(f"# {n} =" for n in ("travel", "stop_stiffness") if n != name)
         lines = [text[2:] if text.startswith(needed) else text for text in lines]
-    if "coefficient" in name or name in ("touch_force", "reference_touch"):  # in place of the table's forces
+    if "coefficient" in name or name in (
+        "touch_force",
+        "reference_touch",
+    ):  # in place of the table's forces
         begin = lines.index(f"[{table}]")
         end = next(i for i in range(begin + 1, len(lines)) if lines[i].startswith("["))
         forces, needed = ("kinetic =", "static ="), ("# coefficient =", "# touch_force =")

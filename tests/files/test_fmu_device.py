@@ -182,7 +182,7 @@ def test_a_touch_that_changes_presses_on_the_plate_too(version: int, tmp_path: P
     stops, on = np.unique([*hand.times, *load.times, *switchings, pin.end - pin.begin]), False
     size = np.abs(pin.position(np.linspace(pin.begin, pin.end, 500))).max()
     for begin, end in pairwise(stops):
-        given = {}
+        given: dict[str, float] = {}
         for name, rows in (("mouse_velocity", hand), ("finger_load", load)):
             ahead = rows(0.5 * (begin + end)) - rows(begin)
             given |= {name: rows(begin), f"{name}_rate": 2.0 * ahead / (end - begin)}

@@ -213,7 +213,7 @@ def test_a_batch_of_masses_coefficients_and_touches_is_that_of_single_motions() 
 
 
 def test_a_batch_of_shares_and_exponents_is_that_of_single_motions() -> None:
-    varied = {
+    varied: dict[str, Any] = {
         "touch_share": [0.0, 0.5, 1.0, 1.0],
         "load_exponent": [1.0, 0.5, 2 / 3, 1.5],
         "reference_touch": [0.01, 0.02, 0.08, 0.02],
@@ -330,10 +330,13 @@ def test_a_file_has_the_drive_of_its_coefficients() -> None:
     assert values["plate.kinetic"] == DRIVE.plate.kinetic
     assert (values["finger.touch_force"], values["plate.preload"]) == (0.010, 0.0)
     heavier = load_device("device.toml", {"mass": "20 g", "touch_force": "20 mN"}).drive
-    assert load_device(
-        "device.toml",
-        {"load_exponent": 2 / 3, "finger.reference_touch": "80 mN", "plate.touch_share": 0.5},
-    ).drive == LIGHT
+    assert (
+        load_device(
+            "device.toml",
+            {"load_exponent": 2 / 3, "finger.reference_touch": "80 mN", "plate.touch_share": 0.5},
+        ).drive
+        == LIGHT
+    )
     assert forces(heavier) == pytest.approx([2.0 * force for force in forces(DRIVE)])
     # Static friction and the skin's stretch keep their ratio.
     kept = load_device("device.toml", {"plate.coefficient": 0.45})

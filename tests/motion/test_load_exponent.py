@@ -26,11 +26,8 @@ def drawn(seed: int) -> tuple[pd.Drive, pd.Release]:
 
     damped = bool(draw.random() < 0.5)
     kinetic = near(0.02 if damped else 0.01)
-    finger = pd.Contact(
-        kinetic,
-        kinetic * float(draw.choice([1.0, 1.5])),
-        **({"stiffness": near(300.0), "damping": near(0.3)} if damped else {}),
-    )
+    skin: dict[str, Any] = {"stiffness": near(300.0), "damping": near(0.3)} if damped else {}
+    finger = pd.Contact(kinetic, kinetic * float(draw.choice([1.0, 1.5])), **skin)
     given = drive(finger, load_exponent=float(draw.choice(EXPONENTS)))
     times = np.cumsum([0.0, *draw.uniform(0.005, 0.02, 3)])
     touch = pd.Profile(times.tolist(), np.exp(draw.uniform(-1.5, 1.0, 4)).tolist())

@@ -43,6 +43,7 @@ VERDICTS = {
     "In that case law of motion of the pin": "not evaluated",
     "During the investigation a significant": "not evaluated",
     "The relationship of transitional process": "not evaluated",
+    "The mathematical model of the drive of": "not evaluated",
     "The absolutely largest pin velocity": "holds when the pin reaches",
     "The pin will stop and dry friction force": "holds when the pin does not stick",
     "The first friction force direction change": "does not hold",
@@ -275,8 +276,8 @@ def test_what_the_share_of_the_touch_changes() -> None:
     """The figures of the sentence on the supporting surface."""
     touches = np.linspace(1e-3, 0.04, 40)
     times, ways = [], []
-    for share in (0.0, 1.0):
-        coefficient = 0.022 / (0.01 * 9.80665 + share * 0.01)
+    for part in (0.0, 1.0):
+        coefficient = 0.022 / (0.01 * 9.80665 + part * 0.01)
         pressed = Drive(
             mass=0.01,
             stiffness=100.0,
@@ -284,7 +285,7 @@ def test_what_the_share_of_the_touch_changes() -> None:
             plate=Contact(coefficient=coefficient),
             finger=Contact(coefficient=0.5),
             touch_force=0.01,
-            touch_share=share,
+            touch_share=part,
         )
         found = simulate_batch(pressed, Release(0.06, 2e-3), touch_force=touches)
         times.append(found.transient_settling_time.to_numpy())

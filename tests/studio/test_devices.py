@@ -277,9 +277,7 @@ def read(node: Ask, texts: list[str]) -> list[Any]:
 
 BY_COEFFICIENTS = (
     template()
-    .replace(
-        'kinetic = "22 mN"', 'coefficient = 0.2\npreload = "30 mN"\ntouch_share = 0.7', 1
-    )
+    .replace('kinetic = "22 mN"', 'coefficient = 0.2\npreload = "30 mN"\ntouch_share = 0.7', 1)
     .replace('static = "26.5 mN"', "static_coefficient = 0.3", 1)
     .replace(
         'kinetic = "5 mN"',
@@ -496,8 +494,8 @@ def what_follows_a_coefficient(node: Ask, tmp_path: Path) -> None:
     [
         (
             "friction.ts",
-            "sum + size, sizes[0]!",
-            "Math.max(sum, size), sizes[0]!",
+            "preload + share * touch;",
+            "Math.max(preload, share * touch);",
             test_device_files_are_read_and_written_like_python,
         ),
         (

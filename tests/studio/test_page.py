@@ -244,7 +244,8 @@ def test_friction_is_given_by_forces_or_by_coefficients(page: Any, tmp_path: Pat
     for contact in ("plate", "finger"):
         page.select_option(f"#{contact}-kind", "coefficient")
         settled(page)
-    assert value(page, "plate.coefficient") == pytest.approx(0.022 / (0.01 * 9.80665), rel=1e-14)
+    pressed = 0.01 * 9.80665 + 0.01  # weight and touch
+    assert value(page, "plate.coefficient") == pytest.approx(0.022 / pressed, rel=1e-13)
     assert value(page, "finger.touch_force") == 0.01
     assert value(page, "plate.kinetic") is None
     assert page.locator("#plate-kinetic").is_hidden()
@@ -255,11 +256,12 @@ def test_friction_is_given_by_forces_or_by_coefficients(page: Any, tmp_path: Pat
     page.keyboard.press("Enter")
     settled(page)
     written = pd.load_device(saved(page, "toml", tmp_path))
-    assert written.drive.plate.kinetic == pytest.approx(0.044, rel=1e-14)
+    heavier = 0.022 * (0.02 * 9.80665 + 0.01) / pressed
+    assert written.drive.plate.kinetic == pytest.approx(heavier, rel=1e-13)
     for contact in ("plate", "finger"):
         page.select_option(f"#{contact}-kind", "force")
         settled(page)
-    assert value(page, "plate.kinetic") == pytest.approx(0.044, rel=1e-14)
+    assert value(page, "plate.kinetic") == pytest.approx(heavier, rel=1e-13)
     assert value(page, "finger.touch_force") is None
 
 

@@ -167,7 +167,8 @@ class PinFollower {
       lines.across_velocity = plate.across().from(time);
       lines.finger_load = scan.finger_load.given_from(time);
     }
-    const bool turns = !pulls && device_->pressing.touch != 0 && rows && scan.finger_load.turns(passed_, time);
+    const bool turns =
+        !pulls && device_->pressing.touch != 0 && rows && scan.finger_load.turns(passed_, time);
     if (pulls || turns) lines.plate_load = load(scan, time, turns).from(time);
     passed_ = time;
     // A switching that is due may be known or not, by the times at which the caller pauses.

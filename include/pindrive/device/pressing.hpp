@@ -1,4 +1,4 @@
-/// What presses on a plate: weight and preload, a share of the touch, and the pull of the magnet.
+/// Normal force of a plate: weight and preload, a share of the touch, and the pull of the magnet.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace pindrive::device {
 
-/// Normal force of a plate without a pull, and the part of it that is touch.
+/// Normal force of a plate without a pull, and the touch that is a part of the force.
 template <class T>
 struct Pressing {
   T normal_force;  ///< at the usual touch, N; > 0

@@ -31,9 +31,7 @@ struct Device {
   std::vector<Place> spots;  ///< offset of the spot of each pin from the hand, m
 
   /// Factor of the plate friction under a pull (N) and a touch, over the usual one.
-  double load(double pull, double touch = 1) const {
-    return pressing.load(pull, touch);
-  }
+  double load(double pull, double touch = 1) const { return pressing.load(pull, touch); }
 };
 
 /// State of a pin, its coil and its control block at the begin of a scan.
@@ -136,8 +134,9 @@ struct ScanInputs {
   Raster raster;
   HandPath path;
   const PlateVelocity& plate;
-  Profile<double> finger_load;  ///< touch over the usual one to the power of its friction, over the time since the begin
-  double begin;                 ///< of the scan, s
+  Profile<double>
+      finger_load;  ///< touch over the usual one to the power of its friction, over the time since the begin
+  double begin;  ///< of the scan, s
 
   /// Luminance under the spot of a pin.
   double luminance(std::size_t pin, double t) const {

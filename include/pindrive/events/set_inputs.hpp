@@ -58,12 +58,11 @@ Inputs<T> continued(const StepperState<T>& state, const Inputs<T>& begun) {
     return of_release.has_breakpoints() ? of_release : Profile<T>(set);
   };
   constexpr T never = std::numeric_limits<T>::infinity();
-  return without_end<T>({input(begun.mouse_velocity, state.mouse_velocity), state.pin.x,
-                         state.pin.v, never, input(begun.plate_load, state.plate_load),
-                         std::numeric_limits<T>::quiet_NaN(), input(begun.force, state.force),
-                         input(begun.across_velocity, state.across_velocity),
-                         input(begun.finger_load, state.finger_load)
-                             .to_the(begun.finger_load.power())});
+  return without_end<T>(
+      {input(begun.mouse_velocity, state.mouse_velocity), state.pin.x, state.pin.v, never,
+       input(begun.plate_load, state.plate_load), std::numeric_limits<T>::quiet_NaN(),
+       input(begun.force, state.force), input(begun.across_velocity, state.across_velocity),
+       input(begun.finger_load, state.finger_load).to_the(begun.finger_load.power())});
 }
 
 /// True if a number and its derivative are zero.

@@ -324,7 +324,7 @@ struct Curve {
     if (straight()) return Real(0);
     return raised ? most_orders * abs(plain(relative_rate())) / raised_part : piece->fastest();
   }
-  /// True if it is a sum of at most so many terms beside a polynomial.
+  /// Number of its terms beside a polynomial.
   std::size_t terms() const { return piece == nullptr ? 0 : piece->count; }
   /// The same input from τ on.
   Curve from(T tau) const {
@@ -336,7 +336,7 @@ struct Curve {
   }
 
  private:
-  static constexpr Real raised_part{0.2};   ///< of the time to the zero of a raised line, in a step
+  static constexpr Real raised_part{0.2};  ///< of the time to the zero of a raised line, in a step
   static constexpr Real most_orders{64};
 
   [[gnu::noinline]] void expand_raised(T* c, T tau, T step, int order) const {

@@ -268,9 +268,7 @@ class Profile {
       : held_(pieces[0].at(T(0))), constant_(false), pieces_(pieces), count_(count) {}
 
   /// Input from time t on, until the next breakpoint.
-  PINDRIVE_INLINE Curve<T> from(T t) const {
-    return raised() ? raised_from(t) : given_from(t);
-  }
+  PINDRIVE_INLINE Curve<T> from(T t) const { return raised() ? raised_from(t) : given_from(t); }
   /// The same before it is raised to a power.
   PINDRIVE_INLINE Curve<T> given_from(T t) const {
     if (count_ == 0) return held_.from(t);
@@ -298,10 +296,8 @@ class Profile {
            abs(is.line.value - value) > detail::rounding<T> * abs(value);
   }
   /// First breakpoint after time t, s; infinite without one.
-  T next_breakpoint(T t) const {
-    return raised() ? next_of_raised(t) : next_given(t);
-  }
-  bool constant() const { return constant_; }           ///< the input is one number and remains so
+  T next_breakpoint(T t) const { return raised() ? next_of_raised(t) : next_given(t); }
+  bool constant() const { return constant_; }  ///< the input is one number and remains so
   /// True if it is linear between breakpoints.
   bool straight() const { return pieces_ == nullptr && (constant_ || !raised()); }
   /// True if the input is made of rows or pieces, and so changes by itself.

@@ -98,9 +98,7 @@ class InputSeries {
     if (curve_.straight()) return Real(0);
     return curve_.beyond(step_, N);
   }
-  Real missed_rate() const {
-    return curve_.fastest() * missed();
-  }
+  Real missed_rate() const { return curve_.fastest() * missed(); }
 
  private:
   Curve<T> curve_{};

@@ -103,7 +103,7 @@ class Device:
         drive, finger = self.drive, self.drive.finger
         touched = drive.plate_touch * (finger_load - 1.0)
         plate = drive.plate.kinetic * self.load(self.magnet.residual + touched) * abs(cos(angle))
-        pressed = finger_load**drive.load_exponent
+        pressed = float(finger_load**drive.load_exponent)
         if plate <= finger.static_friction * pressed:
             return 0.0
         return (plate - finger.kinetic * pressed) / drive.stiffness

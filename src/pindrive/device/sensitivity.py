@@ -53,9 +53,7 @@ def _direction(pin: PinScan, motion: Motion, name: str) -> tuple[CoreNumbers, fl
     return along, size
 
 
-def _load_along(
-    pin: PinScan, magnet: Numbers, pressed: tuple[float, float], delay: float
-) -> Any:
+def _load_along(pin: PinScan, magnet: Numbers, pressed: tuple[float, float], delay: float) -> Any:
     """Derivative of the pieces of the load on the plate; the samples of the page hold."""
     given, commands = pin.inputs, pin.commands
     pieces = _core.load_along(

@@ -159,7 +159,7 @@ def contact_of(values: Mapping[str, Value], table: str) -> Contact:
     given = {
         name: value
         for name, value in table_of(values, table).items()
-        if f"{table}.{name}" in QUANTITIES  # what presses is the drive's
+        if f"{table}.{name}" in QUANTITIES  # preload and touch are the drive's
     }
     stiffness, damping = given.pop("stiffness", None), given.pop("damping", None)
     given["law"] = law_name(given.get("law"))

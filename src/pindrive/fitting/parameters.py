@@ -510,7 +510,15 @@ def _contact(values: Mapping[str, Any], name: str, contact: Any) -> Any:
     damping = values.get(f"{name}.damping", damping)
     if name == "finger":
         power = values.get("load_exponent", power)
-    return kinetic, static, give, curve, (law, breakaway, velocity, exponent, viscous), damping, power
+    return (
+        kinetic,
+        static,
+        give,
+        curve,
+        (law, breakaway, velocity, exponent, viscous),
+        damping,
+        power,
+    )
 
 
 def _table(values: Mapping[str, Any], name: str, rows: Any) -> Any:

@@ -339,7 +339,9 @@ def _friction(drive: Drive, varied: Collection[str]) -> dict[str, float | None]:
         found |= {f"{table}_{name}": getattr(contact, name) for name in (own, static)}
         if by_coefficient:
             found |= {name: getattr(drive, name) for name in PRESSED_BY[table] if name != "mass"}
-        elif table == "finger" and (given := sorted(varied & {"touch_force", "reference_touch"})):
+        elif table == "finger" and (
+            given := [name for name in ("touch_force", "reference_touch") if name in varied]
+        ):
             required = "left out where the finger's friction is given as a force"
             raise ValueError(refusal(given[0], required, "it"))
     return found

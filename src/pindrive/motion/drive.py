@@ -448,7 +448,7 @@ class Drive:
 
     @property
     def normal_force(self) -> float:
-        """Normal force on the plate without magnetic pull, N: weight, preload and share of touch."""
+        """Normal force on the plate without pull, N: weight, preload and a share of the touch."""
         return float(normal_force("plate", partial(getattr, self)))
 
     @property
@@ -500,7 +500,9 @@ def values_of(drive: Drive) -> dict[str, Any]:
     own = ("mass", "stiffness", "damping", "travel", "stop_stiffness", "stop_damping")
     values = {f"drive.{name}": getattr(drive, name) for name in own}
     pressing = {"plate": ("preload", "touch_share"), "finger": PRESSED_BY["finger"]}
-    values |= {f"{table}.{n}": getattr(drive, n) for table, names in pressing.items() for n in names}
+    values |= {
+        f"{table}.{n}": getattr(drive, n) for table, names in pressing.items() for n in names
+    }
     for table, contact in (("plate", drive.plate), ("finger", drive.finger)):
         names = COEFFICIENTS if contact.coefficient is None else COEFFICIENTS.values()
         values |= {f"{table}.{name}": getattr(contact, name) for name in names}

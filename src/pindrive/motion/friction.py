@@ -20,9 +20,9 @@ PRESSED_BY: Final[dict[str, tuple[str, ...]]] = {
 PRESSING: Final = tuple(
     dict.fromkeys(name for parts in PRESSED_BY.values() for name in parts if name != "mass")
 )
-"""Those that are there for their normal force alone."""
+"""Quantities that are there for their normal force alone."""
 OPTIONAL: Final = {"plate": ("touch_force",), "finger": ("reference_touch",)}
-"""Those that may be left out."""
+"""Quantities of the normal force that may be left out."""
 COEFFICIENTS: Final = {
     "kinetic": "coefficient",
     "static": "static_coefficient",
@@ -64,7 +64,7 @@ def normal_force(contact: str, value: Value) -> Any:
     exponent, reference = value("load_exponent"), value("reference_touch")
     if reference is None:
         return touch
-    coulomb = exponent == 1.0  # to the bit; of a batch at each point
+    coulomb = exponent == 1.0  # exactly, also at each point of a batch
     return coulomb * touch + (1.0 - coulomb) * reference * (touch / reference) ** exponent
 
 

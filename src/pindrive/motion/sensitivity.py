@@ -27,7 +27,13 @@ from pindrive.motion.core_numbers import (
     replaced,
 )
 from pindrive.motion.drive import Contact, Drive
-from pindrive.motion.friction import COEFFICIENTS, PRESSED_BY, PRESSING, normal_force, normal_force_by
+from pindrive.motion.friction import (
+    COEFFICIENTS,
+    PRESSED_BY,
+    PRESSING,
+    normal_force,
+    normal_force_by,
+)
 from pindrive.motion.function import Function, rates_of
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import counted

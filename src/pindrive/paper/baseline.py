@@ -51,7 +51,7 @@ PRESSED: Final = Drive(
     finger=Contact(coefficient=FINGER_COEFFICIENT),
     touch_force=TOUCH_FORCE,
 )
-"""The drive with friction that follows what presses: the finger loads both contacts, as in the paper."""
+"""The drive with friction that follows what presses: the finger loads both contacts."""
 HOLD: Final = 12.0
 """The magnet's pull while it holds, as a factor on the plate's friction."""
 RELEASE: Final = Release(VALUES["mouse_velocity"], VALUES["displacement"])

@@ -252,8 +252,8 @@ _SENTENCES: Final = (
         "Condition of operation, from measurements that are not printed. This report keeps the "
         "condition: one friction coefficient of the plate, and a hand that moves along the drive. "
         "`pindrive.Device` also simulates an oblique hand: the deflection of the pin of "
-        "examples/tactile-reader.toml is 84 % of that under an aligned hand at 10°, 69 % at 30° "
-        "and 26 % at 60°; from 84° on no line is shown (docs/studies.md).",
+        "examples/tactile-reader.toml is 83 % of that under an aligned hand at 10°, 68 % at 30° "
+        "and 25 % at 60°; from 84° on no line is shown (docs/studies.md).",
     ),
     (
         "Experiment",

@@ -124,8 +124,8 @@ def _falling(time: float) -> Motion:
 
 _FOLLOWS: Final = "friction follows the weight"
 _OF_TWO: Final = (
-    f"touch force: F_f = {baseline.FINGER_COEFFICIENT:g} N_f, and F_p = μ N_p with the weight and the "
-    f"touch in N_p, μ = {baseline.PRESSED.plate.coefficient or 0.0:.3g}. Fall time: from "
+    f"touch force: F_f = {baseline.FINGER_COEFFICIENT:g} N_f, and F_p = μ N_p with the weight and "
+    f"the touch in N_p, μ = {baseline.PRESSED.plate.coefficient or 0.0:.3g}. Fall time: from "
     f"{baseline.HOLD:g} times the plate's own friction linearly to it, from t = 0 on, when the "
     "magnet is switched off. Dashed: F_p grows with the weight by the same μ."
 )

@@ -394,7 +394,7 @@ _CONTACTS: Final = (
             "exponent of the finger's friction over its touch force",
             source=EXPONENT,
             example=1.0,
-            remark="1 (Coulomb) unless given; another needs reference_touch",
+            remark="1 is Coulomb's law; another needs reference_touch",
         ),
         Quantity(
             "reference_touch",
