@@ -1,0 +1,191 @@
+/// Taylor series of all quantities of a system in one mode.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "pindrive/bodies/joined_bodies.hpp"
+#include "pindrive/bodies/system.hpp"
+#include "pindrive/flow/polynomial.hpp"
+#include "pindrive/series/series_inputs.hpp"
+
+namespace pindrive::detail {
+
+/// Coefficients from a state on, in the time σ = τ/step. N is T, or T with its error.
+template <class T, class N = T>
+class Expansion {
+ public:
+  using Real = detail::Real<T>;
+  using Series = std::array<N, series_order + 2>;
+  using Mode = std::vector<bodies::Slip>;
+
+  explicit Expansion(const bodies::System<T>& system)
+      : system_(&system),
+        joined_(system, {}, {}),
+        order_(system.bodies.size(), system.contacts.size()),
+        position_(system.bodies.size()),
+        velocity_(system.bodies.size()),
+        stretch_(system.contacts.size()),
+        sliding_(system.contacts.size()),
+        friction_(system.contacts.size()) {}
+
+  /// Takes a mode, from a time on, s.
+  void set(const Mode& mode, const T& time) {
+    mode_ = mode;
+    std::vector<int> stuck;
+    std::vector<T> limits;
+    for (std::size_t j = 0; j < mode.size(); ++j) {
+      if (mode[j] != bodies::Slip::stick || !contact(j).rigid()) continue;
+      const T limit = contact(j).static_limit * contact(j).load.from(time).value;
+      if (limit == 0) continue;  // cannot hold
+      stuck.push_back(static_cast<int>(j));
+      limits.push_back(limit);
+    }
+    joined_ = JoinedBodies<T>(*system_, std::move(stuck), std::move(limits));
+  }
+
+  /// Computes the orders up to one from a state on, in the time τ/step.
+  void expand(const bodies::State<T>& state, Real step, int order) {
+    begin(state, step);
+    for (int n = 0; n <= order; ++n) {
+      const T next = T(step) / T(n + 1);
+      for (std::size_t i = 0; i < position_.size(); ++i) order_.force[i] = given(pushes_[i], n);
+      for (std::size_t l = 0; l < system_->links.size(); ++l) pull(l, n);
+      for (std::size_t j = 0; j < mode_.size(); ++j) rub(j, n, next);
+      for (const int j : joined_.stuck()) order_.surface[j] = rate_of(surfaces_[j], n);
+      joined_.solve(order_);
+      for (const int j : joined_.stuck()) friction_[j][n] = order_.friction[j];
+      for (std::size_t i = 0; i < position_.size(); ++i) {
+        position_[i][n + 1] = next * velocity_[i][n];
+        velocity_[i][n + 1] = next * order_.acceleration[i];
+      }
+    }
+  }
+
+  const Series& position(std::size_t body) const { return position_[body]; }
+  const Series& velocity(std::size_t body) const { return velocity_[body]; }
+  const Series& stretch(std::size_t contact) const { return stretch_[contact]; }
+  /// Speed at which `one` slides over the surface, or its skin does, m/s.
+  const Series& sliding(std::size_t contact) const { return sliding_[contact]; }
+  /// Friction force on `one`, N.
+  const Series& friction(std::size_t contact) const { return friction_[contact]; }
+  /// Order n of the largest friction force of a contact that sticks, N.
+  N limit(std::size_t j, int n) const { return contact(j).static_limit * given(loads_[j], n); }
+
+  /// Longest step over which the terms of the inputs are their Taylor polynomials, s.
+  Real input_reach(T time) const {
+    Real least = std::numeric_limits<Real>::infinity();
+    const auto look = [&](const Profile<T>& input) {
+      const Curve<T> curve = input.from(time);
+      if (!curve.straight())
+        least = std::min(least, curve.reach(T(0), series_order, Real(longest_input)));
+    };
+    for (const auto& body : system_->bodies) look(body.force);
+    for (const auto& link : system_->links) look(link.length);
+    for (const auto& each : system_->contacts) {
+      look(each.load);
+      look(each.velocity);
+    }
+    return least;
+  }
+
+ private:
+  const bodies::Contact<T>& contact(std::size_t j) const { return system_->contacts[j]; }
+
+  void begin(const bodies::State<T>& state, Real step) {
+    pushes_.clear();
+    lengths_.clear();
+    loads_.clear();
+    surfaces_.clear();
+    const T time = state.time;
+    late_ = rounding<Real> * std::abs(plain(time)) / step;
+    for (const auto& body : system_->bodies) pushes_.emplace_back(body.force.from(time), step);
+    for (const auto& link : system_->links) lengths_.emplace_back(link.length.from(time), step);
+    for (const auto& each : system_->contacts) {
+      loads_.emplace_back(each.load.from(time), step);
+      surfaces_.emplace_back(each.velocity.from(time), step);
+    }
+    for (std::size_t i = 0; i < position_.size(); ++i) {
+      position_[i][0] = known(state.position[i], error(state.errors.position, i));
+      velocity_[i][0] = known(state.velocity[i], error(state.errors.velocity, i));
+    }
+    for (std::size_t j = 0; j < stretch_.size(); ++j)
+      stretch_[j][0] = known(state.stretch[j], error(state.errors.stretch, j));
+  }
+  static Real error(const std::vector<Real>& of, std::size_t i) {
+    return of.empty() ? Real(0) : of[i];
+  }
+  /// Order n of an input, or of the rate of it, with the error of a time that is known to rounding.
+  N given(const InputSeries<T>& input, int n) const {
+    return known(input[n], late_ * std::abs(T(n + 1) * input[n + 1]));
+  }
+  N rate_of(const InputSeries<T>& input, int n) const {
+    return known(input.rate(n), late_ * std::abs(T(n + 1) * input.rate(n + 1)));
+  }
+  /// Number of a state, with the rounding of it.
+  static N known(const T& of, Real within = 0) {
+    if constexpr (std::is_same_v<N, T>)
+      return of;
+    else
+      return {of, within + 4 * rounding<Real> * std::abs(plain(of))};
+  }
+  /// Order n of the distance of two bodies, or of the rate of it.
+  static N apart(const std::vector<Series>& of, int one, int other, int n) {
+    return other == bodies::ground ? of[one][n] : of[one][n] - of[other][n];
+  }
+  void push(int one, int other, const N& by) {
+    order_.force[one] += by;
+    if (other != bodies::ground) order_.force[other] -= by;
+  }
+  void pull(std::size_t l, int n) {
+    const bodies::Link<T>& link = system_->links[l];
+    const N longer = apart(position_, link.one, link.other, n) - given(lengths_[l], n);
+    const N faster = apart(velocity_, link.one, link.other, n) - rate_of(lengths_[l], n);
+    push(link.one, link.other, -(link.stiffness * longer + link.damping * faster));
+  }
+  /// Order n of the friction of a contact, and of the sliding speed; of skin also the next order of the stretch.
+  void rub(std::size_t j, int n, T next) {
+    const bodies::Contact<T>& c = contact(j);
+    const bodies::Slip slip = mode_[j];
+    const N speed = apart(velocity_, c.one, c.other, n) - given(surfaces_[j], n);
+    const T side = T(static_cast<int>(slip));
+    const N kinetic = side * c.kinetic * given(loads_[j], n);
+    sliding_[j][n] = speed;
+    if (c.rigid()) {
+      friction_[j][n] = -kinetic;  // none in stick, to which the joined bodies add theirs
+      if (slip == bodies::Slip::stick) return;
+    } else if (slip == bodies::Slip::stick) {
+      friction_[j][n] = -(c.stiffness * stretch_[j][n] + c.damping * speed);
+      stretch_[j][n + 1] = next * speed;
+      sliding_[j][n] = N(T(0));
+    } else {
+      friction_[j][n] = -kinetic;
+      N rate;
+      if (c.damping != 0) {
+        rate = (kinetic - c.stiffness * stretch_[j][n]) / c.damping;
+        stretch_[j][n + 1] = next * rate;
+      } else {
+        rate = side * c.kinetic * rate_of(loads_[j], n) / c.stiffness;
+        stretch_[j][n] = kinetic / c.stiffness;
+      }
+      sliding_[j][n] = speed - rate;
+    }
+    push(c.one, c.other, friction_[j][n]);
+  }
+
+  const bodies::System<T>* system_;
+  Mode mode_;
+  JoinedBodies<T> joined_;
+  typename JoinedBodies<T>::template Order<N> order_;
+  std::vector<Series> position_, velocity_, stretch_, sliding_, friction_;
+  Real late_{0};  ///< resolution of the time over the step
+  std::vector<InputSeries<T>> pushes_, lengths_, loads_, surfaces_;
+};
+
+}  // namespace pindrive::detail

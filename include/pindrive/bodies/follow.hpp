@@ -1,0 +1,216 @@
+/// Motion of a system of bodies from event to event.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "pindrive/bodies/expansion.hpp"
+#include "pindrive/bodies/mode_selection.hpp"
+#include "pindrive/bodies/system.hpp"
+#include "pindrive/flow/polynomial.hpp"
+#include "pindrive/model/model.hpp"
+#include "pindrive/numbers/limits.hpp"
+
+namespace pindrive::bodies {
+
+/// Change of a contact at a time, s.
+template <class T>
+struct Change {
+  T time;
+  int contact;
+  Slip before, after;
+};
+
+/// A system under way: its state, the slip of its contacts, and its steps, whose polynomials are its motion.
+template <class T>
+class Following {
+ public:
+  using Real = detail::Real<T>;
+  using Mode = std::vector<Slip>;
+
+  /// From a state on; a contact whose surfaces move apart slips, another one sticks where it can.
+  Following(const System<T>& system, State<T> state)
+      : system_(&system),
+        state_(std::move(state)),
+        series_(system),
+        selection_(system),
+        fastest_(fastest_of(system)) {
+    std::vector<int> active;
+    for (std::size_t j = 0; j < system.contacts.size(); ++j) {
+      const T speed = speed_of(static_cast<int>(j));
+      const bool slips = system.contacts[j].rigid() && speed != 0;
+      mode_.push_back(!slips ? Slip::stick : speed > 0 ? Slip::forward : Slip::backward);
+      if (!slips) active.push_back(static_cast<int>(j));
+    }
+    settle(active);
+  }
+
+  const State<T>& state() const { return state_; }
+  const Mode& mode() const { return mode_; }
+  const std::vector<Change<T>>& changes() const { return changes_; }
+  Status status() const { return status_; }
+  long steps() const { return steps_; }
+
+  /// Goes on to a time, s; the status says if it was reached.
+  void advance(T until) {
+    while (status_ == Status::ok && state_.time < until) step(until);
+  }
+
+ private:
+  static constexpr Real longest{
+      2.5};  ///< step times the fastest rate: the rest of a series is below rounding
+
+  /// Bound of the rates of all free motions, 1/s: of the springs by the largest row sum, and so of the dampers.
+  static Real fastest_of(const System<T>& system) {
+    using std::sqrt;
+    const std::size_t count = system.bodies.size();
+    std::vector<Real> stiff(count), damped(count);
+    Real skin{0};
+    const auto add = [&](int one, int other, Real stiffness, Real damping) {
+      for (const bool first : {true, false}) {
+        const int i = first ? one : other, j = first ? other : one;
+        if (i == ground) continue;
+        const Real m = plain(system.bodies[i].mass);
+        const Real both = j == ground ? m : sqrt(m * plain(system.bodies[j].mass));
+        const Real part = 1 / m + (j == ground ? Real(0) : 1 / both);
+        stiff[i] += stiffness * part;
+        damped[i] += damping * part;
+      }
+    };
+    for (const Link<T>& link : system.links)
+      add(link.one, link.other, plain(link.stiffness), plain(link.damping));
+    for (const Contact<T>& c : system.contacts) {
+      if (c.rigid()) continue;
+      add(c.one, c.other, plain(c.stiffness), plain(c.damping));
+      if (c.damping != 0) skin = std::max(skin, plain(c.stiffness / c.damping));
+    }
+    Real fastest = skin;
+    for (std::size_t i = 0; i < count; ++i)
+      fastest = std::max(fastest, Real(sqrt(stiff[i])) + damped[i]);
+    return fastest;
+  }
+
+  /// True of a body that a rigid contact holds.
+  bool is_held(int body) const {
+    for (std::size_t j = 0; j < mode_.size(); ++j) {
+      const Contact<T>& c = system_->contacts[j];
+      if (body != ground && c.rigid() && mode_[j] == Slip::stick &&
+          (c.one == body || c.other == body))
+        return true;
+    }
+    return false;
+  }
+  T speed_of(int contact) const {
+    const Contact<T>& c = system_->contacts[contact];
+    const T other = c.other == ground ? T(0) : state_.velocity[c.other];
+    return state_.velocity[c.one] - other - c.velocity.from(state_.time).value;
+  }
+
+  void step(T until) {
+    const T breakpoint = std::min(system_->next_breakpoint(state_.time), until);
+    const Real rest = plain(breakpoint - state_.time);
+    Real span = std::min(rest, series_.input_reach(state_.time));
+    if (fastest_ > 0) span = std::min(span, longest / fastest_);
+    if (!(span < std::numeric_limits<Real>::infinity())) span = rest;
+    series_.expand(state_, span, detail::series_order);
+    ++steps_;
+    T tau = T(span);
+    std::vector<int> active;
+    for (std::size_t j = 0; j < mode_.size(); ++j) {
+      const T zero = zero_of(static_cast<int>(j), span);
+      if (!(zero <= tau)) continue;
+      if (zero < tau - detail::rounding<T> * (state_.time + tau)) active.clear();
+      tau = zero;
+      active.push_back(static_cast<int>(j));
+    }
+    const bool whole = span == rest && active.empty();
+    move(tau, whole ? breakpoint : state_.time + tau, span);
+    if (!active.empty() || whole) settle(active);
+  }
+
+  /// First time at which a guard of a contact becomes negative, s; infinite within the step if none.
+  T zero_of(int contact, Real span) const {
+    const int side = static_cast<int>(mode_[contact]);
+    detail::Polynomial<T> guard;
+    guard.span = span;
+    guard.degree = detail::series_order;
+    T first = std::numeric_limits<T>::infinity();
+    const auto look = [&] {
+      const Real known = detail::rounding<Real> * plain(guard.size());
+      first = std::min(first, detail::zero_beyond(guard, known));
+    };
+    if (side != 0) {
+      for (int n = 0; n <= guard.degree; ++n) guard.c[n] = T(side) * series_.sliding(contact)[n];
+      look();
+      return first;
+    }
+    for (const int way : {1, -1}) {
+      for (int n = 0; n <= guard.degree; ++n)
+        guard.c[n] = series_.limit(contact, n) - T(way) * series_.friction(contact)[n];
+      look();
+    }
+    return first;
+  }
+
+  void move(T tau, T time, Real span) {
+    const Real late = detail::rounding<Real> * std::abs(plain(time));
+    const auto move_to = [&](const auto& series, T& value, Real& error) {
+      const T s = tau / span;
+      T sum = series[detail::series_order], rate{0};
+      for (int n = detail::series_order; n-- > 0;) {
+        rate = rate * s + sum;
+        sum = sum * s + series[n];
+      }
+      value = sum;
+      error = late * std::abs(plain(rate)) / span;
+    };
+    auto& errors = state_.errors;
+    errors.position.resize(state_.position.size());
+    errors.velocity.resize(state_.velocity.size());
+    errors.stretch.resize(state_.stretch.size());
+    for (std::size_t i = 0; i < state_.position.size(); ++i) {
+      move_to(series_.position(i), state_.position[i], errors.position[i]);
+      move_to(series_.velocity(i), state_.velocity[i], errors.velocity[i]);
+    }
+    for (std::size_t j = 0; j < state_.stretch.size(); ++j)
+      if (!system_->contacts[j].rigid())
+        move_to(series_.stretch(j), state_.stretch[j], errors.stretch[j]);
+    state_.time = time;
+  }
+
+  /// Selects the mode after an event; a rigid contact whose sliding came to zero then has exactly none.
+  void settle(const std::vector<int>& active) {
+    for (const int contact : active) {
+      const Contact<T>& c = system_->contacts[contact];
+      if (!c.rigid() || mode_[contact] == Slip::stick || is_held(c.one) || is_held(c.other))
+        continue;
+      const T error = speed_of(contact), m = system_->bodies[c.one].mass;
+      const T part = c.other == ground ? T(1) : 1 / m / (1 / m + 1 / system_->bodies[c.other].mass);
+      state_.velocity[c.one] -= part * error;
+      if (c.other != ground) state_.velocity[c.other] += (1 - part) * error;
+    }
+    const Mode before = mode_;
+    const Real step = fastest_ > 0 ? 1 / fastest_ : Real(1);
+    if (!selection_.select(state_, active, step, mode_)) status_ = Status::inconsistent;
+    series_.set(mode_, state_.time);
+    for (std::size_t j = 0; j < mode_.size(); ++j)
+      if (mode_[j] != before[j])
+        changes_.push_back({state_.time, static_cast<int>(j), before[j], mode_[j]});
+  }
+
+  const System<T>* system_;
+  State<T> state_;
+  Mode mode_;
+  detail::Expansion<T> series_;
+  detail::ModeSelection<T> selection_;
+  Real fastest_;
+  std::vector<Change<T>> changes_;
+  Status status_{Status::ok};
+  long steps_{0};
+};
+
+}  // namespace pindrive::bodies

@@ -1,0 +1,170 @@
+/// Bodies that rigid contacts hold together: their accelerations, and the friction in the contacts.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "pindrive/bodies/system.hpp"
+
+namespace pindrive::detail {
+
+/// Rigid contacts that stick join bodies. A joined group moves as the ground that is part of it, or by the sum of its
+/// forces. The friction forces follow from the force that each body then needs. Where they are not unique, as of a body
+/// between two surfaces, they share it in proportion to static friction, so that stick lasts as long as it can.
+template <class T>
+class JoinedBodies {
+ public:
+  /// Contacts that stick and are rigid, by their indices, with the largest friction of each, N.
+  JoinedBodies(const bodies::System<T>& system, std::vector<int> stuck, std::vector<T> limits)
+      : system_(&system),
+        stuck_(std::move(stuck)),
+        limits_(std::move(limits)),
+        root_(system.bodies.size()),
+        mass_(system.bodies.size()) {
+    for (std::size_t i = 0; i < root_.size(); ++i) root_[i] = static_cast<int>(i);
+    walk();
+    for (std::size_t i = 0; i < root_.size(); ++i)
+      if (root_[i] != bodies::ground) mass_[root_[i]] += system.bodies[i].mass;
+    factorise();
+  }
+
+  /// Numbers of one order of a series, by body and by contact.
+  template <class N>
+  struct Order {
+    std::vector<N> force;               ///< on each body but for rigid contacts that stick, N
+    std::vector<N> surface;             ///< acceleration of the surface of each contact, m/s²
+    std::vector<N> acceleration;        ///< m/s², body by body
+    std::vector<N> friction;            ///< rigid contacts that stick, on `one`, N
+    std::vector<N> offset, sum, level;  ///< in between
+
+    Order(std::size_t bodies, std::size_t contacts)
+        : force(bodies),
+          surface(contacts),
+          acceleration(bodies),
+          friction(contacts),
+          offset(bodies),
+          sum(bodies) {}
+  };
+
+  /// Computes accelerations and friction from forces and surfaces.
+  template <class N>
+  void solve(Order<N>& order) const {
+    const auto& bodies = system_->bodies;
+    std::fill(order.offset.begin(), order.offset.end(), N(T(0)));
+    std::fill(order.sum.begin(), order.sum.end(), N(T(0)));
+    for (const Edge& edge : tree_) {
+      order.offset[edge.to] = T(edge.side) * order.surface[edge.contact];
+      if (edge.from != bodies::ground) order.offset[edge.to] += order.offset[edge.from];
+    }
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+      if (root_[i] != bodies::ground)
+        order.sum[root_[i]] += order.force[i] - bodies[i].mass * order.offset[i];
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      order.acceleration[i] = order.offset[i];
+      if (root_[i] != bodies::ground)
+        order.acceleration[i] += order.sum[root_[i]] / mass_[root_[i]];
+    }
+    if (stuck_.empty()) return;
+    order.level.resize(free_.size());
+    for (std::size_t k = 0; k < free_.size(); ++k)
+      order.level[k] = bodies[free_[k]].mass * order.acceleration[free_[k]] - order.force[free_[k]];
+    substitute(order.level);
+    for (std::size_t k = 0; k < stuck_.size(); ++k) {
+      const bodies::Contact<T>& c = system_->contacts[stuck_[k]];
+      order.friction[stuck_[k]] =
+          limits_[k] * (level_of(order.level, c.one) - level_of(order.level, c.other));
+    }
+  }
+  const std::vector<int>& stuck() const { return stuck_; }
+
+ private:
+  struct Edge {
+    int from, to, contact, side;  ///< side: 1 if `to` is the first body of the contact
+  };
+
+  /// Spanning trees of the groups, those with the ground from there on.
+  void walk() {
+    std::vector<bool> seen(root_.size(), false);
+    const auto grow = [&](int start) {
+      std::vector<int> reached{start};
+      for (std::size_t k = 0; k < reached.size(); ++k)
+        for (const int contact : stuck_) {
+          const bodies::Contact<T>& c = system_->contacts[contact];
+          for (const bool first : {true, false}) {
+            const int from = first ? c.other : c.one, to = first ? c.one : c.other;
+            if (from != reached[k] || to == bodies::ground || seen[to]) continue;
+            seen[to] = true;
+            root_[to] = start;
+            tree_.push_back({from, to, contact, first ? 1 : -1});
+            reached.push_back(to);
+          }
+        }
+    };
+    grow(bodies::ground);
+    for (std::size_t i = 0; i < root_.size(); ++i) {
+      if (seen[i]) continue;
+      seen[i] = true;
+      grow(static_cast<int>(i));
+    }
+    place_.assign(root_.size(), -1);
+    for (const Edge& edge : tree_) {
+      place_[edge.to] = static_cast<int>(free_.size());
+      free_.push_back(edge.to);
+    }
+  }
+  template <class N>
+  N level_of(const std::vector<N>& level, int body) const {
+    return body == bodies::ground || place_[body] < 0 ? N(T(0)) : level[place_[body]];
+  }
+
+  /// Cholesky factor of the matrix of the groups, in which a contact counts by its static friction.
+  void factorise() {
+    const std::size_t n = free_.size();
+    factor_.assign(n * n, T(0));
+    const auto at = [&](int body) { return body == bodies::ground ? -1 : place_[body]; };
+    for (std::size_t k = 0; k < stuck_.size(); ++k) {
+      const bodies::Contact<T>& c = system_->contacts[stuck_[k]];
+      const int i = at(c.one), j = at(c.other);
+      const T weight = limits_[k];
+      if (i >= 0) factor_[i * n + i] += weight;
+      if (j >= 0) factor_[j * n + j] += weight;
+      if (i >= 0 && j >= 0) {
+        factor_[i * n + j] -= weight;
+        factor_[j * n + i] -= weight;
+      }
+    }
+    using std::sqrt;
+    for (std::size_t j = 0; j < n; ++j)
+      for (std::size_t i = j; i < n; ++i) {
+        T sum = factor_[i * n + j];
+        for (std::size_t k = 0; k < j; ++k) sum -= factor_[i * n + k] * factor_[j * n + k];
+        factor_[i * n + j] = i == j ? sqrt(sum) : sum / factor_[j * n + j];
+      }
+  }
+  template <class N>
+  void substitute(std::vector<N>& x) const {
+    const std::size_t n = free_.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t k = 0; k < i; ++k) x[i] -= factor_[i * n + k] * x[k];
+      x[i] = x[i] / factor_[i * n + i];
+    }
+    for (std::size_t i = n; i-- > 0;) {
+      for (std::size_t k = i + 1; k < n; ++k) x[i] -= factor_[k * n + i] * x[k];
+      x[i] = x[i] / factor_[i * n + i];
+    }
+  }
+
+  const bodies::System<T>* system_;
+  std::vector<int> stuck_;
+  std::vector<T> limits_;
+  std::vector<int> root_;  ///< root of the group, body by body
+  std::vector<T> mass_;    ///< sum of a group, at its root, kg
+  std::vector<Edge> tree_;
+  std::vector<int> free_,
+      place_;  ///< bodies whose level is sought, and where each stands among them
+  std::vector<T> factor_;
+};
+
+}  // namespace pindrive::detail
