@@ -121,10 +121,11 @@ class Expansion {
   static Real error(const std::vector<Real>& of, std::size_t i) {
     return of.empty() ? Real(0) : of[i];
   }
-  /// Order n of an input, or of the rate of it, with the error of a time that is known to rounding.
+  /// Order n of an input, with the error of a time that is known to rounding.
   N given(const InputSeries<T>& input, int n) const {
     return known(input[n], late_ * std::abs(T(n + 1) * input[n + 1]));
   }
+  /// Order n of the rate of an input, likewise.
   N rate_of(const InputSeries<T>& input, int n) const {
     return known(input.rate(n), late_ * std::abs(T(n + 1) * input.rate(n + 1)));
   }
@@ -135,7 +136,7 @@ class Expansion {
     else
       return {of, within + 4 * rounding<Real> * std::abs(plain(of))};
   }
-  /// Order n of the distance of two bodies, or of the rate of it.
+  /// Order n of the difference of two bodies, in position or velocity.
   static N apart(const std::vector<Series>& of, int one, int other, int n) {
     return other == bodies::ground ? of[one][n] : of[one][n] - of[other][n];
   }

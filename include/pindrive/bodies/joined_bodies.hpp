@@ -10,9 +10,9 @@
 
 namespace pindrive::detail {
 
-/// Rigid contacts that stick join bodies. A joined group moves as the ground that is part of it, or by the sum of its
-/// forces. The friction forces follow from the force that each body then needs. Where they are not unique, as of a body
-/// between two surfaces, they share it in proportion to static friction, so that stick lasts as long as it can.
+/// Groups of bodies that rigid contacts in stick join. A group moves as the ground if it contains it, or else by the sum
+/// of its forces. The friction forces follow from what each body then needs. Where they are not unique, as for a body
+/// between two surfaces, the contacts share it in proportion to static friction: stick then lasts as long as it can.
 template <class T>
 class JoinedBodies {
  public:
@@ -84,7 +84,7 @@ class JoinedBodies {
     int from, to, contact, side;  ///< side: 1 if `to` is the first body of the contact
   };
 
-  /// Spanning trees of the groups, those with the ground from there on.
+  /// Grows a tree of contacts through each group, from the ground where the group contains it.
   void walk() {
     std::vector<bool> seen(root_.size(), false);
     const auto grow = [&](int start) {

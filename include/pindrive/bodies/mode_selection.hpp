@@ -44,8 +44,8 @@ class ModeSelection {
   using Number = Uncertain<T>;
   static constexpr int deciding_orders = 12, most_tried = 729;
 
-  /// Next mode to try: of those that differ in active contacts and were not seen, one with the most sticks, and the
-  /// nearest to the mode; false if there is none.
+  /// Next mode to try, with other states of active contacts: a new one with the most sticks, and then the nearest to the
+  /// mode; false if there is none.
   static bool next_of(const std::vector<int>& active, std::set<Mode>& seen, Mode& mode) {
     std::size_t count = 1;
     for (std::size_t i = 0; i < active.size() && count < most_tried; ++i) count *= 3;
