@@ -50,6 +50,9 @@ class Expansion {
     joined_ = JoinedBodies<T>(*system_, std::move(stuck), std::move(limits));
   }
 
+  /// True of a contact in stick whose surfaces may move apart.
+  bool may_part(int j) const { return contact(j).rigid() && !joined_.joins(j); }
+
   /// Computes the orders up to one from a state on, in the time τ/step.
   void expand(const bodies::State<T>& state, Real step, int order) {
     begin(state, step);

@@ -78,6 +78,11 @@ class JoinedBodies {
     }
   }
   const std::vector<int>& stuck() const { return stuck_; }
+  /// True of a contact that joins two bodies which no other contact joins.
+  bool joins(int contact) const {
+    return std::any_of(tree_.begin(), tree_.end(),
+                       [&](const Edge& edge) { return edge.contact == contact; });
+  }
 
  private:
   struct Edge {

@@ -14,7 +14,8 @@
 
 namespace pindrive::detail {
 
-/// Selects stick where it is consistent, else a slip, contact by contact (pivoting by the least index).
+/// Selects stick where it is consistent, else a slip. The contacts of a body are decided together, and body after body: a
+/// contact of two bodies belongs to the lighter one, whose motion it changes most.
 template <class T>
 class ModeSelection {
  public:
@@ -24,64 +25,110 @@ class ModeSelection {
   explicit ModeSelection(const bodies::System<T>& system) : system_(&system), series_(system) {}
 
   /// Changes the mode of `active` contacts, and of all that contradict it; false if no mode is consistent.
-  bool select(const bodies::State<T>& state, std::vector<int> active, Real step, Mode& mode) {
-    std::set<Mode> seen;
+  bool select(const bodies::State<T>& state, const std::vector<int>& active, Real step,
+              Mode& mode) {
+    trials_.clear();
+    for (const int contact : active) {
+      mode[contact] = bodies::Slip::stick;
+      trial_of(contact);
+    }
+    for (Trial& trial : trials_) trial.seen.insert(part_of(trial, mode));
     for (;;) {
-      if (!next_of(active, seen, mode)) return false;
-      series_.set(mode, state.time);
-      series_.expand(state, step, deciding_orders);
-      std::size_t wrong = 0;
       bodies::Slip instead{};
-      while (wrong < mode.size() && is_right(wrong, mode[wrong], instead)) ++wrong;
-      if (wrong == mode.size()) return true;
-      if (std::find(active.begin(), active.end(), static_cast<int>(wrong)) == active.end())
-        active.push_back(static_cast<int>(wrong));  // without an event of its own, by the others
+      const int wrong = first_wrong(state, step, mode, instead);
+      if (wrong < 0) return true;
       mode[wrong] = instead;
+      if (!next_of(trial_of(wrong), mode)) return false;
     }
   }
 
  private:
   using Number = Uncertain<T>;
-  static constexpr int deciding_orders = 12, most_tried = 729;
+  static constexpr int few_orders = 3, all_orders = 12, most_contacts = 6, most_begins = 3;
 
-  /// Next mode to try, with other states of active contacts: a new one with the most sticks, and then the nearest to the
-  /// mode; false if there is none.
-  static bool next_of(const std::vector<int>& active, std::set<Mode>& seen, Mode& mode) {
+  /// Modes that the active contacts of one body were tried in.
+  struct Trial {
+    int body;
+    std::vector<int> contacts;
+    std::set<Mode> seen;
+    int begins;  ///< times that they were tried anew, as other bodies had changed
+  };
+
+  int body_of(int contact) const {
+    const bodies::Contact<T>& c = system_->contacts[contact];
+    if (c.other == bodies::ground) return c.one;
+    return system_->bodies[c.other].mass < system_->bodies[c.one].mass ? c.other : c.one;
+  }
+  /// Trial of the body of a contact, with that contact.
+  Trial& trial_of(int contact) {
+    const int body = body_of(contact);
+    auto found = std::find_if(trials_.begin(), trials_.end(),
+                              [&](const Trial& trial) { return trial.body == body; });
+    if (found == trials_.end()) found = trials_.insert(trials_.end(), Trial{body, {}, {}, 0});
+    std::vector<int>& contacts = found->contacts;
+    if (std::find(contacts.begin(), contacts.end(), contact) == contacts.end()) {
+      contacts.push_back(contact);
+      found->seen.clear();
+    }
+    return *found;
+  }
+  static Mode part_of(const Trial& trial, const Mode& mode) {
+    Mode part;
+    for (const int contact : trial.contacts) part.push_back(mode[contact]);
+    return part;
+  }
+  /// Takes another mode of one body: a new one with the most sticks, and then the nearest; false without any.
+  static bool next_of(Trial& trial, Mode& mode) {
+    const std::size_t size = std::min(trial.contacts.size(), std::size_t{most_contacts});
     std::size_t count = 1;
-    for (std::size_t i = 0; i < active.size() && count < most_tried; ++i) count *= 3;
+    for (std::size_t i = 0; i < size; ++i) count *= 3;
+    const Mode near = part_of(trial, mode);
     Mode best;
-    bool found = false;
     int least = std::numeric_limits<int>::max();
-    for (std::size_t code = 0; code < std::min(count, std::size_t{most_tried}); ++code) {
-      Mode tried = mode;
+    for (std::size_t code = 0; code < count; ++code) {
+      Mode tried = near;
       int cost = 0;
       std::size_t rest = code;
-      for (const int contact : active) {
-        const int digit = static_cast<int>(rest % 3);
-        rest /= 3;
-        tried[contact] = static_cast<bodies::Slip>(digit == 2 ? -1 : digit);
-        cost += (digit != 0 ? 4 : 0) + (tried[contact] != mode[contact] ? 1 : 0);
+      for (std::size_t i = 0; i < size; ++i, rest /= 3) {
+        tried[i] = static_cast<bodies::Slip>(rest % 3 == 2 ? -1 : static_cast<int>(rest % 3));
+        cost += (rest % 3 != 0 ? 4 : 0) + (tried[i] != near[i] ? 1 : 0);
       }
-      if (cost < least && seen.count(tried) == 0) {
-        least = cost;
-        best = std::move(tried);
-        found = true;
-      }
+      if (cost >= least || trial.seen.count(tried) != 0) continue;
+      least = cost;
+      best = std::move(tried);
     }
-    if (!found) return false;
-    mode = best;
-    seen.insert(std::move(best));
+    if (best.empty()) {
+      trial.seen.clear();
+      return ++trial.begins <= most_begins;
+    }
+    for (std::size_t i = 0; i < size; ++i) mode[trial.contacts[i]] = best[i];
+    trial.seen.insert(std::move(best));
     return true;
   }
 
+  /// First contact with a guard that becomes negative, and what to try instead; −1 without any. Most are decided by their
+  /// first orders.
+  int first_wrong(const bodies::State<T>& state, Real step, const Mode& mode,
+                  bodies::Slip& instead) {
+    series_.set(mode, state.time);
+    for (orders_ = few_orders;; orders_ = all_orders) {
+      series_.expand(state, step, orders_);
+      undecided_ = false;
+      for (std::size_t j = 0; j < mode.size(); ++j)
+        if (!is_right(j, mode[j], instead)) return static_cast<int>(j);
+      if (!undecided_ || orders_ == all_orders) return -1;
+    }
+  }
   /// True if no guard of a contact becomes negative; else the mode to try next.
-  bool is_right(std::size_t contact, bodies::Slip slip, bodies::Slip& instead) const {
+  bool is_right(std::size_t contact, bodies::Slip slip, bodies::Slip& instead) {
     const auto sliding = [&](int n) { return series_.sliding(contact)[n]; };
     instead = bodies::Slip::stick;
     if (slip != bodies::Slip::stick) return sign_of(sliding) * static_cast<int>(slip) >= 0;
-    const int parts = sign_of(sliding, 1);  // stuck to surfaces of different motion
-    instead = static_cast<bodies::Slip>(parts);
-    if (parts != 0) return false;
+    if (series_.may_part(static_cast<int>(contact))) {
+      const int parts = sign_of(sliding, 1);
+      instead = static_cast<bodies::Slip>(parts);
+      if (parts != 0) return false;
+    }
     for (const int side : {1, -1}) {
       instead = static_cast<bodies::Slip>(-side);
       if (excess(contact, side) < 0) return false;
@@ -89,7 +136,7 @@ class ModeSelection {
     return true;
   }
   /// Sign of the static friction that is left on one side of a contact in stick.
-  int excess(std::size_t contact, int side) const {
+  int excess(std::size_t contact, int side) {
     const auto coefficient = [&](int n) {
       return series_.limit(contact, n) - T(side) * series_.friction(contact)[n];
     };
@@ -97,16 +144,20 @@ class ModeSelection {
   }
   /// Sign after the instant: that of the first coefficient, from an order on, beyond its error.
   template <class Coefficient>
-  static int sign_of(Coefficient&& coefficient, int first = 0) {
-    for (int n = first; n < deciding_orders; ++n) {
+  int sign_of(Coefficient&& coefficient, int first = 0) {
+    for (int n = first; n <= orders_; ++n) {
       const Number c = coefficient(n);
       if (!c.may_vanish()) return c.value > 0 ? 1 : -1;
     }
+    undecided_ = true;
     return 0;
   }
 
   const bodies::System<T>* system_;
   Expansion<T, Number> series_;
+  std::vector<Trial> trials_;
+  int orders_{all_orders};
+  bool undecided_{false};
 };
 
 }  // namespace pindrive::detail
