@@ -35,7 +35,7 @@ LAYERS = (
 )
 """Folders of the core, each built on the folders before."""
 PUBLIC = {
-    "bodies": {"follow", "system"},
+    "bodies": {"follow", "step_certificate", "system"},
     "certificate": {"certificate", "certify"},
     "device": {
         "closest_approach",

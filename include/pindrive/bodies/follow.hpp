@@ -13,6 +13,7 @@
 #include "pindrive/bodies/system.hpp"
 #include "pindrive/flow/polynomial.hpp"
 #include "pindrive/model/model.hpp"
+#include "pindrive/numbers/callback.hpp"
 #include "pindrive/numbers/limits.hpp"
 
 namespace pindrive::bodies {
@@ -23,6 +24,53 @@ struct Change {
   T time;
   int contact;
   Slip before, after;
+};
+
+/// Motion from an event or the end of another step on: polynomials in time.
+template <class T>
+class Step {
+ public:
+  using Real = detail::Real<T>;
+
+  Step(const detail::Expansion<T>& series, const std::vector<Slip>& mode, T begin, T length,
+       Real span)
+      : series_(&series), mode_(&mode), begin_(begin), length_(length), span_(span) {}
+
+  T begin() const { return begin_; }    ///< s
+  T length() const { return length_; }  ///< s
+  Slip slip(int contact) const { return (*mode_)[contact]; }
+  T position(int body, T tau) const { return at(series_->position(body), tau); }        ///< m
+  T velocity(int body, T tau) const { return at(series_->velocity(body), tau); }        ///< m/s
+  T acceleration(int body, T tau) const { return rate(series_->velocity(body), tau); }  ///< m/s²
+  T stretch(int contact, T tau) const { return at(series_->stretch(contact), tau); }    ///< m
+  T stretch_rate(int contact, T tau) const {
+    return rate(series_->stretch(contact), tau);
+  }  ///< m/s
+  /// Friction force on `one`, N.
+  T friction(int contact, T tau) const { return at(series_->friction(contact), tau); }
+  /// Speed of `one` or of its skin over the surface, m/s.
+  T sliding(int contact, T tau) const { return at(series_->sliding(contact), tau); }
+
+ private:
+  using Series = typename detail::Expansion<T>::Series;
+
+  T at(const Series& c, T tau) const {
+    const T s = tau / span_;
+    T sum = c[detail::series_order];
+    for (int n = detail::series_order; n-- > 0;) sum = sum * s + c[n];
+    return sum;
+  }
+  T rate(const Series& c, T tau) const {
+    const T s = tau / span_;
+    T sum = T(detail::series_order) * c[detail::series_order];
+    for (int n = detail::series_order; n-- > 1;) sum = sum * s + T(n) * c[n];
+    return sum / span_;
+  }
+
+  const detail::Expansion<T>* series_;
+  const std::vector<Slip>* mode_;
+  T begin_, length_;
+  Real span_;
 };
 
 /// A system under way: its state, the slip of its contacts, and its steps, whose polynomials are its motion.
@@ -55,9 +103,11 @@ class Following {
   Status status() const { return status_; }
   long steps() const { return steps_; }
 
-  /// Goes on to a time, s; the status says if it was reached.
-  void advance(T until) {
-    while (status_ == Status::ok && state_.time < until) step(until);
+  using Sink = Callback<const Step<T>&>;
+
+  /// Goes on to a time, s; the status says if it was reached. `sink` is called with each step.
+  void advance(T until, Sink sink = {}) {
+    while (status_ == Status::ok && state_.time < until) step(until, sink);
   }
 
  private:
@@ -110,7 +160,7 @@ class Following {
     return state_.velocity[c.one] - other - c.velocity.from(state_.time).value;
   }
 
-  void step(T until) {
+  void step(T until, Sink sink) {
     const T breakpoint = std::min(system_->next_breakpoint(state_.time), until);
     const Real rest = plain(breakpoint - state_.time);
     Real span = std::min(rest, series_.input_reach(state_.time));
@@ -128,6 +178,9 @@ class Following {
       active.push_back(static_cast<int>(j));
     }
     const bool whole = span == rest && active.empty();
+    standing_ = state_.time + tau > state_.time ? 0 : standing_ + 1;
+    if (standing_ > detail::standstill_limit) status_ = Status::standstill;
+    sink(Step<T>(series_, mode_, state_.time, tau, span));
     move(tau, whole ? breakpoint : state_.time + tau, span);
     if (!active.empty() || whole) settle(active);
   }
@@ -211,6 +264,7 @@ class Following {
   std::vector<Change<T>> changes_;
   Status status_{Status::ok};
   long steps_{0};
+  int standing_{0};  ///< events at this time
 };
 
 }  // namespace pindrive::bodies

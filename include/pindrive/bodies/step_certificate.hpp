@@ -1,0 +1,200 @@
+/// Certificate of a motion of bodies: its laws at points of each step, and its energy, without the solver.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "pindrive/bodies/follow.hpp"
+#include "pindrive/bodies/system.hpp"
+#include "pindrive/numbers/functions.hpp"
+
+namespace pindrive::bodies {
+
+/// Largest violations of the laws so far, as parts of the largest force, velocity, position or energy.
+template <class T>
+struct Violations {
+  T motion{0};      ///< mass times acceleration against the sum of forces
+  T kinematics{0};  ///< velocity against the rate of the position, and the rate of a stretch
+  T friction{0};    ///< friction in slip against kinetic friction, in stick against its limit
+  T sliding{0};     ///< slip against its direction, and sliding in stick
+  T continuity{0};  ///< jumps of position or velocity between two steps
+  T energy{0};      ///< balance of energy, over what was stored and exchanged
+
+  T worst() const { return std::max({motion, kinematics, friction, sliding, continuity, energy}); }
+};
+
+/// Checks each step of a motion. Reads inputs and polynomials alone.
+template <class T>
+class StepCertificate {
+ public:
+  explicit StepCertificate(const System<T>& system) : system_(&system) {}
+
+  void add(const Step<T>& step) {
+    for (std::size_t i = 0; i < system_->bodies.size(); ++i) meet(step, static_cast<int>(i));
+    began_ = true;
+    T gained = energy(step, step.length()) - energy(step, T(0));
+    for (std::size_t k = 0; k < points.size(); ++k)
+      for (const int side : {1, -1}) {
+        const T tau = step.length() / 2 * (1 + T(side) * T(points[k]));
+        check(step, tau);
+        gained -= step.length() / 2 * T(weights[k]) * power(step, tau);
+      }
+    drift_ += gained;
+    last_.resize(2 * system_->bodies.size());
+    for (std::size_t i = 0; i < system_->bodies.size(); ++i) {
+      last_[2 * i] = step.position(static_cast<int>(i), step.length());
+      last_[2 * i + 1] = step.velocity(static_cast<int>(i), step.length());
+    }
+    ++steps_;
+  }
+
+  Violations<T> violations() const {
+    using std::abs;
+    const auto part = [](T of, T scale) { return of > 0 ? of / scale : T(0); };
+    return {part(found_.motion, force_),
+            part(found_.kinematics, speed_),
+            part(found_.friction, force_),
+            part(found_.sliding, speed_),
+            std::max(part(found_.continuity, size_), part(jump_, speed_)),
+            part(abs(drift_), exchanged_)};
+  }
+  long steps() const { return steps_; }
+
+ private:
+  // Ten points of Gauss and Legendre.
+  static constexpr std::array<double, 5> points{0.14887433898163122, 0.4333953941292472,
+                                                0.6794095682990244, 0.8650633666889845,
+                                                0.9739065285171717};
+  static constexpr std::array<double, 5> weights{0.29552422471475287, 0.26926671930999635,
+                                                 0.21908636251598204, 0.1494513491505806,
+                                                 0.06667134430868814};
+
+  static void raise(T& most, T value) {
+    using std::abs;
+    most = std::max(most, abs(value));
+  }
+  void meet(const Step<T>& step, int body) {
+    const T x = step.position(body, T(0)), v = step.velocity(body, T(0));
+    raise(size_, x);
+    raise(speed_, v);
+    if (!began_) return;
+    raise(found_.continuity, x - last_[2 * body]);
+    raise(jump_, v - last_[2 * body + 1]);
+  }
+  T between(const Step<T>& step, int one, int other, T tau, bool velocities) const {
+    const auto of = [&](int body) {
+      if (body == ground) return T(0);
+      return velocities ? step.velocity(body, tau) : step.position(body, tau);
+    };
+    return of(one) - of(other);
+  }
+  /// Elongation of a link, and the rate of it.
+  struct Pull {
+    T longer, faster, given;
+  };
+  Pull pull(const Step<T>& step, const Link<T>& link, T tau) const {
+    const Curve<T> length = link.length.from(step.begin());
+    return {between(step, link.one, link.other, tau, false) - length.at(tau),
+            between(step, link.one, link.other, tau, true) - length.rate_at(tau),
+            length.rate_at(tau)};
+  }
+
+  void check(const Step<T>& step, T tau) {
+    using std::abs;
+    std::vector<T> rest(system_->bodies.size());
+    const auto push = [&](int one, int other, T force) {
+      raise(force_, force);
+      rest[one] -= force;
+      if (other != ground) rest[other] += force;
+    };
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+      const int body = static_cast<int>(i);
+      const T force = system_->bodies[i].force.from(step.begin()).at(tau);
+      rest[i] = system_->bodies[i].mass * step.acceleration(body, tau) - force;
+      raise(force_, force);
+      raise(speed_, step.velocity(body, tau));
+      raise(size_, step.position(body, tau));
+    }
+    for (const Link<T>& link : system_->links) {
+      const Pull at = pull(step, link, tau);
+      push(link.one, link.other, -(link.stiffness * at.longer + link.damping * at.faster));
+    }
+    for (std::size_t j = 0; j < system_->contacts.size(); ++j) {
+      const int contact = static_cast<int>(j);
+      push(system_->contacts[j].one, system_->contacts[j].other, step.friction(contact, tau));
+      rub(step, contact, tau);
+    }
+    for (const T each : rest) raise(found_.motion, each);
+  }
+  void rub(const Step<T>& step, int contact, T tau) {
+    const Contact<T>& c = system_->contacts[contact];
+    const T load = c.load.from(step.begin()).at(tau), friction = step.friction(contact, tau);
+    const T speed =
+        between(step, c.one, c.other, tau, true) - c.velocity.from(step.begin()).at(tau);
+    const int side = static_cast<int>(step.slip(contact));
+    const T rate = c.rigid() ? T(0) : step.stretch_rate(contact, tau);
+    raise(speed_, speed);
+    if (side != 0) {
+      raise(found_.friction, friction + T(side) * c.kinetic * load);
+      raise(found_.sliding, std::max(T(0), -T(side) * (speed - rate)));
+      if (!c.rigid())
+        raise(found_.friction,
+              c.stiffness * step.stretch(contact, tau) + c.damping * rate + friction);
+      return;
+    }
+    using std::abs;
+    raise(found_.friction, std::max(T(0), abs(friction) - c.static_limit * load));
+    raise(found_.sliding, speed - rate);
+    if (!c.rigid())
+      raise(found_.friction,
+            c.stiffness * step.stretch(contact, tau) + c.damping * speed + friction);
+  }
+
+  T energy(const Step<T>& step, T tau) {
+    T sum{0};
+    for (std::size_t i = 0; i < system_->bodies.size(); ++i) {
+      const T v = step.velocity(static_cast<int>(i), tau);
+      sum += system_->bodies[i].mass * v * v / 2;
+    }
+    for (const Link<T>& link : system_->links) {
+      const T longer = pull(step, link, tau).longer;
+      sum += link.stiffness * longer * longer / 2;
+    }
+    raise(exchanged_, sum);
+    return sum;
+  }
+  /// What inputs, dampers and contacts give to bodies and springs, W.
+  T power(const Step<T>& step, T tau) {
+    using std::abs;
+    T sum{0};
+    const auto give = [&](T part) {
+      sum += part;
+      exchanged_ += abs(part) * step.length() / T(2 * points.size());
+    };
+    for (std::size_t i = 0; i < system_->bodies.size(); ++i)
+      give(system_->bodies[i].force.from(step.begin()).at(tau) *
+           step.velocity(static_cast<int>(i), tau));
+    for (const Link<T>& link : system_->links) {
+      const Pull at = pull(step, link, tau);
+      give(-link.damping * at.faster * at.faster);
+      give(-(link.stiffness * at.longer + link.damping * at.faster) * at.given);
+    }
+    for (std::size_t j = 0; j < system_->contacts.size(); ++j) {
+      const Contact<T>& c = system_->contacts[j];
+      give(step.friction(static_cast<int>(j), tau) * between(step, c.one, c.other, tau, true));
+    }
+    return sum;
+  }
+
+  const System<T>* system_;
+  Violations<T> found_{};
+  T jump_{0}, force_{0}, speed_{0}, size_{0}, drift_{0}, exchanged_{0};
+  bool began_{false};
+  std::vector<T> last_;
+  long steps_{0};
+};
+
+}  // namespace pindrive::bodies
