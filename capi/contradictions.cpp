@@ -657,8 +657,8 @@ class Search {
     bool varies = false;
     for (std::size_t i = 0; i < touch.count; ++i) varies = varies || changes(i);
     const Friction finger = friction(at_finger);
-    const bool lags = has(stiffness) && !(number("finger.damping") > 0 && finger.curve.count < 2 &&
-                                          !has(finger.viscous_key));
+    const bool curved = finger.curve.count > 1 || has(finger.viscous_key);
+    const bool lags = has(stiffness) && (curved || !(number("finger.damping") > 0));
     if (varies && lags && number(exponent) != 1)
       add(key, {exponent, stiffness, "finger.damping"},
           "one value at a finger.load_exponent of %g, unless the skin has finger.damping and no "

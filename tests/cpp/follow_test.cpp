@@ -14,7 +14,6 @@
 
 namespace pd = pindrive;
 namespace bodies = pd::bodies;
-using bodies::Slip;
 using check::expect;
 
 namespace {
@@ -123,6 +122,7 @@ void a_block_on_a_board() {
 void pins_that_share_a_hand() {
   Random random(3);
   double momentum = 0, renamed = 0;
+  int refused = 0;
   for (int i = 0; i < cases(500); ++i) {
     const auto draw = [&](double low, double high) {
       return std::uniform_real_distribution<double>(low, high)(random);
@@ -161,8 +161,7 @@ void pins_that_share_a_hand() {
     Following one(system, state), two(turned, other);
     one.advance(0.1);
     two.advance(0.1);
-    expect(one.status() == pd::Status::ok && two.status() == pd::Status::ok,
-           "a hand and three pins");
+    refused += one.status() != pd::Status::ok || two.status() != pd::Status::ok;
     momentum = std::max(momentum, std::abs(sum(one.state()) / sum(state) - 1));
     for (int body = 0; body < 4; ++body)
       renamed = std::max(renamed,
@@ -170,6 +169,7 @@ void pins_that_share_a_hand() {
   }
   std::printf("# momentum within %.1e, positions by other names within %.1e m\n", momentum,
               renamed);
+  expect(refused == 0, "a hand and three pins find a mode at each event");
   expect(momentum < 1e-13, "keep their momentum");
   expect(renamed < 1e-14, "and move alike by any names");
 }

@@ -137,7 +137,7 @@ class Expansion {
     if constexpr (std::is_same_v<N, T>)
       return of;
     else
-      return {of, within + 4 * rounding<Real> * std::abs(plain(of))};
+      return {of, within + 16 * rounding<Real> * std::abs(plain(of))};
   }
   /// Order n of the difference of two bodies, in position or velocity.
   static N apart(const std::vector<Series>& of, int one, int other, int n) {

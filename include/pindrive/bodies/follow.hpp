@@ -192,19 +192,28 @@ class Following {
     guard.span = span;
     guard.degree = detail::series_order;
     T first = std::numeric_limits<T>::infinity();
-    const auto look = [&] {
-      const Real known = detail::rounding<Real> * plain(guard.size());
-      first = std::min(first, detail::zero_beyond(guard, known));
+    Real size{0};  // both terms of a guard together
+    const auto add = [&](const auto& series) {
+      for (int n = 0; n <= guard.degree; ++n) size += std::abs(plain(series[n]));
+    };
+    const auto look = [&](int way) {
+      if (selection_.stays_zero(contact, way)) return;
+      first = std::min(first, detail::zero_beyond(guard, detail::rounding<Real> * size));
     };
     if (side != 0) {
+      const Contact<T>& c = system_->contacts[contact];
       for (int n = 0; n <= guard.degree; ++n) guard.c[n] = T(side) * series_.sliding(contact)[n];
-      look();
+      add(guard.c);
+      add(series_.velocity(c.one));
+      if (c.other != ground) add(series_.velocity(c.other));
+      look(side);
       return first;
     }
+    add(series_.friction(contact));
     for (const int way : {1, -1}) {
       for (int n = 0; n <= guard.degree; ++n)
         guard.c[n] = series_.limit(contact, n) - T(way) * series_.friction(contact)[n];
-      look();
+      look(way);
     }
     return first;
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <limits>
 #include <set>
@@ -22,7 +23,8 @@ class ModeSelection {
   using Real = detail::Real<T>;
   using Mode = std::vector<bodies::Slip>;
 
-  explicit ModeSelection(const bodies::System<T>& system) : system_(&system), series_(system) {}
+  explicit ModeSelection(const bodies::System<T>& system)
+      : system_(&system), series_(system), zero_(system.contacts.size()) {}
 
   /// Changes the mode of `active` contacts, and of all that contradict it; false if no mode is consistent.
   bool select(const bodies::State<T>& state, const std::vector<int>& active, Real step,
@@ -38,20 +40,23 @@ class ModeSelection {
       const int wrong = first_wrong(state, step, mode, instead);
       if (wrong < 0) return true;
       mode[wrong] = instead;
-      if (!next_of(trial_of(wrong), mode)) return false;
+      while (!next_of(trial_of(wrong), mode))
+        if (!merge(trial_of(wrong))) return false;
     }
   }
 
+  /// True if a guard on one side of a contact is zero in all its orders: it stays so until the mode changes.
+  bool stays_zero(int contact, int side) const { return zero_[contact][side > 0]; }
+
  private:
   using Number = Uncertain<T>;
-  static constexpr int few_orders = 3, all_orders = 12, most_contacts = 6, most_begins = 3;
+  static constexpr int few_orders = 3, all_orders = 12, most_contacts = 6;
 
-  /// Modes that the active contacts of one body were tried in.
+  /// Modes that the active contacts of one body, or of several that were decided in vain alone, were tried in.
   struct Trial {
     int body;
     std::vector<int> contacts;
     std::set<Mode> seen;
-    int begins;  ///< times that they were tried anew, as other bodies had changed
   };
 
   int body_of(int contact) const {
@@ -61,16 +66,45 @@ class ModeSelection {
   }
   /// Trial of the body of a contact, with that contact.
   Trial& trial_of(int contact) {
+    const auto has = [&](const Trial& trial, int of) {
+      return std::find(trial.contacts.begin(), trial.contacts.end(), of) != trial.contacts.end();
+    };
     const int body = body_of(contact);
     auto found = std::find_if(trials_.begin(), trials_.end(),
-                              [&](const Trial& trial) { return trial.body == body; });
-    if (found == trials_.end()) found = trials_.insert(trials_.end(), Trial{body, {}, {}, 0});
-    std::vector<int>& contacts = found->contacts;
-    if (std::find(contacts.begin(), contacts.end(), contact) == contacts.end()) {
-      contacts.push_back(contact);
+                              [&](const Trial& trial) { return has(trial, contact); });
+    if (found == trials_.end())
+      found = std::find_if(trials_.begin(), trials_.end(),
+                           [&](const Trial& trial) { return trial.body == body; });
+    if (found == trials_.end()) found = trials_.insert(trials_.end(), Trial{body, {}, {}});
+    if (!has(*found, contact)) {
+      found->contacts.push_back(contact);
       found->seen.clear();
     }
     return *found;
+  }
+  bool shares_body(const Trial& one, const Trial& other) const {
+    const auto touches = [&](int contact, int body) {
+      const bodies::Contact<T>& c = system_->contacts[contact];
+      return body != bodies::ground && (c.one == body || c.other == body);
+    };
+    for (const int j : one.contacts)
+      for (const int k : other.contacts)
+        if (touches(j, system_->contacts[k].one) || touches(j, system_->contacts[k].other))
+          return true;
+    return false;
+  }
+  /// Joins a trial with another one, best with that of a neighbouring body, so that both are decided together; false
+  /// without any.
+  bool merge(Trial& trial) {
+    if (trials_.size() == 1) return false;
+    auto other = std::find_if(trials_.begin(), trials_.end(), [&](const Trial& each) {
+      return &each != &trial && shares_body(each, trial);
+    });
+    if (other == trials_.end()) other = trials_.begin() + (&trial == &trials_.front() ? 1 : 0);
+    trial.contacts.insert(trial.contacts.end(), other->contacts.begin(), other->contacts.end());
+    trial.seen.clear();
+    trials_.erase(other);
+    return true;
   }
   static Mode part_of(const Trial& trial, const Mode& mode) {
     Mode part;
@@ -97,10 +131,7 @@ class ModeSelection {
       least = cost;
       best = std::move(tried);
     }
-    if (best.empty()) {
-      trial.seen.clear();
-      return ++trial.begins <= most_begins;
-    }
+    if (best.empty()) return false;
     for (std::size_t i = 0; i < size; ++i) mode[trial.contacts[i]] = best[i];
     trial.seen.insert(std::move(best));
     return true;
@@ -114,6 +145,7 @@ class ModeSelection {
     for (orders_ = few_orders;; orders_ = all_orders) {
       series_.expand(state, step, orders_);
       undecided_ = false;
+      std::fill(zero_.begin(), zero_.end(), std::array<bool, 2>{});
       for (std::size_t j = 0; j < mode.size(); ++j)
         if (!is_right(j, mode[j], instead)) return static_cast<int>(j);
       if (!undecided_ || orders_ == all_orders) return -1;
@@ -123,7 +155,12 @@ class ModeSelection {
   bool is_right(std::size_t contact, bodies::Slip slip, bodies::Slip& instead) {
     const auto sliding = [&](int n) { return series_.sliding(contact)[n]; };
     instead = bodies::Slip::stick;
-    if (slip != bodies::Slip::stick) return sign_of(sliding) * static_cast<int>(slip) >= 0;
+    const int way = static_cast<int>(slip);
+    if (way != 0) {
+      const int sign = sign_of(sliding);
+      zero_[contact][way > 0] = sign == 0;
+      return sign * way >= 0;
+    }
     if (series_.may_part(static_cast<int>(contact))) {
       const int parts = sign_of(sliding, 1);
       instead = static_cast<bodies::Slip>(parts);
@@ -131,7 +168,9 @@ class ModeSelection {
     }
     for (const int side : {1, -1}) {
       instead = static_cast<bodies::Slip>(-side);
-      if (excess(contact, side) < 0) return false;
+      const int left = excess(contact, side);
+      zero_[contact][side > 0] = left == 0;
+      if (left < 0) return false;
     }
     return true;
   }
@@ -158,6 +197,7 @@ class ModeSelection {
   std::vector<Trial> trials_;
   int orders_{all_orders};
   bool undecided_{false};
+  std::vector<std::array<bool, 2>> zero_;  ///< by contact and side
 };
 
 }  // namespace pindrive::detail
