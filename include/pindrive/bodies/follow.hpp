@@ -198,6 +198,9 @@ class Following {
     };
     const auto look = [&](int way) {
       if (selection_.stays_zero(contact, way)) return;
+      Real rest{0};  // most that the guard can fall over the step
+      for (int n = 1; n <= guard.degree; ++n) rest += std::max(Real(0), -plain(guard.c[n]));
+      if (plain(guard.c[0]) > rest) return;
       first = std::min(first, detail::zero_beyond(guard, detail::rounding<Real> * size));
     };
     if (side != 0) {

@@ -52,6 +52,11 @@ class JoinedBodies {
   template <class N>
   void solve(Order<N>& order) const {
     const auto& bodies = system_->bodies;
+    if (stuck_.empty()) {
+      for (std::size_t i = 0; i < bodies.size(); ++i)
+        order.acceleration[i] = order.force[i] / bodies[i].mass;
+      return;
+    }
     std::fill(order.offset.begin(), order.offset.end(), N(T(0)));
     std::fill(order.sum.begin(), order.sum.end(), N(T(0)));
     for (const Edge& edge : tree_) {
@@ -66,7 +71,6 @@ class JoinedBodies {
       if (root_[i] != bodies::ground)
         order.acceleration[i] += order.sum[root_[i]] / mass_[root_[i]];
     }
-    if (stuck_.empty()) return;
     order.level.resize(free_.size());
     for (std::size_t k = 0; k < free_.size(); ++k)
       order.level[k] = bodies[free_[k]].mass * order.acceleration[free_[k]] - order.force[free_[k]];
