@@ -56,6 +56,7 @@ class Expansion {
   /// Computes the orders up to one from a state on, in the time τ/step.
   void expand(const bodies::State<T>& state, Real step, int order) {
     begin(state, step);
+    order_count_ = order;
     for (int n = 0; n <= order; ++n) {
       const T next = T(step) / T(n + 1);
       for (std::size_t i = 0; i < position_.size(); ++i) order_.force[i] = given(pushes_[i], n);
@@ -71,6 +72,7 @@ class Expansion {
     }
   }
 
+  int order() const { return order_count_; }
   const Series& position(std::size_t body) const { return position_[body]; }
   const Series& velocity(std::size_t body) const { return velocity_[body]; }
   const Series& stretch(std::size_t contact) const { return stretch_[contact]; }
@@ -188,6 +190,7 @@ class Expansion {
   JoinedBodies<T> joined_;
   typename JoinedBodies<T>::template Order<N> order_;
   std::vector<Series> position_, velocity_, stretch_, sliding_, friction_;
+  int order_count_{0};
   Real late_{0};  ///< resolution of the time over the step
   std::vector<InputSeries<T>> pushes_, lengths_, loads_, surfaces_;
 };

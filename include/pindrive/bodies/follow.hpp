@@ -56,14 +56,14 @@ class Step {
 
   T at(const Series& c, T tau) const {
     const T s = tau / span_;
-    T sum = c[detail::series_order];
-    for (int n = detail::series_order; n-- > 0;) sum = sum * s + c[n];
+    T sum = c[series_->order()];
+    for (int n = series_->order(); n-- > 0;) sum = sum * s + c[n];
     return sum;
   }
   T rate(const Series& c, T tau) const {
     const T s = tau / span_;
-    T sum = T(detail::series_order) * c[detail::series_order];
-    for (int n = detail::series_order; n-- > 1;) sum = sum * s + T(n) * c[n];
+    T sum = T(series_->order()) * c[series_->order()];
+    for (int n = series_->order(); n-- > 1;) sum = sum * s + T(n) * c[n];
     return sum / span_;
   }
 
@@ -113,6 +113,17 @@ class Following {
  private:
   static constexpr Real longest{
       2.5};  ///< step times the fastest rate: the rest of a series is below rounding
+  static constexpr int fewest =
+      InputPiece<T>::degree + 3;  ///< orders, of a force that is a polynomial
+
+  /// Orders of a series over a span times the fastest rate: the first that leaves out less than rounding.
+  static int order_over(Real span) {
+    Real term{1};
+    int n = 0;
+    while (n < detail::series_order && (n < fewest || term > detail::rounding<Real> / 16))
+      term *= span / Real(++n + 1);
+    return n;
+  }
 
   /// Bound of the rates of all free motions, 1/s: of the springs by the largest row sum, and so of the dampers.
   static Real fastest_of(const System<T>& system) {
@@ -163,10 +174,10 @@ class Following {
   void step(T until, Sink sink) {
     const T breakpoint = std::min(system_->next_breakpoint(state_.time), until);
     const Real rest = plain(breakpoint - state_.time);
-    Real span = std::min(rest, series_.input_reach(state_.time));
-    if (fastest_ > 0) span = std::min(span, longest / fastest_);
-    if (!(span < std::numeric_limits<Real>::infinity())) span = rest;
-    series_.expand(state_, span, detail::series_order);
+    const Real rate =
+        std::max(fastest_, Real(detail::longest_input) / series_.input_reach(state_.time));
+    const Real span = std::min(rest, longest / rate);
+    series_.expand(state_, span, order_over(rate * span));
     ++steps_;
     T tau = T(span);
     std::vector<int> active;
@@ -190,7 +201,7 @@ class Following {
     const int side = static_cast<int>(mode_[contact]);
     detail::Polynomial<T> guard;
     guard.span = span;
-    guard.degree = detail::series_order;
+    guard.degree = series_.order();
     T first = std::numeric_limits<T>::infinity();
     Real size{0};  // both terms of a guard together
     const auto add = [&](const auto& series) {
@@ -225,8 +236,8 @@ class Following {
     const Real late = detail::rounding<Real> * std::abs(plain(time));
     const auto move_to = [&](const auto& series, T& value, Real& error) {
       const T s = tau / span;
-      T sum = series[detail::series_order], rate{0};
-      for (int n = detail::series_order; n-- > 0;) {
+      T sum = series[series_.order()], rate{0};
+      for (int n = series_.order(); n-- > 0;) {
         rate = rate * s + sum;
         sum = sum * s + series[n];
       }
