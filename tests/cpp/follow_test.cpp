@@ -119,6 +119,22 @@ void a_block_on_a_board() {
          "and both keep the momentum");
 }
 
+void a_pin_that_the_finger_holds() {
+  // The plate passes through the velocity of the pin: it could take the pin along, had the finger not held it before.
+  const double times[] = {0, 0.05}, velocities[] = {0.07, -0.09};
+  bodies::System<double> system;
+  system.bodies = {{0.004, -0.06}};
+  system.contacts = {{0, bodies::ground, 0.011, 0.0164}, {0, bodies::ground, 0.05, 0.0756}};
+  system.contacts[0].velocity = {times, velocities, 2};
+  Following following(system, {0, {0}, {0}, {0, 0}});
+  following.advance(0.05);
+  const auto& changes = following.changes();
+  expect(changes.size() == 1 && changes[0].contact == 0 &&
+             std::abs(changes[0].time - 0.05 * 0.07 / 0.16) < 1e-15 &&
+             changes[0].after == bodies::Slip::forward,
+         "a contact that sticks holds on before one that meets");
+}
+
 void pins_that_share_a_hand() {
   Random random(3);
   double momentum = 0, renamed = 0;
@@ -179,6 +195,7 @@ void pins_that_share_a_hand() {
 int main() {
   single_pins();
   a_block_on_a_board();
+  a_pin_that_the_finger_holds();
   pins_that_share_a_hand();
   return check::status();
 }

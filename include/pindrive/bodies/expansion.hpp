@@ -35,18 +35,21 @@ class Expansion {
         sliding_(system.contacts.size()),
         friction_(system.contacts.size()) {}
 
-  /// Takes a mode, from a time on, s.
-  void set(const Mode& mode, const T& time) {
+  /// Takes a mode, from a time on, s. Of contacts whose surfaces move apart `late` ones hold no body that another holds.
+  void set(const Mode& mode, const T& time, const std::vector<int>& late = {}) {
     mode_ = mode;
+    const auto is_late = [&](int j) {
+      return std::find(late.begin(), late.end(), j) != late.end();
+    };
     std::vector<int> stuck;
     std::vector<T> limits;
     for (std::size_t j = 0; j < mode.size(); ++j) {
       if (mode[j] != bodies::Slip::stick || !contact(j).rigid()) continue;
-      const T limit = contact(j).static_limit * contact(j).load.from(time).value;
-      if (limit == 0) continue;  // cannot hold
+      if (limit_of(j, time) == 0) continue;  // cannot hold
       stuck.push_back(static_cast<int>(j));
-      limits.push_back(limit);
     }
+    std::stable_partition(stuck.begin(), stuck.end(), [&](int j) { return !is_late(j); });
+    for (const int j : stuck) limits.push_back(limit_of(j, time));
     joined_ = JoinedBodies<T>(*system_, std::move(stuck), std::move(limits));
   }
 
@@ -102,6 +105,9 @@ class Expansion {
 
  private:
   const bodies::Contact<T>& contact(std::size_t j) const { return system_->contacts[j]; }
+  T limit_of(std::size_t j, const T& time) const {
+    return contact(j).static_limit * contact(j).load.from(time).value;
+  }
 
   void begin(const bodies::State<T>& state, Real step) {
     pushes_.clear();

@@ -30,6 +30,7 @@ class ModeSelection {
   bool select(const bodies::State<T>& state, const std::vector<int>& active, Real step,
               Mode& mode) {
     trials_.clear();
+    met_ = active;
     for (const int contact : active) {
       mode[contact] = bodies::Slip::stick;
       trial_of(contact);
@@ -141,7 +142,7 @@ class ModeSelection {
   /// first orders.
   int first_wrong(const bodies::State<T>& state, Real step, const Mode& mode,
                   bodies::Slip& instead) {
-    series_.set(mode, state.time);
+    series_.set(mode, state.time, met_);
     for (orders_ = few_orders;; orders_ = all_orders) {
       series_.expand(state, step, orders_);
       undecided_ = false;
@@ -195,6 +196,7 @@ class ModeSelection {
   const bodies::System<T>* system_;
   Expansion<T, Number> series_;
   std::vector<Trial> trials_;
+  std::vector<int> met_;  ///< contacts that may begin to stick, while others do already
   int orders_{all_orders};
   bool undecided_{false};
   std::vector<std::array<bool, 2>> zero_;  ///< by contact and side
