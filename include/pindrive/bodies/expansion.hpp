@@ -49,6 +49,7 @@ class Expansion {
       stuck.push_back(static_cast<int>(j));
     }
     std::stable_partition(stuck.begin(), stuck.end(), [&](int j) { return !is_late(j); });
+    limits.reserve(stuck.size());
     for (const int j : stuck) limits.push_back(limit_of(j, time));
     joined_ = JoinedBodies<T>(*system_, std::move(stuck), std::move(limits));
   }
