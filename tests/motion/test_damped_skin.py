@@ -84,7 +84,7 @@ def test_an_integrator_finds_the_same_motion(number: int) -> None:
     expected, _ = pin.follow(x, v, 0.0, times)
     found = np.array([motion.position(times), motion.velocity(times), motion.stretch(times)])
     size = np.maximum(np.abs(expected).max(axis=0), [1e-6, 1e-4, 1e-6])
-    assert (np.abs(found.T - expected) / size).max() < 1e-9
+    assert (np.abs(found.T - expected) / size).max() < 1e-10
     assert motion.certificate().worst < 1e-11
 
 
