@@ -94,4 +94,36 @@ FunctionPieces<T> derivative_of(const FunctionPieces<T>& function, const T& fact
   return found;
 }
 
+/// The integral of a function from t = 0 on, where it is zero. The highest power of a polynomial must be zero.
+template <class T>
+FunctionPieces<T> integral_of(const FunctionPieces<T>& function) {
+  FunctionPieces<T> found{piece_from(function, T(0))};
+  for (const FunctionPiece<T>& piece : function)
+    if (piece.begin > 0) found.push_back(piece);
+  T value{0};  // integral at the begin of a piece
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    FunctionPiece<T>& piece = found[i];
+    for (std::size_t n = piece.polynomial.size(); n-- > 1;)
+      piece.polynomial[n] = piece.polynomial[n - 1] / static_cast<double>(n);
+    piece.polynomial[0] = value;
+    std::vector<std::array<T, 4>> terms;
+    for (const auto& [cosine, sine, decay, frequency] : piece.terms) {
+      const T size = decay * decay + frequency * frequency;
+      if (size == 0) {
+        piece.polynomial[1] += cosine;
+        continue;
+      }
+      const T begin = -(decay * cosine + frequency * sine) / size;
+      terms.push_back({begin, (frequency * cosine - decay * sine) / size, decay, frequency});
+      piece.polynomial[0] -= begin;
+    }
+    piece.terms = std::move(terms);
+    if (i + 1 == found.size()) break;
+    const FunctionPiece<T> next = later(piece, T(found[i + 1].begin - piece.begin));
+    value = next.polynomial[0];
+    for (const auto& term : next.terms) value += term[0];
+  }
+  return found;
+}
+
 }  // namespace pindrive

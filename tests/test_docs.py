@@ -243,7 +243,9 @@ def test_the_public_names_are_in_the_reference() -> None:
     assert sorted(names["pindrive"]) == sorted(public)
 
 
-@pytest.mark.parametrize("package", ["fitting", "optimisation", "study", "evaluation", "device"])
+@pytest.mark.parametrize(
+    "package", ["fitting", "optimisation", "study", "evaluation", "device", "bodies"]
+)
 def test_the_names_of_a_package_are_in_the_reference(package: str) -> None:
     module = import_module(f"pindrive.{package}")
     public = {name for name in dir(module) if not name.startswith("_")}

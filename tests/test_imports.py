@@ -19,7 +19,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 SOURCE = ROOT / "src"
 ORDER = (
-    *("quantities", "motion", "device", "evaluation", "files"),
+    *("quantities", "motion", "bodies", "device", "evaluation", "files"),
     *("study", "fitting", "optimisation", "plot", "paper", "cli"),
 )
 """Packages in order: each imports from itself and from earlier packages."""

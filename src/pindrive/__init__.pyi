@@ -1,5 +1,7 @@
 # The module of each public name; `__init__.py` describes them.
 
+from .bodies.system import System as System
+from .bodies.system_motion import SystemMotion as SystemMotion
 from .device.device import Device as Device
 from .device.hand import HandPath as HandPath
 from .device.page import Scene as Scene
@@ -8,6 +10,8 @@ from .device.scanning import Scan as Scan
 from .device.scanning import scan as scan
 from .files.device import DeviceFile as DeviceFile
 from .files.device import load_device as load_device
+from .files.system import SystemFile as SystemFile
+from .files.system import load_system as load_system
 from .fitting.estimation import fit as fit
 from .fitting.friction_curve import fit_friction as fit_friction
 from .fitting.recording import Recording as Recording

@@ -27,6 +27,7 @@
 #include <vector>
 
 #include "_contact.hpp"
+#include "_input.hpp"
 #include "arrays.hpp"
 #include "function_sum.hpp"
 #include "interrupt.hpp"
@@ -52,30 +53,11 @@ using CoreMotion = pd::StoredMotion<T>;
 using Dual = pd::Dual<double>;
 /// Travel, stiffness, damping of the end stops.
 using StopNumbers = std::tuple<double, double, double>;
-/// Begin, polynomial, and terms (cosine, sine, decay, frequency) of a piece of a function.
-using Piece = std::tuple<double, std::array<double, 6>, std::vector<std::array<double, 4>>>;
-/// Rows (time, value) of an input, one row for a constant; or the pieces of a function.
-using Input = std::variant<Rows, std::vector<Piece>>;
 /// Mass, stiffness, damping; plate, finger; mouse velocity and plate load; displacement, velocity, skin
 /// stretch; the force, the velocity across and the finger's load; the end stops; duration; support.
 using Numbers =
     std::tuple<double, double, double, ContactNumbers, ContactNumbers, Input, Input, double, double,
                double, Input, Input, Input, StopNumbers, double, double>;
-
-/// Converts a Python tuple to the struct with equal fields.
-template <class Struct, class Tuple>
-Struct as(Tuple&& tuple) {
-  return std::apply([](auto&&... field) { return Struct{std::forward<decltype(field)>(field)...}; },
-                    std::forward<Tuple>(tuple));
-}
-
-pd::InputNumbers input_of(Input&& input) {
-  if (Rows* rows = std::get_if<Rows>(&input)) return {std::move(*rows)};
-  pd::InputNumbers found;
-  for (Piece& piece : std::get<std::vector<Piece>>(input))
-    found.pieces.push_back(as<pd::PieceNumbers>(std::move(piece)));
-  return found;
-}
 
 std::vector<Piece> numbers_of(pd::Pieces pieces) {
   std::vector<Piece> found;
@@ -386,6 +368,7 @@ nb::class_<CoreMotion<T>> bind(nb::module_& m, const char* name, const char* mea
 }  // namespace
 
 void bind_batch(nb::module_& m);
+void bind_bodies(nb::module_& m);
 void bind_device(nb::module_& m);
 void bind_scan(nb::module_& m);
 void bind_evaluation(nb::module_& m);
@@ -510,6 +493,7 @@ NB_MODULE(_core, m) {
   m.def("differentiate", &differentiate, "numbers"_a, "along"_a,
         "The derivatives of a motion along a direction; both as the arguments of simulate.");
   bind_batch(m);
+  bind_bodies(m);
   bind_device(m);
   bind_scan(m);
   bind_evaluation(m);

@@ -157,6 +157,63 @@ def elementary(which: int, a: Annotated[NDArray[numpy.float64], dict(shape=(None
     Values of one of the elementary functions: sine, cosine, exp, expm1, log, log1p of a, or the angle of the points (b, a), by the kernel of a width.
     """
 
+class SystemMotion:
+    """A simulated motion of several bodies."""
+
+    def at(self, times: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], right: bool) -> tuple:
+        """
+        Position, velocity and acceleration of each body, and friction, stretch, sliding speed and slip of each contact, over all times.
+        """
+
+    def changes(self) -> dict:
+        """Columns, one row an event."""
+
+    @property
+    def status(self) -> int: ...
+
+    @property
+    def rests(self) -> bool: ...
+
+    def range(self, body: int) -> tuple[float, float]:
+        """Least and largest position of a body."""
+
+    @property
+    def end(self) -> float: ...
+
+    @property
+    def step_count(self) -> int: ...
+
+class SystemDerivative:
+    """The derivatives of such a motion along a direction."""
+
+    def at(self, times: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], right: bool) -> tuple:
+        """
+        Position, velocity and acceleration of each body, and friction, stretch, sliding speed and slip of each contact, over all times.
+        """
+
+    def changes(self) -> dict:
+        """Columns, one row an event."""
+
+def simulate_system(numbers: tuple[Sequence[tuple[float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], float, float]], Sequence[tuple[int, int, float, float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]]]], Sequence[tuple[int, int, float, float, float, float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], float]]], duration: float) -> SystemMotion:
+    """
+    Simulates several bodies. Bodies are (mass, force, position, velocity); springs (first body, second or -1, stiffness, damping, length); contacts (first body, second or -1, kinetic, static, stiffness, damping, load, velocity, stretch).
+    """
+
+def differentiate_system(numbers: tuple[Sequence[tuple[float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], float, float]], Sequence[tuple[int, int, float, float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]]]], Sequence[tuple[int, int, float, float, float, float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], float]]], along: tuple[Sequence[tuple[float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], float, float]], Sequence[tuple[int, int, float, float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]]]], Sequence[tuple[int, int, float, float, float, float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], float]]], duration: float) -> SystemDerivative:
+    """The derivatives of a motion of several bodies along a direction."""
+
+def input_at(input: Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], times: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], right: bool) -> tuple:
+    """Values and rates of an input at times."""
+
+def function_integral(pieces: Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]]) -> list[tuple[float, list[float], list[list[float]]]]:
+    """The pieces of the integral of a function from t = 0 on."""
+
+def function_integral_along(pieces: Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], along: Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]]) -> list[tuple[float, list[float], list[list[float]]]]:
+    """The derivative of that integral along a direction of the pieces."""
+
+def certify_system(numbers: tuple[Sequence[tuple[float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], float, float]], Sequence[tuple[int, int, float, float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]]]], Sequence[tuple[int, int, float, float, float, float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], float]]], duration: float) -> dict:
+    """The worst violation of each law, and the energy."""
+
 def direction(angle: float) -> tuple[float, float]:
     """Unit vector at an angle, rad."""
 

@@ -194,6 +194,8 @@ OF_THE_DEVICE = {
     "speed_limit",
     "tried_speeds",
     "speed_precision",
+    "SystemMotion",
+    "SystemDerivative",
 }
 """Names of the device layer, whose functions in C are those of a device and its scan."""
 OF_THE_EXTENSION = {
@@ -213,6 +215,12 @@ OF_THE_EXTENSION = {
     "function_pieces_along",
     "sum_of_functions",
     "input_period",
+    "input_at",
+    "function_integral",
+    "function_integral_along",
+    "simulate_system",
+    "differentiate_system",
+    "certify_system",
 } | OF_THE_DEVICE
 """Names of the extension without a function in C."""
 

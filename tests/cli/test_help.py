@@ -26,7 +26,7 @@ PROGRAM: Any = typer.main.get_command(app)
 NAMES: list[str] = PROGRAM.list_commands(None)
 SHARED = {
     *("__init__", "app", "errors", "help", "interrupts", "options", "outputs", "progress"),
-    *("design_tables", "fit_tables", "scan_tables", "study_tables", "tables"),
+    *("design_tables", "fit_tables", "scan_tables", "study_tables", "system_tables", "tables"),
 }
 HEADINGS = (
     *("Arguments", "Contents", "Page", "Analysis"),

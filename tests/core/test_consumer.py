@@ -30,12 +30,12 @@ LAYERS = (
     "motion",
     "certificate",
     "kernel",
-    "device",
     "bodies",
+    "device",
 )
 """Folders of the core, each built on the folders before."""
 PUBLIC = {
-    "bodies": {"follow", "step_certificate", "system"},
+    "bodies": {"follow", "step_certificate", "stored_motion", "system"},
     "certificate": {"certificate", "certify"},
     "device": {
         "closest_approach",

@@ -178,7 +178,7 @@ def test_curve_alone_gives_the_kinetic_friction() -> None:
         (
             lambda: Profile([0, 1], ["60 mm/s", "5 N"]),
             'values must be numbers in SI, or text all like "60 mm/s" or all like "1" or all like '
-            '"10 mN", got "60 mm/s", "5 N"',
+            '"10 mN" or all like "1 mm", got "60 mm/s", "5 N"',
         ),
         (lambda: Profile([0, 1], ["60 mm/s", "1"]), "values must be numbers in SI, or text all"),
         (lambda: Profile([0, 1], ["1e13 m/s", 0]), "values[0] must be finite and at least -1e12"),

@@ -47,6 +47,7 @@ def results(motion: pd.Motion, tmp_path_factory: pytest.TempPathFactory) -> dict
         "fit": pd.fit(recorded(rate=1e3), START, RELEASE, free=["damping"], profiles=False),
         "friction curve": pd.fit_friction(SPEEDS, 0.02 + 0.1 * SPEEDS),
         "page speeds": speeds_over_page(reader.device, reader.reading, pd.Page(text=".")),
+        "system motion": pd.load_system(SYSTEM).system.simulate("0.3 s"),
         "bifurcation": pd.bifurcation(pd.Study(device, axes={"mass": ["9 g", "10 g"]})),
         "sweep": sweep(pd.Study(device, axes={"mass": ["9 g", "10 g", "11 g"]}), file),
     }
@@ -56,9 +57,10 @@ ROOT = Path(__file__).parents[2]
 MADE = re.compile(r"^class (\w+)\(lazy\.NotebookHtml", re.M)
 SPEEDS = np.linspace(0.0, 0.2, 30)
 READER = EXAMPLE.parent / "tactile-reader.toml"
+SYSTEM = EXAMPLE.parent / "two-pins.toml"
 RESULTS = (
     *("motion", "sensitivity", "scan", "evaluation", "robustness", "local sensitivity", "sobol"),
-    *("fit", "friction curve", "sweep", "page speeds", "bifurcation"),
+    *("fit", "friction curve", "sweep", "page speeds", "bifurcation", "system motion"),
 )
 
 
@@ -72,6 +74,7 @@ NO_RESULTS = {
     *(
         "DeviceFile",
         "Study",
+        *("System", "SystemFile", "Body", "Spring", "ContactPair"),
         "DesignProblem",
         "Recording",
         "HandPath",

@@ -57,6 +57,9 @@ class Expansion {
   /// True of a contact in stick whose surfaces may move apart.
   bool may_part(int j) const { return contact(j).rigid() && !joined_.joins(j); }
 
+  /// True if rigid contacts hold each body to the ground.
+  bool all_held() const { return joined_.all_grounded(); }
+
   /// Computes the orders up to one from a state on, in the time τ/step.
   void expand(const bodies::State<T>& state, Real step, int order) {
     begin(state, step);
@@ -135,11 +138,11 @@ class Expansion {
   }
   /// Order n of an input, with the error of a time that is known to rounding.
   N given(const InputSeries<T>& input, int n) const {
-    return known(input[n], late_ * std::abs(T(n + 1) * input[n + 1]));
+    return known(input[n], late_ * std::abs(plain(T(n + 1) * input[n + 1])));
   }
   /// Order n of the rate of an input, likewise.
   N rate_of(const InputSeries<T>& input, int n) const {
-    return known(input.rate(n), late_ * std::abs(T(n + 1) * input.rate(n + 1)));
+    return known(input.rate(n), late_ * std::abs(plain(T(n + 1) * input.rate(n + 1))));
   }
   /// Number of a state, with the rounding of it.
   static N known(const T& of, Real within = 0) {

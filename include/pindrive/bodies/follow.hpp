@@ -38,6 +38,8 @@ class Step {
 
   T begin() const { return begin_; }    ///< s
   T length() const { return length_; }  ///< s
+  Real span() const { return span_; }   ///< unit of the time of the polynomials, s
+  int order() const { return series_->order(); }
   Slip slip(int contact) const { return (*mode_)[contact]; }
   T position(int body, T tau) const { return at(series_->position(body), tau); }        ///< m
   T velocity(int body, T tau) const { return at(series_->velocity(body), tau); }        ///< m/s
@@ -51,9 +53,14 @@ class Step {
   /// Speed of `one` or of its skin over the surface, m/s.
   T sliding(int contact, T tau) const { return at(series_->sliding(contact), tau); }
 
- private:
   using Series = typename detail::Expansion<T>::Series;
+  const Series& position_series(std::size_t body) const { return series_->position(body); }
+  const Series& velocity_series(std::size_t body) const { return series_->velocity(body); }
+  const Series& stretch_series(std::size_t contact) const { return series_->stretch(contact); }
+  const Series& friction_series(std::size_t contact) const { return series_->friction(contact); }
+  const Series& sliding_series(std::size_t contact) const { return series_->sliding(contact); }
 
+ private:
   T at(const Series& c, T tau) const {
     const T s = tau / span_;
     T sum = c[series_->order()];
@@ -95,6 +102,7 @@ class Following {
       if (!slips) active.push_back(static_cast<int>(j));
     }
     settle(active);
+    changes_.clear();  // the first mode is none
   }
 
   const State<T>& state() const { return state_; }
@@ -104,10 +112,37 @@ class Following {
   long steps() const { return steps_; }
 
   using Sink = Callback<const Step<T>&>;
+  /// May shorten a step, whose length is given, and then returns false: an input changes there.
+  using Cut = Callback<const Step<T>&, T&>;
 
-  /// Goes on to a time, s; the status says if it was reached. `sink` is called with each step.
-  void advance(T until, Sink sink = {}) {
-    while (status_ == Status::ok && state_.time < until) step(until, sink);
+  /// Goes on to a time, s; the status says if it was reached. `sink` is called with each step, and may return false to
+  /// stop.
+  void advance(T until, Sink sink = {}, Cut cut = {}) {
+    while (status_ == Status::ok && state_.time < until)
+      if (!step(until, sink, cut)) return;
+  }
+  /// Selects the mode under inputs that the caller has changed.
+  void resume() { settle({}); }
+  /// The same, but ends where all bodies rest.
+  void advance_to_rest(T until, Sink sink = {}) {
+    while (status_ == Status::ok && state_.time < until && !resting()) step(until, sink);
+  }
+  /// True if rigid contacts hold all bodies at rest and no input changes any more: nothing moves from now on.
+  bool resting() const {
+    const auto constant = [&](const Profile<T>& input, bool zero) {
+      const Curve<T> now = input.from(state_.time);
+      return now.straight() && now.rate == 0 && (!zero || now.value == 0);
+    };
+    const auto& s = *system_;
+    return series_.all_held() &&
+           !(s.next_breakpoint(state_.time) < std::numeric_limits<Real>::infinity()) &&
+           std::all_of(s.bodies.begin(), s.bodies.end(),
+                       [&](const Body<T>& body) { return constant(body.force, false); }) &&
+           std::all_of(s.links.begin(), s.links.end(),
+                       [&](const Link<T>& link) { return constant(link.length, false); }) &&
+           std::all_of(s.contacts.begin(), s.contacts.end(), [&](const Contact<T>& c) {
+             return constant(c.load, false) && constant(c.velocity, true);
+           });
   }
 
  private:
@@ -171,15 +206,16 @@ class Following {
     return state_.velocity[c.one] - other - c.velocity.from(state_.time).value;
   }
 
-  void step(T until, Sink sink) {
+  /// False if the step was cut.
+  bool step(T until, Sink sink, Cut cut = {}) {
     const T breakpoint = std::min(system_->next_breakpoint(state_.time), until);
     const Real rest = plain(breakpoint - state_.time);
     const Real rate =
         std::max(fastest_, Real(detail::longest_input) / series_.input_reach(state_.time));
     const Real span = std::min(rest, longest / rate);
     series_.expand(state_, span, order_over(rate * span));
-    ++steps_;
-    T tau = T(span);
+    if (++steps_ > event_limit) status_ = Status::too_many_events;
+    T tau = span == rest ? breakpoint - state_.time : T(span);
     std::vector<int> active;
     for (std::size_t j = 0; j < mode_.size(); ++j) {
       const T zero = zero_of(static_cast<int>(j), span);
@@ -188,12 +224,15 @@ class Following {
       tau = zero;
       active.push_back(static_cast<int>(j));
     }
-    const bool whole = span == rest && active.empty();
+    const bool goes_on = cut(Step<T>(series_, mode_, state_.time, tau, span), tau);
+    if (!goes_on) active.clear();
+    const bool whole = span == rest && active.empty() && goes_on;
     standing_ = state_.time + tau > state_.time ? 0 : standing_ + 1;
     if (standing_ > detail::standstill_limit) status_ = Status::standstill;
-    sink(Step<T>(series_, mode_, state_.time, tau, span));
+    if (!sink(Step<T>(series_, mode_, state_.time, tau, span))) status_ = Status::stopped;
     move(tau, whole ? breakpoint : state_.time + tau, span);
     if (!active.empty() || whole) settle(active);
+    return goes_on;
   }
 
   /// First time at which a guard of a contact becomes negative, s; infinite within the step if none.

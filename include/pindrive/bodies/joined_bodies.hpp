@@ -81,6 +81,9 @@ class JoinedBodies {
           limits_[k] * (level_of(order.level, c.one) - level_of(order.level, c.other));
     }
   }
+  bool all_grounded() const {
+    return std::all_of(root_.begin(), root_.end(), [](int root) { return root == bodies::ground; });
+  }
   const std::vector<int>& stuck() const { return stuck_; }
   /// True of a contact that joins two bodies which no other contact joins.
   bool joins(int contact) const {

@@ -29,6 +29,7 @@ class ModeSelection {
   /// Changes the mode of `active` contacts, and of all that contradict it; false if no mode is consistent.
   bool select(const bodies::State<T>& state, const std::vector<int>& active, Real step,
               Mode& mode) {
+    const Mode before = mode;
     trials_.clear();
     met_ = active;
     for (const int contact : active) {
@@ -36,10 +37,16 @@ class ModeSelection {
       trial_of(contact);
     }
     for (Trial& trial : trials_) trial.seen.insert(part_of(trial, mode));
-    for (;;) {
+    bool several = false;  // contacts that changed
+    for (int last = -1;;) {
       bodies::Slip instead{};
       const int wrong = first_wrong(state, step, mode, instead);
-      if (wrong < 0) return true;
+      if (wrong < 0) {
+        if (several) hold_on(state, step, before, mode);
+        return true;
+      }
+      several = several || (last >= 0 && wrong != last);
+      last = wrong;
       mode[wrong] = instead;
       while (!next_of(trial_of(wrong), mode))
         if (!merge(trial_of(wrong))) return false;
@@ -59,6 +66,22 @@ class ModeSelection {
     std::vector<int> contacts;
     std::set<Mode> seen;
   };
+
+  /// Lets contacts stick that stuck or were met, and were found to slip before others changed.
+  void hold_on(const bodies::State<T>& state, Real step, const Mode& before, Mode& mode) {
+    bodies::Slip instead{};
+    for (std::size_t j = 0; j < mode.size(); ++j) {
+      const bool was_met = std::find(met_.begin(), met_.end(), static_cast<int>(j)) != met_.end();
+      if (mode[j] == bodies::Slip::stick || (before[j] != bodies::Slip::stick && !was_met))
+        continue;
+      Mode tried = mode;
+      tried[j] = bodies::Slip::stick;
+      if (first_wrong(state, step, tried, instead) < 0)
+        mode = std::move(tried);
+      else
+        first_wrong(state, step, mode, instead);
+    }
+  }
 
   int body_of(int contact) const {
     const bodies::Contact<T>& c = system_->contacts[contact];

@@ -26,6 +26,15 @@ struct Violations {
   T worst() const { return std::max({motion, kinematics, friction, sliding, continuity, energy}); }
 };
 
+/// Energy over a motion, J: `after` − `before` = `inputs` − `dampers` − `contacts` but for rounding.
+template <class T>
+struct Ledger {
+  T before{0}, after{0};  ///< of motion and of springs, without that of skin
+  T inputs{0};            ///< work of forces, prescribed motions and surfaces
+  T dampers{0};           ///< loss in the dampers of springs
+  T contacts{0};          ///< loss in contacts, with what their skin stores
+};
+
 /// Checks each step of a motion. Reads inputs and polynomials alone.
 template <class T>
 class StepCertificate {
@@ -34,13 +43,16 @@ class StepCertificate {
 
   void add(const Step<T>& step) {
     for (std::size_t i = 0; i < system_->bodies.size(); ++i) meet(step, static_cast<int>(i));
+    const T before = energy(step, T(0)), after = energy(step, step.length());
+    if (!began_) ledger_.before = before;
+    ledger_.after = after;
     began_ = true;
-    T gained = energy(step, step.length()) - energy(step, T(0));
+    T gained = after - before;
     for (std::size_t k = 0; k < points.size(); ++k)
       for (const int side : {1, -1}) {
         const T tau = step.length() / 2 * (1 + T(side) * T(points[k]));
         check(step, tau);
-        gained -= step.length() / 2 * T(weights[k]) * power(step, tau);
+        gained -= power(step, tau, step.length() / 2 * T(weights[k]));
       }
     drift_ += gained;
     last_.resize(2 * system_->bodies.size());
@@ -61,6 +73,7 @@ class StepCertificate {
             std::max(part(found_.continuity, size_), part(jump_, speed_)),
             part(abs(drift_), exchanged_)};
   }
+  const Ledger<T>& ledger() const { return ledger_; }
   long steps() const { return steps_; }
 
  private:
@@ -166,31 +179,38 @@ class StepCertificate {
     raise(exchanged_, sum);
     return sum;
   }
-  /// What inputs, dampers and contacts give to bodies and springs, W.
-  T power(const Step<T>& step, T tau) {
+  /// Work of inputs, dampers and contacts on bodies and springs during a time, by their power at one moment, J.
+  T power(const Step<T>& step, T tau, T during) {
     using std::abs;
     T sum{0};
-    const auto give = [&](T part) {
-      sum += part;
-      exchanged_ += abs(part) * step.length() / T(2 * points.size());
+    const auto give = [&](T work, T& account, int sign) {
+      sum += work;
+      account += T(sign) * work;
+      exchanged_ += abs(work);
     };
     for (std::size_t i = 0; i < system_->bodies.size(); ++i)
-      give(system_->bodies[i].force.from(step.begin()).at(tau) *
-           step.velocity(static_cast<int>(i), tau));
+      give(during * system_->bodies[i].force.from(step.begin()).at(tau) *
+               step.velocity(static_cast<int>(i), tau),
+           ledger_.inputs, 1);
     for (const Link<T>& link : system_->links) {
       const Pull at = pull(step, link, tau);
-      give(-link.damping * at.faster * at.faster);
-      give(-(link.stiffness * at.longer + link.damping * at.faster) * at.given);
+      give(-during * link.damping * at.faster * at.faster, ledger_.dampers, -1);
+      give(-during * (link.stiffness * at.longer + link.damping * at.faster) * at.given,
+           ledger_.inputs, 1);
     }
     for (std::size_t j = 0; j < system_->contacts.size(); ++j) {
       const Contact<T>& c = system_->contacts[j];
-      give(step.friction(static_cast<int>(j), tau) * between(step, c.one, c.other, tau, true));
+      const T surface = c.velocity.from(step.begin()).at(tau);
+      const T force = during * step.friction(static_cast<int>(j), tau);
+      give(force * (between(step, c.one, c.other, tau, true) - surface), ledger_.contacts, -1);
+      give(force * surface, ledger_.inputs, 1);
     }
     return sum;
   }
 
   const System<T>* system_;
   Violations<T> found_{};
+  Ledger<T> ledger_{};
   T jump_{0}, force_{0}, speed_{0}, size_{0}, drift_{0}, exchanged_{0};
   bool began_{false};
   std::vector<T> last_;

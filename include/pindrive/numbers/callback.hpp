@@ -7,8 +7,8 @@ namespace pindrive {
 
 /// Calls a function that may return false to request no further calls; true to continue.
 template <class Function, class... Arguments>
-bool goes_on(Function& function, const Arguments&... arguments) {
-  if constexpr (std::is_void_v<std::invoke_result_t<Function&, const Arguments&...>>) {
+bool goes_on(Function& function, Arguments&&... arguments) {
+  if constexpr (std::is_void_v<std::invoke_result_t<Function&, Arguments&...>>) {
     function(arguments...);
     return true;
   } else {

@@ -47,6 +47,7 @@ _SHARED: Final = (
     "progress",
     "scan_tables",
     "study_tables",
+    "system_tables",
     "tables",
 )
 """The files of this package that are no command."""

@@ -74,7 +74,7 @@ def even_times(begin: float, end: float, rate: float | str, curves: int = 1) -> 
 def to_csv(motion: Motion, path: str | PathLike[str], rate: float | str) -> Path:
     """Write a motion as `Motion.to_csv`; return the path of the events."""
     times = even_times(0.0, motion.duration, rate)
-    return _with_events(
+    return with_events(
         Path(path),
         (MOTION_CSV, EVENTS_CSV),
         lambda part: write_csv(motion, part, times),
@@ -85,18 +85,18 @@ def to_csv(motion: Motion, path: str | PathLike[str], rate: float | str) -> Path
 def write_csv(motion: Motion, path: Path, times: NDArray[np.float64]) -> None:
     """Write the motion, SI, at times (s, shape (n,)), a row each; right-hand limits."""
     found = columns(motion, times)
-    _write_table(path, _headings(found), _rows([*found.values()]))
+    write_table(path, _headings(found), rows_of_columns([*found.values()]))
 
 
 def write_events(motion: Motion, path: Path) -> None:
     """Write the events of a motion, SI, a row each; of a cycle, one round."""
-    _write_table(path, EVENT_HEADINGS, map(_event_row, motion.events))
+    write_table(path, EVENT_HEADINGS, map(_event_row, motion.events))
 
 
 def scan_to_csv(scan: Scan, path: str | PathLike[str], rate: float | str) -> Path:
     """Write a scan as `Scan.to_csv`; return the path of the events."""
     times = even_times(scan.path.begin, scan.path.end, rate, len(scan.pins))
-    return _with_events(
+    return with_events(
         Path(path),
         (SCAN_CSV, SCAN_EVENTS_CSV),
         lambda part: write_scan_csv(scan, part, times),
@@ -117,16 +117,16 @@ def write_scan_csv(scan: Scan, path: Path, times: NDArray[np.float64]) -> None:
     rows = (
         row
         for pin in scan.pins
-        for row in _rows([np.full(len(times), pin.number), *found(pin).values()])
+        for row in rows_of_columns([np.full(len(times), pin.number), *found(pin).values()])
     )
     names = [*columns(scan.pins[0].motion, scan.pins[0].since(times[:1])), "hand_force"]
-    _write_table(path, ["pin", *_headings(names)], rows)
+    write_table(path, ["pin", *_headings(names)], rows)
 
 
 def write_scan_events(scan: Scan, path: Path) -> None:
     """Write the events of each pin, pin after pin, on the path's clock, a row each."""
     rows = ([pin.number, *_event_row(event)] for pin in scan.pins for event in pin.events)
-    _write_table(path, ["pin", *EVENT_HEADINGS], rows)
+    write_table(path, ["pin", *EVENT_HEADINGS], rows)
 
 
 def write_lines(found: Mapping[str, NDArray[Any]], path: Path) -> None:
@@ -134,25 +134,26 @@ def write_lines(found: Mapping[str, NDArray[Any]], path: Path) -> None:
     stated = {quantity.variable: quantity.heading for quantity in (*EDGES, *LINE)}
     rows = (
         ["" if isinstance(cell, float) and isnan(cell) else cell for cell in row]
-        for row in _rows([*found.values()])
+        for row in rows_of_columns([*found.values()])
     )
-    _write_table(path, [stated.get(name, name) for name in found], rows)
+    write_table(path, [stated.get(name, name) for name in found], rows)
 
 
-def _write_table(path: Path, head: Iterable[str], rows: Iterable[Iterable[Any]]) -> None:
+def write_table(path: Path, head: Iterable[str], rows: Iterable[Iterable[Any]]) -> None:
+    """Write a CSV with a line of headings."""
     with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file)
         writer.writerow(head)
         writer.writerows(rows)
 
 
-def _rows(table: Sequence[NDArray[Any]]) -> Iterator[tuple[Any, ...]]:
+def rows_of_columns(table: Sequence[NDArray[Any]]) -> Iterator[tuple[Any, ...]]:
     """Yield the rows of columns, with a limited number of Python numbers at a time."""
     for begin in range(0, len(table[0]), AT_ONCE):
         yield from zip(*(part[begin : begin + AT_ONCE].tolist() for part in table), strict=True)
 
 
-def _with_events(
+def with_events(
     target: Path,
     kinds: tuple[Kind, Kind],
     write_samples: Callable[[Path], None],

@@ -113,12 +113,13 @@ def in_si(values: list[Any], label: str) -> tuple[str, list[Any]]:
     if str not in set(map(type, values)):
         return "", values
     over_time = [quantity for quantity in _TABLE.rows.values() if quantity.rows_of == "profile"]
-    first = {quantity.unit: quantity for quantity in reversed(over_time)}  # for each unit
-    units = [*dict.fromkeys(quantity.unit for quantity in over_time)]
+    # A prescribed motion of a system of bodies may be positions.
+    usual_of = {q.unit: q.usual for q in reversed(over_time)} | {"m": "1 mm"}
+    units = [*dict.fromkeys(quantity.unit for quantity in over_time), "m"]
     for unit in units:
         with suppress(UnitError):
             return unit, [to_si(y, unit, "") if isinstance(y, str) else y for y in values]
-    usual = " or all like ".join(quoted(first[unit].usual) for unit in units)
+    usual = " or all like ".join(quoted(usual_of[unit]) for unit in units)
     texts = ", ".join(quoted(y) for y in values if isinstance(y, str))
     raise ValueError(refusal(label, f"numbers in SI, or text all like {usual}", texts))
 

@@ -1,0 +1,504 @@
+"""The motion of a system of several bodies: its bodies, contacts and springs at any time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from os import PathLike
+from pathlib import Path
+from typing import Any, Literal, overload
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pindrive import _core, lazy
+from pindrive.bodies.inputs import integrated
+from pindrive.bodies.system import GROUND, Body, ContactPair, Spring, System
+from pindrive.lazy import mpl_figure, xr
+from pindrive.quantities.names import Names
+from pindrive.quantities.quantity import counted
+from pindrive.quantities.refusal import refusal
+from pindrive.quantities.status import Side, Status
+from pindrive.quantities.table import default
+from pindrive.quantities.value import concise
+
+Kind = Literal["stick", "slip", "reverse"]
+
+
+@concise
+@dataclass(frozen=True, slots=True)
+class SystemEvent:
+    """A change at a contact.
+
+    Attributes:
+        time: s.
+        contact: Name of the contact.
+        kind: `stick`: sliding stopped and the contact holds; `slip`: it begins to slide; `reverse`:
+            the sliding velocity changes sign.
+        before: Direction of slip before: -1, 1, or 0 in stick.
+        after: Direction of slip after.
+    """
+
+    time: float
+    contact: str
+    kind: Kind
+    before: int
+    after: int
+
+
+@concise
+@dataclass(frozen=True, slots=True)
+class SystemLedger:
+    """Energy over a motion, J: `after` - `before` = `inputs` - `dampers` - `contacts`.
+
+    Attributes:
+        before: Energy of motion and of springs at t = 0.
+        after: Energy of motion and of springs at the end.
+        inputs: Work of forces, prescribed motions and moving surfaces.
+        dampers: Loss in the dampers beside springs.
+        contacts: Loss in contacts, with the energy that their skin holds at the end.
+    """
+
+    before: float
+    after: float
+    inputs: float
+    dampers: float
+    contacts: float
+
+    @property
+    def residual(self) -> float:
+        """Difference of both sides, J: rounding alone."""
+        return self.after - self.before - self.inputs + self.dampers + self.contacts
+
+
+@concise
+@dataclass(frozen=True, slots=True)
+class SystemCertificate:
+    """Largest violation of each law, found without the solver, relative to the largest quantity.
+
+    Attributes:
+        motion: Mass times acceleration against the sum of the forces, over the largest force.
+        kinematics: Velocities against the rates of positions and stretches, over the largest speed.
+        friction: Friction in slip against kinetic friction, and in stick beyond static friction.
+        sliding: Sliding against the direction of slip, and in stick, over the largest speed.
+        continuity: Jumps of positions and velocities at events.
+        energy: Balance of the energy, over all that was exchanged.
+    """
+
+    motion: float
+    kinematics: float
+    friction: float
+    sliding: float
+    continuity: float
+    energy: float
+
+    @property
+    def worst(self) -> float:
+        """The largest of all."""
+        return max(
+            *(self.motion, self.kinematics, self.friction),
+            *(self.sliding, self.continuity, self.energy),
+        )
+
+
+class SystemMotion(lazy.NotebookHtml):
+    """Exact motion of a system of several bodies, made by `System.simulate`.
+
+    `motion["pin"]` is the motion of a body, `motion.contact("pin", "hand")` that of a contact.
+
+    Attributes:
+        system: The system that was simulated.
+        duration: s.
+    """
+
+    def __init__(self, system: System, numbers: Any, core: Any, duration: float) -> None:
+        self.system = system
+        self.core_numbers = numbers
+        self.core = core
+        self.duration = duration
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle the system, which is simulated again."""
+        return _simulated, (self.system, self.duration)
+
+    def __repr__(self) -> str:
+        """Return bodies, events and status in a line."""
+        bodies = counted(len(self.system.bodies), "body", "bodies")
+        rest = ", at rest" if self.core.rests else ""
+        return (
+            f"<SystemMotion of {bodies} over {self.duration:.6g} s, "
+            f"{counted(len(self.events), 'event')}{rest}, {self.status.name}>"
+        )
+
+    def __getitem__(self, body: str | Body) -> BodyMotion:
+        """Return the motion of a body.
+
+        Raises:
+            ValueError: The body is unknown.
+        """
+        name = body.name if isinstance(body, Body) else body
+        return BodyMotion(self, _found("body", name, self.system.bodies))
+
+    def contact(
+        self, name: str | Body | ContactPair, other: str | Body | None = None
+    ) -> ContactMotion:
+        """Return a contact under way.
+
+        Args:
+            name: The contact or its name, or its first body.
+            other: Second body, or "ground"; None: `name` is that of the contact.
+
+        Raises:
+            ValueError: The contact is unknown, or there are several between both bodies.
+        """
+        contacts = self.system.contacts
+        return ContactMotion(self, _between("contact", name, other, contacts))
+
+    def spring(self, name: str | Body | Spring, other: str | Body | None = None) -> SpringMotion:
+        """Return a spring under way; arguments and errors as for `contact`."""
+        return SpringMotion(self, _between("spring", name, other, self.system.springs))
+
+    @property
+    def status(self) -> Status:
+        """Complete, or the reason for its end (`Status.explanation`)."""
+        return Status(self.core.status)
+
+    @property
+    def rests(self) -> bool:
+        """True if rigid contacts hold all bodies at the end and no input changes any more."""
+        return bool(self.core.rests)
+
+    @cached_property
+    def events(self) -> tuple[SystemEvent, ...]:
+        """Changes at contacts, in order."""
+        names = [*self.system.contacts]
+        table = self.core.changes()
+        rows = zip(*(table[column].tolist() for column in table), strict=True)
+        return tuple(
+            SystemEvent(time, names[int(contact)], _kind(before, after), int(before), int(after))
+            for time, contact, before, after in rows
+        )
+
+    @cached_property
+    def _certified(self) -> dict[str, dict[str, float]]:
+        found: dict[str, dict[str, float]] = _core.certify_system(self.core_numbers, self.duration)
+        return found
+
+    def certificate(self) -> SystemCertificate:
+        """The worst residual of each law, computed from inputs and polynomials alone."""
+        return SystemCertificate(**self._certified["laws"])
+
+    @property
+    def energy(self) -> SystemLedger:
+        """Energy of the motion, and where it went."""
+        return SystemLedger(**self._certified["energy"])
+
+    # ---- over time -------------------------------------------------------------------------------
+
+    def known(self, t: ArrayLike, side: Side = "right") -> NDArray[np.float64]:
+        """Times at which the motion is known, s.
+
+        Raises:
+            ValueError: A time is not a number, or out of [0, duration].
+        """
+        if side not in ("left", "right"):
+            raise ValueError(refusal("side", '"left" or "right"', repr(side)))
+        try:
+            times = np.asarray(t, dtype=np.float64)
+        except (TypeError, ValueError):
+            raise ValueError(refusal("t", "numbers, in seconds", repr(t))) from None
+        good = (times >= 0.0) & (times <= self.core.end)
+        if not good.all():
+            required = f"from 0 s to {self.core.end!r} s"
+            raise ValueError(refusal("t", required, f"{float(times[~good].flat[0])!r} s"))
+        return times
+
+    def state_at(
+        self, t: NDArray[np.float64], side: Side = "right"
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return all quantities at times.
+
+        Args:
+            t: s, shape (n,).
+            side: Side of an event on which the limit is taken.
+
+        Returns:
+            Position, velocity and acceleration of the bodies, shape (3, bodies, n); friction force,
+            stretch, sliding speed and slip of the contacts, shape (4, contacts, n).
+        """
+        moving, touching = self.core.at(np.ascontiguousarray(t), side == "right")
+        counts = len(self.system.bodies), len(self.system.contacts)
+        return moving.reshape(3, counts[0], len(t)), touching.reshape(4, counts[1], len(t))
+
+    def sample_times(self, count: int = 1001) -> NDArray[np.float64]:
+        """`count` even times over [0, duration] and the events among them, s, shape (n,)."""
+        if not count >= 2:
+            raise ValueError(refusal("count", "at least 2", repr(count)))
+        events = [event.time for event in self.events]
+        return np.union1d(np.linspace(0.0, self.core.end, count), events)
+
+    def numbers(self) -> dict[str, float]:
+        """Numbers of the motion, SI, by name: of each body, its energy, and the events.
+
+        "body.pin.end" is the position at the end, `least` and `largest` are those in between, and
+        `end_velocity` is the velocity at the end.
+        """
+        found: dict[str, float] = {}
+        moving, _ = self.state_at(np.array([self.core.end]), "left")
+        for i, name in enumerate(self.system.bodies):
+            least, largest = self.core.range(i)
+            found |= {
+                f"body.{name}.end": float(moving[0, i, 0]),
+                f"body.{name}.end_velocity": float(moving[1, i, 0]),
+                f"body.{name}.least": least,
+                f"body.{name}.largest": largest,
+            }
+        for name in self.system.contacts:
+            own = [event for event in self.events if event.contact == name]
+            found[f"contact.{name}.events"] = float(len(own))
+        energy = self._certified["energy"]
+        return found | {f"energy.{name}": value for name, value in energy.items()}
+
+    def sensitivity(self, parameters: Sequence[str]) -> Any:
+        """Exact derivatives of the motion by some parameters of the system.
+
+        Args:
+            parameters: Names among `System.parameters`, as "body.pin.mass" or "pin.mass".
+
+        Returns:
+            Derivatives of positions, velocities and event times, NaN where one does not exist.
+
+        Raises:
+            ValueError: A parameter is unknown.
+        """
+        from pindrive.bodies.system_sensitivity import SystemSensitivity
+
+        return SystemSensitivity(self, parameters)
+
+    def plot(self) -> mpl_figure.Figure:
+        """Positions of the bodies, forces and slip of the contacts over time, as a figure."""
+        from pindrive.plot.system import plot_system
+
+        return plot_system(self)
+
+    def to_dataset(self, times: ArrayLike | None = None) -> xr.Dataset:
+        """The motion over time, its events and its numbers, with units, as an xarray Dataset.
+
+        Args:
+            times: s, shape (n,); `sample_times()` unless given.
+
+        Returns:
+            Variables over (body, time), (contact, time), (spring, time) and over `event`; the
+            inputs in the attributes.
+        """
+        from pindrive.bodies.dataset import dataset
+
+        t = self.sample_times() if times is None else np.atleast_1d(self.known(times))
+        if t.ndim != 1:
+            raise ValueError(refusal("times", "of one dimension", f"{t.ndim}"))
+        return dataset(self, t)
+
+    def to_csv(self, path: str | PathLike[str], rate: float | str = default("rate")) -> Path:
+        """Write the motion at even times as CSV, and its events to a file of their own.
+
+        Args:
+            path: The file of samples; the events go beside it: those of "m.csv" to "m-events.csv".
+            rate: Samples a second, Hz, from 1e-6 to 1e12.
+
+        Returns:
+            The path of the events.
+
+        Raises:
+            ValueError: A rate out of its range; too many samples; a file that is there and holds
+                something else, or one that cannot be written.
+        """
+        from pindrive.files.system_export import to_csv
+
+        return to_csv(self, path, rate)
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class _Part:
+    """A part of a motion, evaluated at times of any shape."""
+
+    _motion: SystemMotion
+    name: str
+
+    def __repr__(self) -> str:
+        """Return its name in a line."""
+        return f"<{type(self).__name__} {self.name!r}>"
+
+    def _at(
+        self, contacts: bool, quantity: int, t: ArrayLike, side: Side
+    ) -> float | NDArray[np.float64]:
+        times = self._motion.known(t, side)
+        system = self._motion.system
+        place = [*(system.contacts if contacts else system.bodies)].index(self.name)
+        found = self._motion.state_at(times.ravel(), side)[contacts][quantity, place]
+        return float(found[0]) if times.ndim == 0 else found.reshape(times.shape)
+
+
+class BodyMotion(_Part):
+    """Motion of one body."""
+
+    __slots__ = ()
+
+    @overload
+    def position(self, t: float, side: Side = ...) -> float: ...
+    @overload
+    def position(self, t: ArrayLike, side: Side = ...) -> NDArray[np.float64]: ...
+    def position(self, t: ArrayLike, side: Side = "right") -> float | NDArray[np.float64]:
+        """Position, m.
+
+        Args:
+            t: s, any shape, from 0 to the duration.
+            side: Side of an event on which the limit is taken.
+
+        Raises:
+            ValueError: A time at which the motion is not known.
+        """
+        return self._at(False, 0, t, side)
+
+    @overload
+    def velocity(self, t: float, side: Side = ...) -> float: ...
+    @overload
+    def velocity(self, t: ArrayLike, side: Side = ...) -> NDArray[np.float64]: ...
+    def velocity(self, t: ArrayLike, side: Side = "right") -> float | NDArray[np.float64]:
+        """Velocity, m/s; arguments as for `position`."""
+        return self._at(False, 1, t, side)
+
+    @overload
+    def acceleration(self, t: float, side: Side = ...) -> float: ...
+    @overload
+    def acceleration(self, t: ArrayLike, side: Side = ...) -> NDArray[np.float64]: ...
+    def acceleration(self, t: ArrayLike, side: Side = "right") -> float | NDArray[np.float64]:
+        """Acceleration, m/s²; it jumps where friction does. Arguments as for `position`."""
+        return self._at(False, 2, t, side)
+
+
+class ContactMotion(_Part):
+    """One contact under way."""
+
+    __slots__ = ()
+
+    @property
+    def events(self) -> tuple[SystemEvent, ...]:
+        """Changes at this contact, in order."""
+        return tuple(event for event in self._motion.events if event.contact == self.name)
+
+    @overload
+    def force(self, t: float, side: Side = ...) -> float: ...
+    @overload
+    def force(self, t: ArrayLike, side: Side = ...) -> NDArray[np.float64]: ...
+    def force(self, t: ArrayLike, side: Side = "right") -> float | NDArray[np.float64]:
+        """Friction force on the first body, N; arguments as for `BodyMotion.position`.
+
+        Of several rigid contacts that hold a body together only the sum of the forces is
+        determined; each then has a part in proportion to its static friction.
+        """
+        return self._at(True, 0, t, side)
+
+    @overload
+    def stretch(self, t: float, side: Side = ...) -> float: ...
+    @overload
+    def stretch(self, t: ArrayLike, side: Side = ...) -> NDArray[np.float64]: ...
+    def stretch(self, t: ArrayLike, side: Side = "right") -> float | NDArray[np.float64]:
+        """Stretch of the skin, m; 0 of a rigid contact."""
+        return self._at(True, 1, t, side)
+
+    @overload
+    def sliding_speed(self, t: float, side: Side = ...) -> float: ...
+    @overload
+    def sliding_speed(self, t: ArrayLike, side: Side = ...) -> NDArray[np.float64]: ...
+    def sliding_speed(self, t: ArrayLike, side: Side = "right") -> float | NDArray[np.float64]:
+        """Velocity of the first body, or of its skin, over the surface, m/s; 0 in stick."""
+        return self._at(True, 2, t, side)
+
+    @overload
+    def slip(self, t: float, side: Side = ...) -> float: ...
+    @overload
+    def slip(self, t: ArrayLike, side: Side = ...) -> NDArray[np.float64]: ...
+    def slip(self, t: ArrayLike, side: Side = "right") -> float | NDArray[np.float64]:
+        """Direction of slip: -1, 1, or 0 in stick."""
+        return self._at(True, 3, t, side)
+
+
+class SpringMotion(_Part):
+    """One spring under way."""
+
+    __slots__ = ()
+
+    def _pull(self, t: ArrayLike, side: Side) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Elongation and its rate."""
+        times = self._motion.known(t, side)
+        flat = times.ravel()
+        system, (moving, _) = self._motion.system, self._motion.state_at(flat, side)
+        spring = system.springs[self.name]
+        names = [*system.bodies]
+        one, other = (
+            moving[:2, names.index(name)] if name != GROUND else np.zeros((2, len(flat)))
+            for name in spring.between
+        )
+        given = np.zeros((2, len(flat)))
+        for part in (spring.length, spring.motion):
+            if part is not None:
+                given += _course(part, flat, side)
+        longer, faster = one - other - given
+        return longer.reshape(times.shape), faster.reshape(times.shape)
+
+    def elongation(self, t: ArrayLike, side: Side = "right") -> float | NDArray[np.float64]:
+        """Elongation of the spring, m; arguments as for `BodyMotion.position`."""
+        longer, _ = self._pull(t, side)
+        return float(longer) if longer.ndim == 0 else longer
+
+    def force(self, t: ArrayLike, side: Side = "right") -> float | NDArray[np.float64]:
+        """Force of spring and damper on the first body, N."""
+        spring = self._motion.system.springs[self.name]
+        longer, faster = self._pull(t, side)
+        found = -(spring.stiffness * longer + spring.damping * faster)
+        return float(found) if found.ndim == 0 else found
+
+
+def _course(given: Any, t: NDArray[np.float64], side: Side) -> NDArray[np.float64]:
+    """Values of an input and their rates, shape (2, n)."""
+    if isinstance(given, float):
+        return np.array([np.full_like(t, given), np.zeros_like(t)])
+    values, rates = _core.input_at(_numbers(integrated(given)), t, side == "right")
+    return np.array([values, rates])
+
+
+def _numbers(given: Any) -> Any:
+    from pindrive.motion.release import numbers_of
+
+    return numbers_of(given)
+
+
+def _kind(before: float, after: float) -> Kind:
+    if after == 0:
+        return "stick"
+    return "slip" if before == 0 else "reverse"
+
+
+def _found(kind: str, name: object, known: dict[str, Any]) -> str:
+    if name not in known:
+        names = Names(kind, {each: () for each in known})
+        raise ValueError(names.unknown(name if isinstance(name, str) else repr(name)))
+    return str(name)
+
+
+def _between(kind: str, name: Any, other: str | Body | None, known: dict[str, Any]) -> str:
+    given = getattr(name, "name", name)
+    if other is None:
+        return _found(kind, given, known)
+    pair = (given, getattr(other, "name", other))
+    fits = [each for each, entry in known.items() if entry.between == pair]
+    if len(fits) == 1:
+        return fits[0]
+    if not fits:
+        return _found(kind, "-".join(map(str, pair)), known)
+    raise ValueError(f"between {pair[0]} and {pair[1]} are the {kind}s {', '.join(fits)}; name one")
+
+
+def _simulated(system: System, duration: float) -> SystemMotion:
+    return system.simulate(duration)

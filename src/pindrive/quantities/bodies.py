@@ -1,0 +1,85 @@
+"""The table of quantities of a system of several bodies: its inputs and its results."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import inf
+from typing import Final
+
+from pindrive.quantities.drive import ABOVE_ZERO, EITHER_WAY, FROM_ZERO, OR_INFINITE
+from pindrive.quantities.part import Part
+from pindrive.quantities.quantity import (
+    FINITE,
+    NON_NEGATIVE,
+    POSITIVE,
+    POSITIVE_OR_RIGID,
+    Quantity,
+)
+
+
+def _free(name: str, symbol: str, unit: str, meaning: str) -> Quantity:
+    """A quantity of either sign, zero unless given."""
+    return Quantity(name, symbol, unit, meaning, absent=0.0, bounds=FINITE, limits=EITHER_WAY)
+
+
+def _positive(name: str, symbol: str, unit: str, meaning: str) -> Quantity:
+    """A quantity from zero on, zero unless given."""
+    return Quantity(name, symbol, unit, meaning, absent=0.0, bounds=NON_NEGATIVE, limits=FROM_ZERO)
+
+
+def _input(quantity: Quantity, absent: float | None = 0.0) -> Quantity:
+    """A quantity that may change over time."""
+    return replace(quantity, absent=absent, rows_of="profile")
+
+
+BODY: Final = (
+    Quantity(
+        "mass", "m", "kg", "mass of the body", example=0.001, bounds=POSITIVE, limits=ABOVE_ZERO
+    ),
+    _free("position", "q", "m", "position at t = 0"),
+    _free("velocity", "q'", "m/s", "velocity at t = 0"),
+    _input(_free("force", "F", "N", "external force on the body")),
+)
+SPRING: Final = (
+    _positive("stiffness", "k", "N/m", "stiffness of the spring"),
+    _positive("damping", "b", "N*s/m", "damping coefficient of the damper beside the spring"),
+    _input(_free("length", "l", "m", "distance between the bodies at which the spring rests")),
+    _input(_free("motion", "y", "m", "prescribed motion of the other end"), absent=None),
+)
+CONTACT: Final = (
+    replace(_positive("kinetic", "F_k", "N", "friction force in slip"), absent=None),
+    replace(_positive("static", "F_s", "N", "largest friction force in stick"), absent=None),
+    Quantity(
+        "stiffness",
+        "k_s",
+        "N/m",
+        "stiffness of the skin between the bodies; infinite: a rigid contact",
+        absent=inf,
+        example=300.0,
+        bounds=POSITIVE_OR_RIGID,
+        limits=OR_INFINITE,
+    ),
+    _positive("damping", "b_s", "N*s/m", "damping coefficient of the skin"),
+    _input(_positive("load", "λ", "1", "factor of kinetic and static friction"), absent=1.0),
+    _input(_free("velocity", "w", "m/s", "velocity of the surface, as of a belt")),
+    _free("stretch", "s", "m", "stretch of the skin at t = 0"),
+)
+KINDS: Final = {"body": BODY, "spring": SPRING, "contact": CONTACT}
+"""Quantities of each part of a system."""
+PARTS: Final = {kind: Part(rows) for kind, rows in KINDS.items()}
+
+OF_BODY: Final = (
+    Quantity("position", "q", "m", "position of the body"),
+    Quantity("velocity", "q'", "m/s", "velocity of the body"),
+    Quantity("acceleration", "q''", "m/s^2", "acceleration of the body"),
+)
+OF_CONTACT: Final = (
+    Quantity("force", "R", "N", "friction force on the first body"),
+    Quantity("stretch", "s", "m", "stretch of the skin"),
+    Quantity("sliding_speed", "u", "m/s", "velocity of the first body over the surface, in slip"),
+    Quantity("slip", "σ", "", "direction of slip: -1, 1, or 0 in stick"),
+)
+OF_SPRING: Final = (
+    Quantity("force", "F", "N", "force of spring and damper on the first body"),
+    Quantity("elongation", "e", "m", "elongation of the spring"),
+)
