@@ -275,6 +275,11 @@ class Scan:
 
     def energise(self, most_switchings: int, most_rows: int) -> tuple: ...
 
+    def hand(self, hand: Sequence[float]) -> tuple:
+        """
+        Path that a hand takes with its pins: times, velocities along the axis, bends, ambiguous samples, status, steps, and deflections of the pins at the end.
+        """
+
     def simulate(self, threads: int, most_segments: int, progress: object | None) -> tuple: ...
 
     def motion(self, pin: int) -> Motion: ...

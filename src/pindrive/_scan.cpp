@@ -2,6 +2,7 @@
 #include "_scan.hpp"
 
 #include <nanobind/nanobind.h>
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
@@ -199,6 +200,10 @@ void bind_scan(nb::module_& m) {
                     const std::vector<StateNumbers>&>(),
            "device"_a, "raster"_a, "path"_a, "touch"_a, "states"_a, nb::keep_alive<1, 2>())
       .def("energise", &Scan::energise, "most_switchings"_a, "most_rows"_a)
+      .def("hand", &Scan::hand, "hand"_a,
+           "Path that a hand takes with its pins: times, velocities along the axis, bends, "
+           "ambiguous samples, status, "
+           "steps, and deflections of the pins at the end.")
       .def("simulate", &Scan::simulate, "threads"_a, "most_segments"_a, "progress"_a.none())
       .def("motion", &Scan::motion, "pin"_a, nb::rv_policy::reference_internal)
       .def(

@@ -5,11 +5,13 @@
 #include <nanobind/ndarray.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <future>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <tuple>
@@ -21,6 +23,7 @@
 #include "bytes.hpp"
 #include "interrupt.hpp"
 #include "owned_motion.hpp"
+#include "pindrive/device/compliant_hand.hpp"
 #include "pindrive/device/hand_path.hpp"
 #include "pindrive/device/raster.hpp"
 #include "pindrive/device/scan.hpp"
@@ -254,6 +257,22 @@ class Scan {
     }
     if (interrupt.found()) throw nb::python_error();
     return nb::make_tuple(segments.load(), done.load());
+  }
+
+  /// Follows a hand (mass, stiffness, damping, kinetic and static friction) that its arm leads along the path, with the
+  /// pins; returns times, velocities and bends of the path that the hand takes, ambiguous samples, status, steps, and the deflections of the pins at the end.
+  nb::tuple hand(const std::array<double, 5>& given) const {
+    const auto& [mass, stiffness, damping, kinetic, fixed] = given;
+    device::CompliantHand hand({mass, stiffness, damping, kinetic, fixed}, inputs_, states_);
+    interruptible([&](auto go_on) { return hand.advance(go_on); });
+    std::vector<double> bends;
+    for (const device::Bend& bend : hand.rows().bends)
+      bends.insert(bends.end(), std::begin(bend.b), std::end(bend.b));
+    return nb::make_tuple(
+        to_array(std::vector<double>(hand.rows().times)),
+        to_array(std::vector<double>(hand.rows().velocity)), to_array(std::move(bends)),
+        to_array(std::vector<double>(hand.ambiguous())), static_cast<int>(hand.status()),
+        hand.steps(), mapped<double>(size(), [&](std::size_t i) { return hand.deflection(i); }));
   }
 
   const pd::StoredMotion<double>& motion(std::size_t pin) const { return *motions_.at(pin); }

@@ -142,10 +142,13 @@ def test_a_study_sets_values_of_its_device() -> None:
     ("text", "said"),
     [
         ("set = 3", "study.toml: set must be a table, [set], got 3"),
-        ("[set]\nmas = 1", "study.toml: set: unknown key mas; did you mean drive.mass?"),
+        (
+            "[set]\nmas = 1",
+            "study.toml: set: unknown key mas; did you mean drive.mass",
+        ),
         ("[set]\nmass = 1", "study.toml: set: drive.mass must be a number with its unit"),
         ('[set]\nmass = "-1 g"', "study.toml: set: drive.mass must be finite and greater than 0"),
-        ('[set]\nkinetic = "1 N"', "study.toml: set: kinetic may be plate.kinetic or finger."),
+        ('[set]\nkinetic = "1 N"', "study.toml: set: kinetic may be plate.kinetic, finger."),
     ],
 )
 def test_a_bad_value_in_set_names_its_place(text: str, said: str) -> None:

@@ -41,6 +41,7 @@ PUBLIC = {
         "closest_approach",
         "coil",
         "coil_course",
+        "compliant_hand",
         "controller",
         "device_stream",
         "electromagnet",

@@ -33,7 +33,8 @@ int main() {
   expect(at.acceleration[0] == 0.0 && at.slip[0] == bodies::Slip::stick, "and one after");
 
   const auto [least, largest] = motion.range(1);
-  expect(std::abs(least + 0.5) < 1e-15 && std::abs(largest - 0.5) < 1e-15, "a position has a range");
+  expect(std::abs(least + 0.5) < 1e-15 && std::abs(largest - 0.5) < 1e-15,
+         "a position has a range");
   expect(std::abs(motion.range(0).second - 2.25) < 1e-15, "that ends where the box rests");
   return check::status();
 }

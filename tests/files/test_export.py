@@ -153,7 +153,8 @@ def test_columns_of_a_scan_are_those_of_the_table() -> None:
     rows = table("s.csv")
     data = scan.to_dataset([float(row["time [s]"]) for row in rows])
     over_time = {str(name) for name, column in data.variables.items() if "time" in column.dims}
-    assert over_time == {*SERIES} - {"warming", "stop_force"}  # of a coil's temperature; of stops
+    others = {"warming", "stop_force", "hand_deviation"}  # of a coil, stops, a hand that gives way
+    assert over_time == {*SERIES} - others
     for name in over_time - {"time"}:
         assert data[name].attrs == SERIES[name].attributes
     for quantity in MOTION:

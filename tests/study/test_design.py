@@ -258,10 +258,10 @@ REFUSED = {
     "colour = 1": "unknown key colour; none is like it; docs/reference/study-file.md lists all 11",
     "ax.mass = [1]": "unknown key ax; did you mean axes?",
     "[drive]\nmass = 1": "give base or the table drive, not both",
-    "[axes]\nmas = [1]": "axes: unknown key mas; did you mean drive.mass?",
+    "[axes]\nmas = [1]": "axes: unknown key mas; did you mean drive.mass or hand.mass?",
     "[axes]\ndrive.mas = [1]": "axes: unknown key drive.mas; did you mean drive.mass?",
-    '[axes]\nkinetic = ["1 mN"]': "axes: kinetic may be plate.kinetic or finger.kinetic; "
-    "give it in full",
+    '[axes]\nkinetic = ["1 mN"]': "axes: kinetic may be plate.kinetic, finger.kinetic or "
+    "hand.kinetic; give it in full",
     "[axes]\nplate.curve = [1]": "axes: plate.curve is no single number, it cannot be varied",
     "[axes]\ndevice.name = [1]": "axes: device.name is no single number, it cannot be varied",
     "[axes]\nscan.hand_speed = [1]": "axes: scan.hand_speed acts in a scan; say what is on the "

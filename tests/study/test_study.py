@@ -187,7 +187,7 @@ def test_impossible_draws_have_a_status(mouse: DeviceFile) -> None:
             "Study: axes.drive.mass[1] must be finite and greater than 0 kg, got -0.01 kg",
         ),
         ({"axes": {"mass": ["1 s"]}}, "Study: axes.drive.mass[0] must be in kg or a unit alike"),
-        ({"axes": {"kinetic": [1.0]}}, "Study: axes: kinetic may be plate.kinetic or finger.kin"),
+        ({"axes": {"kinetic": [1.0]}}, "Study: axes: kinetic may be plate.kinetic, finger.kin"),
         ({"axes": {"mass": [0.01]}, "outputs": ["swin"]}, "Study: outputs: unknown number swin; "),
         ({"axes": [1.0]}, "axes must be a mapping"),
         ({"axes": {"hand_speed": [0.1]}}, "Study: axes: scan.hand_speed acts in a scan"),

@@ -28,12 +28,15 @@ class Expansion {
   explicit Expansion(const bodies::System<T>& system)
       : system_(&system),
         joined_(system, {}, {}),
-        order_(system.bodies.size(), system.contacts.size()),
+        order_(system.bodies.size(), system.modes()),
         position_(system.bodies.size()),
         velocity_(system.bodies.size()),
         stretch_(system.contacts.size()),
         sliding_(system.contacts.size()),
-        friction_(system.contacts.size()) {}
+        friction_(system.contacts.size()),
+        depth_(system.stops.size()),
+        approach_(system.stops.size()),
+        push_(system.stops.size()) {}
 
   /// Takes a mode, from a time on, s. Of contacts whose surfaces move apart `late` ones hold no body that another holds.
   void set(const Mode& mode, const T& time, const std::vector<int>& late = {}) {
@@ -43,7 +46,7 @@ class Expansion {
     };
     std::vector<int> stuck;
     std::vector<T> limits;
-    for (std::size_t j = 0; j < mode.size(); ++j) {
+    for (std::size_t j = 0; j < contacts(); ++j) {
       if (mode[j] != bodies::Slip::stick || !contact(j).rigid()) continue;
       if (limit_of(j, time) == 0) continue;  // cannot hold
       stuck.push_back(static_cast<int>(j));
@@ -51,6 +54,15 @@ class Expansion {
     std::stable_partition(stuck.begin(), stuck.end(), [&](int j) { return !is_late(j); });
     limits.reserve(stuck.size());
     for (const int j : stuck) limits.push_back(limit_of(j, time));
+    // Beside friction a stop takes almost all of a force, since it has no limit.
+    T most{0};
+    for (const T& limit : limits) most = std::max(most, limit);
+    const T share = most > 0 ? 1000 * most : T(1);
+    for (std::size_t s = 0; s < system_->stops.size(); ++s) {
+      if (mode[contacts() + s] != bodies::Slip::stick || !system_->stops[s].rigid()) continue;
+      stuck.push_back(static_cast<int>(contacts() + s));
+      limits.push_back(share);
+    }
     joined_ = JoinedBodies<T>(*system_, std::move(stuck), std::move(limits));
   }
 
@@ -68,10 +80,17 @@ class Expansion {
       const T next = T(step) / T(n + 1);
       for (std::size_t i = 0; i < position_.size(); ++i) order_.force[i] = given(pushes_[i], n);
       for (std::size_t l = 0; l < system_->links.size(); ++l) pull(l, n);
-      for (std::size_t j = 0; j < mode_.size(); ++j) rub(j, n, next);
-      for (const int j : joined_.stuck()) order_.surface[j] = rate_of(surfaces_[j], n);
+      for (std::size_t j = 0; j < contacts(); ++j) rub(j, n, next);
+      for (std::size_t s = 0; s < depth_.size(); ++s) press(s, n);
+      for (const int j : joined_.stuck())
+        order_.surface[j] = is_stop(j) ? N(T(0)) : rate_of(surfaces_[j], n);
       joined_.solve(order_);
-      for (const int j : joined_.stuck()) friction_[j][n] = order_.friction[j];
+      for (const int j : joined_.stuck()) {
+        if (is_stop(j))
+          push_[stop_of(j)][n] = -(side(stop_of(j)) * order_.friction[j]);
+        else
+          friction_[j][n] = order_.friction[j];
+      }
       for (std::size_t i = 0; i < position_.size(); ++i) {
         position_[i][n + 1] = next * velocity_[i][n];
         velocity_[i][n + 1] = next * order_.acceleration[i];
@@ -87,6 +106,14 @@ class Expansion {
   const Series& sliding(std::size_t contact) const { return sliding_[contact]; }
   /// Friction force on `one`, N.
   const Series& friction(std::size_t contact) const { return friction_[contact]; }
+  /// Way of `one` beyond the place where a stop touches, m, and the rate of this way, m/s.
+  const Series& depth(std::size_t stop) const { return depth_[stop]; }
+  const Series& approach(std::size_t stop) const { return approach_[stop]; }
+  /// Force with which a stop pushes, or an elastic one would push, N.
+  const Series& push(std::size_t stop) const { return push_[stop]; }
+  std::size_t stops() const { return depth_.size(); }
+  bool is_stop(int j) const { return static_cast<std::size_t>(j) >= contacts(); }
+  std::size_t stop_of(int j) const { return static_cast<std::size_t>(j) - contacts(); }
   /// Order n of the largest friction force of a contact that sticks, N.
   N limit(std::size_t j, int n) const { return contact(j).static_limit * given(loads_[j], n); }
 
@@ -109,6 +136,8 @@ class Expansion {
 
  private:
   const bodies::Contact<T>& contact(std::size_t j) const { return system_->contacts[j]; }
+  std::size_t contacts() const { return system_->contacts.size(); }
+  T side(std::size_t stop) const { return T(system_->stops[stop].side); }
   T limit_of(std::size_t j, const T& time) const {
     return contact(j).static_limit * contact(j).load.from(time).value;
   }
@@ -155,7 +184,7 @@ class Expansion {
   static N apart(const std::vector<Series>& of, int one, int other, int n) {
     return other == bodies::ground ? of[one][n] : of[one][n] - of[other][n];
   }
-  void push(int one, int other, const N& by) {
+  void apply(int one, int other, const N& by) {
     order_.force[one] += by;
     if (other != bodies::ground) order_.force[other] -= by;
   }
@@ -163,7 +192,7 @@ class Expansion {
     const bodies::Link<T>& link = system_->links[l];
     const N longer = apart(position_, link.one, link.other, n) - given(lengths_[l], n);
     const N faster = apart(velocity_, link.one, link.other, n) - rate_of(lengths_[l], n);
-    push(link.one, link.other, -(link.stiffness * longer + link.damping * faster));
+    apply(link.one, link.other, -(link.stiffness * longer + link.damping * faster));
   }
   /// Order n of the friction of a contact, and of the sliding speed; of skin also the next order of the stretch.
   void rub(std::size_t j, int n, T next) {
@@ -192,14 +221,28 @@ class Expansion {
       }
       sliding_[j][n] = speed - rate;
     }
-    push(c.one, c.other, friction_[j][n]);
+    apply(c.one, c.other, friction_[j][n]);
+  }
+
+  /// Order n of the depth of a stop, and of the force of an elastic one.
+  void press(std::size_t s, int n) {
+    const bodies::Stop<T>& stop = system_->stops[s];
+    N beyond = apart(position_, stop.one, stop.other, n);
+    if (n == 0) beyond -= known(stop.position);
+    depth_[s][n] = side(s) * beyond;
+    approach_[s][n] = side(s) * apart(velocity_, stop.one, stop.other, n);
+    push_[s][n] = N(T(0));
+    if (stop.rigid()) return;  // joined bodies have the force of one that pushes
+    push_[s][n] = stop.stiffness * depth_[s][n] + stop.damping * approach_[s][n];
+    if (mode_[contacts() + s] == bodies::Slip::stick)
+      apply(stop.one, stop.other, -(side(s) * push_[s][n]));
   }
 
   const bodies::System<T>* system_;
   Mode mode_;
   JoinedBodies<T> joined_;
   typename JoinedBodies<T>::template Order<N> order_;
-  std::vector<Series> position_, velocity_, stretch_, sliding_, friction_;
+  std::vector<Series> position_, velocity_, stretch_, sliding_, friction_, depth_, approach_, push_;
   int order_count_{0};
   Real late_{0};  ///< resolution of the time over the step
   std::vector<InputSeries<T>> pushes_, lengths_, loads_, surfaces_;

@@ -18,7 +18,7 @@
 
 namespace pindrive::bodies {
 
-/// Change of a contact at a time, s.
+/// Change of a contact at a time, s. At an impact a stop is met for an instant: it is open before and after.
 template <class T>
 struct Change {
   T time;
@@ -50,6 +50,12 @@ class Step {
   }  ///< m/s
   /// Friction force on `one`, N.
   T friction(int contact, T tau) const { return at(series_->friction(contact), tau); }
+  /// Way of `one` beyond the place where a stop touches, m, and the force with which the stop pushes, N.
+  T depth(int stop, T tau) const { return at(series_->depth(stop), tau); }
+  T push(int stop, T tau) const { return pushes(stop) ? at(series_->push(stop), tau) : T(0); }
+  /// True of a stop that pushes.
+  bool pushes(int stop) const { return stop_slip(stop) == Slip::stick; }
+  Slip stop_slip(int stop) const { return (*mode_)[mode_->size() - series_->stops() + stop]; }
   /// Speed of `one` or of its skin over the surface, m/s.
   T sliding(int contact, T tau) const { return at(series_->sliding(contact), tau); }
 
@@ -100,6 +106,17 @@ class Following {
       const bool slips = system.contacts[j].rigid() && speed != 0;
       mode_.push_back(!slips ? Slip::stick : speed > 0 ? Slip::forward : Slip::backward);
       if (!slips) active.push_back(static_cast<int>(j));
+    }
+    struck_.assign(system.stops.size(), -std::numeric_limits<Real>::infinity());
+    for (std::size_t s = 0; s < system.stops.size(); ++s) {
+      mode_.push_back(Slip::backward);
+      const Stop<T>& stop = system.stops[s];
+      const T other = stop.other == ground ? T(0) : state_.position[stop.other];
+      const T beyond = T(stop.side) * (state_.position[stop.one] - other - stop.position);
+      using std::abs;
+      const Real size = abs(plain(state_.position[stop.one])) + abs(plain(stop.position));
+      if (plain(beyond) >= -16 * detail::rounding<Real> * size)
+        active.push_back(static_cast<int>(system.contacts.size() + s));
     }
     settle(active);
     changes_.clear();  // the first mode is none
@@ -184,21 +201,27 @@ class Following {
       add(c.one, c.other, plain(c.stiffness), plain(c.damping));
       if (c.damping != 0) skin = std::max(skin, plain(c.stiffness / c.damping));
     }
+    for (const Stop<T>& stop : system.stops)
+      if (!stop.rigid()) add(stop.one, stop.other, plain(stop.stiffness), plain(stop.damping));
     Real fastest = skin;
     for (std::size_t i = 0; i < count; ++i)
       fastest = std::max(fastest, Real(sqrt(stiff[i])) + damped[i]);
     return fastest;
   }
 
-  /// True of a body that a rigid contact holds.
+  /// True of a body that a rigid contact or stop holds.
   bool is_held(int body) const {
     for (std::size_t j = 0; j < mode_.size(); ++j) {
-      const Contact<T>& c = system_->contacts[j];
-      if (body != ground && c.rigid() && mode_[j] == Slip::stick &&
-          (c.one == body || c.other == body))
+      const Pair pair = system_->pair(j);
+      if (body != ground && is_rigid(j) && mode_[j] == Slip::stick &&
+          (pair.one == body || pair.other == body))
         return true;
     }
     return false;
+  }
+  bool is_rigid(std::size_t j) const {
+    const std::size_t contacts = system_->contacts.size();
+    return j < contacts ? system_->contacts[j].rigid() : system_->stops[j - contacts].rigid();
   }
   T speed_of(int contact) const {
     const Contact<T>& c = system_->contacts[contact];
@@ -237,6 +260,7 @@ class Following {
 
   /// First time at which a guard of a contact becomes negative, s; infinite within the step if none.
   T zero_of(int contact, Real span) const {
+    if (series_.is_stop(contact)) return zero_of_stop(contact, span);
     const int side = static_cast<int>(mode_[contact]);
     detail::Polynomial<T> guard;
     guard.span = span;
@@ -271,6 +295,35 @@ class Following {
     return first;
   }
 
+  T zero_of_stop(int j, Real span) const {
+    const std::size_t s = series_.stop_of(j);
+    const Stop<T>& stop = system_->stops[s];
+    detail::Polynomial<T> guard;
+    guard.span = span;
+    guard.degree = series_.order();
+    T first = std::numeric_limits<T>::infinity();
+    using std::abs;
+    const auto look = [&](const auto& series, int sign, int kind, Real size) {
+      if (selection_.stays_zero(j, kind)) return;
+      for (int n = 0; n <= guard.degree; ++n) guard.c[n] = T(sign) * series[n];
+      Real rest{0};
+      for (int n = 1; n <= guard.degree; ++n) rest += std::max(Real(0), -plain(guard.c[n]));
+      if (plain(guard.c[0]) > rest) return;
+      first = std::min(first, detail::zero_beyond(guard, detail::rounding<Real> * size));
+    };
+    Real place = abs(plain(stop.position)), force{0};
+    for (int n = 0; n <= guard.degree; ++n) {
+      place += abs(plain(series_.position(stop.one)[n]));
+      if (stop.other != ground) place += abs(plain(series_.position(stop.other)[n]));
+      force += abs(plain(series_.push(s)[n]));
+    }
+    if (!stop.rigid()) force += plain(stop.stiffness) * place;
+    const Slip slip = mode_[j];
+    if (slip != Slip::stick) look(series_.depth(s), slip == Slip::backward ? -1 : 1, -1, place);
+    if (slip != Slip::backward) look(series_.push(s), slip == Slip::stick ? 1 : -1, 1, force);
+    return first;
+  }
+
   void move(T tau, T time, Real span) {
     const Real late = detail::rounding<Real> * std::abs(plain(time));
     const auto move_to = [&](const auto& series, T& value, Real& error) {
@@ -299,23 +352,116 @@ class Following {
 
   /// Selects the mode after an event; a rigid contact whose sliding came to zero then has exactly none.
   void settle(const std::vector<int>& active) {
+    const Mode before = mode_;
+    const std::vector<int> hit = strike(active);
     for (const int contact : active) {
+      if (series_.is_stop(contact)) continue;
       const Contact<T>& c = system_->contacts[contact];
       if (!c.rigid() || mode_[contact] == Slip::stick || is_held(c.one) || is_held(c.other))
         continue;
-      const T error = speed_of(contact), m = system_->bodies[c.one].mass;
-      const T part = c.other == ground ? T(1) : 1 / m / (1 / m + 1 / system_->bodies[c.other].mass);
+      const T error = speed_of(contact), part = part_of_one(c.one, c.other);
       state_.velocity[c.one] -= part * error;
       if (c.other != ground) state_.velocity[c.other] += (1 - part) * error;
     }
-    const Mode before = mode_;
     const Real step = fastest_ > 0 ? 1 / fastest_ : Real(1);
     if (!selection_.select(state_, active, step, mode_)) status_ = Status::inconsistent;
     series_.set(mode_, state_.time);
     for (std::size_t j = 0; j < mode_.size(); ++j)
-      if (mode_[j] != before[j])
+      if (mode_[j] != before[j] ||
+          std::find(hit.begin(), hit.end(), static_cast<int>(j)) != hit.end())
         changes_.push_back({state_.time, static_cast<int>(j), before[j], mode_[j]});
   }
+
+  /// Impacts at rigid stops: Newton's law at each place where bodies touch, the fastest first, until none approach any
+  /// more. Contacts hold no impulse, as friction has a limit. Returns the stops that are hit.
+  std::vector<int> strike(const std::vector<int>& active) {
+    std::vector<int> touching, hit;
+    for (std::size_t s = 0; s < system_->stops.size(); ++s) {
+      const int j = static_cast<int>(system_->contacts.size() + s);
+      const bool met = std::find(active.begin(), active.end(), j) != active.end();
+      if (!system_->stops[s].rigid() || !(met || mode_[j] == Slip::stick)) continue;
+      if (met) place_at(s);
+      touching.push_back(j);
+    }
+    for (int n = 0; n < most_impacts; ++n) {
+      int next = -1;
+      T fastest{0};
+      for (const int j : touching) {
+        const T speed = approach(j);
+        if (speed > fastest) {
+          fastest = speed;
+          next = j;
+        }
+      }
+      if (next < 0) break;
+      const std::size_t s = series_.stop_of(next);
+      const bool bounces =
+          std::find(hit.begin(), hit.end(), next) != hit.end() || !comes_to_rest(s);
+      push_apart(s, bounces && 2 * n < most_impacts ? system_->stops[s].restitution : T(0),
+                 fastest);
+      if (std::find(hit.begin(), hit.end(), next) == hit.end()) hit.push_back(next);
+    }
+    for (const int j : hit) struck_[series_.stop_of(j)] = plain(state_.time);
+    if (!hit.empty()) slip_after_impact();
+    return hit;
+  }
+  /// Moves the bodies of a stop that was met to where they touch, within the rounding of its time.
+  void place_at(std::size_t s) {
+    const Stop<T>& stop = system_->stops[s];
+    if (is_held(stop.one) || (stop.other != ground && is_held(stop.other))) return;
+    const T other = stop.other == ground ? T(0) : state_.position[stop.other];
+    const T error = state_.position[stop.one] - other - stop.position;
+    const T part = part_of_one(stop.one, stop.other);
+    state_.position[stop.one] -= part * error;
+    if (stop.other != ground) state_.position[stop.other] += (1 - part) * error;
+  }
+  /// Part of a change of distance that the first of two bodies takes, by their masses.
+  T part_of_one(int one, int other) const {
+    if (other == ground) return T(1);
+    const T first = 1 / system_->bodies[one].mass, second = 1 / system_->bodies[other].mass;
+    return first / (first + second);
+  }
+  /// Speed at which both bodies of a rigid stop approach, m/s; zero within rounding.
+  T approach(int j) const {
+    using std::abs;
+    const Stop<T>& stop = system_->stops[series_.stop_of(j)];
+    const T one = state_.velocity[stop.one];
+    const T other = stop.other == ground ? T(0) : state_.velocity[stop.other];
+    const T speed = T(stop.side) * (one - other);
+    const Real known = 16 * detail::rounding<Real> * (abs(plain(one)) + abs(plain(other)));
+    return plain(speed) > known ? speed : T(0);
+  }
+  /// True of a stop whose bounces, each shorter by the restitution, end within the resolution of time.
+  bool comes_to_rest(std::size_t s) const {
+    const Real e = plain(system_->stops[s].restitution), time = plain(state_.time);
+    const Real known =
+        1024 * detail::rounding<Real> * time + (fastest_ > 0 ? Real(1e-12) / fastest_ : 0);
+    return (time - struck_[s]) * e < (1 - e) * known;
+  }
+  /// Ends the approach of both bodies of a stop; they part with a part of its speed.
+  void push_apart(std::size_t s, T restitution, T speed) {
+    const Stop<T>& stop = system_->stops[s];
+    const T one = 1 / system_->bodies[stop.one].mass;
+    const T other = stop.other == ground ? T(0) : 1 / system_->bodies[stop.other].mass;
+    const T impulse = T(stop.side) * (1 + restitution) * speed / (one + other);
+    state_.velocity[stop.one] -= one * impulse;
+    if (stop.other != ground) state_.velocity[stop.other] += other * impulse;
+  }
+  /// Sets the slip of rigid contacts whose bodies an impact has moved apart.
+  void slip_after_impact() {
+    using std::abs;
+    for (std::size_t j = 0; j < system_->contacts.size(); ++j) {
+      const Contact<T>& c = system_->contacts[j];
+      if (!c.rigid()) continue;
+      const T speed = speed_of(static_cast<int>(j));
+      Real size = abs(plain(state_.velocity[c.one]));
+      if (c.other != ground) size += abs(plain(state_.velocity[c.other]));
+      if (abs(plain(speed)) > 64 * detail::rounding<Real> * size)
+        mode_[j] = speed > 0 ? Slip::forward : Slip::backward;
+    }
+  }
+
+  static constexpr int most_impacts = 2000;  ///< at an instant; the second half is plastic
 
   const System<T>* system_;
   State<T> state_;
@@ -324,6 +470,7 @@ class Following {
   detail::ModeSelection<T> selection_;
   Real fastest_;
   std::vector<Change<T>> changes_;
+  std::vector<Real> struck_;  ///< time of the last impact at each stop, s
   Status status_{Status::ok};
   long steps_{0};
   int standing_{0};  ///< events at this time

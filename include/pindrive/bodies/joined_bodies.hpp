@@ -16,7 +16,8 @@ namespace pindrive::detail {
 template <class T>
 class JoinedBodies {
  public:
-  /// Contacts that stick and are rigid, by their indices, with the largest friction of each, N.
+  /// Contacts that stick and are rigid, and rigid stops that push, by their indices, with the share of each in forces that
+  /// are not unique: static friction, N.
   JoinedBodies(const bodies::System<T>& system, std::vector<int> stuck, std::vector<T> limits)
       : system_(&system),
         stuck_(std::move(stuck)),
@@ -76,7 +77,7 @@ class JoinedBodies {
       order.level[k] = bodies[free_[k]].mass * order.acceleration[free_[k]] - order.force[free_[k]];
     substitute(order.level);
     for (std::size_t k = 0; k < stuck_.size(); ++k) {
-      const bodies::Contact<T>& c = system_->contacts[stuck_[k]];
+      const bodies::Pair c = system_->pair(stuck_[k]);
       order.friction[stuck_[k]] =
           limits_[k] * (level_of(order.level, c.one) - level_of(order.level, c.other));
     }
@@ -103,7 +104,7 @@ class JoinedBodies {
       std::vector<int> reached{start};
       for (std::size_t k = 0; k < reached.size(); ++k)
         for (const int contact : stuck_) {
-          const bodies::Contact<T>& c = system_->contacts[contact];
+          const bodies::Pair c = system_->pair(contact);
           for (const bool first : {true, false}) {
             const int from = first ? c.other : c.one, to = first ? c.one : c.other;
             if (from != reached[k] || to == bodies::ground || seen[to]) continue;
@@ -137,7 +138,7 @@ class JoinedBodies {
     factor_.assign(n * n, T(0));
     const auto at = [&](int body) { return body == bodies::ground ? -1 : place_[body]; };
     for (std::size_t k = 0; k < stuck_.size(); ++k) {
-      const bodies::Contact<T>& c = system_->contacts[stuck_[k]];
+      const bodies::Pair c = system_->pair(stuck_[k]);
       const int i = at(c.one), j = at(c.other);
       const T weight = limits_[k];
       if (i >= 0) factor_[i * n + i] += weight;

@@ -24,7 +24,7 @@ class ModeSelection {
   using Mode = std::vector<bodies::Slip>;
 
   explicit ModeSelection(const bodies::System<T>& system)
-      : system_(&system), series_(system), zero_(system.contacts.size()) {}
+      : system_(&system), series_(system), zero_(system.modes()) {}
 
   /// Changes the mode of `active` contacts, and of all that contradict it; false if no mode is consistent.
   bool select(const bodies::State<T>& state, const std::vector<int>& active, Real step,
@@ -70,7 +70,7 @@ class ModeSelection {
   /// Lets contacts stick that stuck or were met, and were found to slip before others changed.
   void hold_on(const bodies::State<T>& state, Real step, const Mode& before, Mode& mode) {
     bodies::Slip instead{};
-    for (std::size_t j = 0; j < mode.size(); ++j) {
+    for (std::size_t j = 0; j < system_->contacts.size(); ++j) {
       const bool was_met = std::find(met_.begin(), met_.end(), static_cast<int>(j)) != met_.end();
       if (mode[j] == bodies::Slip::stick || (before[j] != bodies::Slip::stick && !was_met))
         continue;
@@ -84,7 +84,7 @@ class ModeSelection {
   }
 
   int body_of(int contact) const {
-    const bodies::Contact<T>& c = system_->contacts[contact];
+    const bodies::Pair c = system_->pair(contact);
     if (c.other == bodies::ground) return c.one;
     return system_->bodies[c.other].mass < system_->bodies[c.one].mass ? c.other : c.one;
   }
@@ -108,13 +108,12 @@ class ModeSelection {
   }
   bool shares_body(const Trial& one, const Trial& other) const {
     const auto touches = [&](int contact, int body) {
-      const bodies::Contact<T>& c = system_->contacts[contact];
+      const bodies::Pair c = system_->pair(contact);
       return body != bodies::ground && (c.one == body || c.other == body);
     };
     for (const int j : one.contacts)
       for (const int k : other.contacts)
-        if (touches(j, system_->contacts[k].one) || touches(j, system_->contacts[k].other))
-          return true;
+        if (touches(j, system_->pair(k).one) || touches(j, system_->pair(k).other)) return true;
     return false;
   }
   /// Joins a trial with another one, best with that of a neighbouring body, so that both are decided together; false
@@ -177,6 +176,7 @@ class ModeSelection {
   }
   /// True if no guard of a contact becomes negative; else the mode to try next.
   bool is_right(std::size_t contact, bodies::Slip slip, bodies::Slip& instead) {
+    if (series_.is_stop(static_cast<int>(contact))) return is_right_stop(contact, slip, instead);
     const auto sliding = [&](int n) { return series_.sliding(contact)[n]; };
     instead = bodies::Slip::stick;
     const int way = static_cast<int>(slip);
@@ -197,6 +197,36 @@ class ModeSelection {
       if (left < 0) return false;
     }
     return true;
+  }
+  /// The same of a stop.
+  bool is_right_stop(std::size_t j, bodies::Slip slip, bodies::Slip& instead) {
+    const std::size_t stop = series_.stop_of(static_cast<int>(j));
+    const bool rigid = system_->stops[stop].rigid();
+    const auto sign_in = [&](const auto& series) {
+      return sign_of([&](int n) { return series[n]; });
+    };
+    const auto sign_now = [&](const auto& series) {
+      return series[0].may_vanish() ? 0 : series[0].value > 0 ? 1 : -1;
+    };
+    zero_[j] = {};
+    if (slip == bodies::Slip::backward) {
+      const int depth = sign_in(series_.depth(stop));
+      instead = bodies::Slip::stick;
+      zero_[j][0] = depth == 0;
+      return depth <= 0;
+    }
+    const int depth = rigid ? sign_now(series_.depth(stop)) : sign_in(series_.depth(stop));
+    const int push = sign_in(series_.push(stop));
+    const auto open = depth > 0 && !rigid ? bodies::Slip::forward : bodies::Slip::backward;
+    if (slip == bodies::Slip::stick) {
+      instead = open;
+      zero_[j][1] = push == 0;
+      const bool parts = rigid && sign_now(series_.approach(stop)) < 0;
+      return depth >= 0 && push >= 0 && !parts;
+    }
+    instead = depth < 0 || rigid ? bodies::Slip::backward : bodies::Slip::stick;
+    zero_[j] = {depth == 0, push == 0};
+    return !rigid && depth > 0 && push <= 0;
   }
   /// Sign of the static friction that is left on one side of a contact in stick.
   int excess(std::size_t contact, int side) {

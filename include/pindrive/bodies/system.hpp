@@ -40,12 +40,39 @@ struct Contact {
   bool rigid() const { return !(stiffness < std::numeric_limits<T>::infinity()); }
 };
 
+/// Stop of a body at another one, or at the ground, which pushes and never pulls.
+template <class T>
+struct Stop {
+  int one, other{ground};
+  T position{0};  ///< of `one` less that of `other` where they touch, m
+  int side{1};    ///< 1: `one` goes no farther; −1: `one` comes no nearer
+  T stiffness{std::numeric_limits<T>::infinity()};  ///< N/m; > 0, infinite: rigid
+  T damping{0};                                     ///< of an elastic stop, N s/m; >= 0
+  T restitution{0};  ///< of a rigid stop: speed after an impact over that before, 0 to 1
+
+  bool rigid() const { return !(stiffness < std::numeric_limits<T>::infinity()); }
+};
+
+/// Both bodies of a contact or a stop.
+struct Pair {
+  int one, other;
+};
+
 /// Refers to the rows and pieces of its inputs.
 template <class T>
 struct System {
   std::vector<Body<T>> bodies;
   std::vector<Link<T>> links;
   std::vector<Contact<T>> contacts;
+  std::vector<Stop<T>> stops{};
+
+  /// Contacts, and after them stops: what has a mode of its own.
+  std::size_t modes() const { return contacts.size() + stops.size(); }
+  Pair pair(std::size_t j) const {
+    if (j < contacts.size()) return {contacts[j].one, contacts[j].other};
+    const Stop<T>& stop = stops[j - contacts.size()];
+    return {stop.one, stop.other};
+  }
 
   /// First breakpoint of any input after a time, s; infinite without one.
   T next_breakpoint(T t) const {
@@ -63,7 +90,8 @@ struct System {
   }
 };
 
-/// State of a contact: slip of `one` over `other` backward or forward, or stick.
+/// State of a contact: slip of `one` over `other` backward or forward, or stick. A stop that pushes has that of stick, one
+/// that is open that of backward, and an elastic one that is still pressed in but does not push that of forward.
 enum class Slip : signed char { backward = -1, stick = 0, forward = 1 };
 
 /// Positions and velocities of bodies, and the stretch of skin, at a time.

@@ -15,7 +15,7 @@ from pindrive.cli.tables import (
     touch_words,
     whole_lines,
 )
-from pindrive.device.dataset import gap_words, hand_force_words, numbers, peak_warming
+from pindrive.device.dataset import gap_words, hand_force_words, hand_words, numbers, peak_warming
 from pindrive.evaluation import page_speed
 from pindrive.evaluation.resolution import STUDIED, criterion
 from pindrive.quantities.device import PIN
@@ -101,6 +101,7 @@ def _words(scan: Scan) -> list[str]:
         *gap_words(scan),
         *device_words(device),
         *touch_words(scan.touch),
+        *([hand_words(scan.hand)] if scan.hand else []),
         hand_force_words(scan.hand_force),
         *([] if peak is None else [f"A coil warms by up to {peak:.3g} K in this scan."]),
         f"Laws checked without the solver: largest relative residual {worst:.1e}.{doubt}",

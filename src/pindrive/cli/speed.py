@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -91,6 +92,9 @@ def speed(
                 for step in measures(lengths, "speed.pitch", "2 mm", "--pitch")
             ]
             line = None if width is None else measure(width, "speed.width", "1 mm", "--width")
+            if device.device.hand is not None:
+                note = "the speeds over two lines are those of a hand that nothing slows"
+                print(f"warning: {note}; --text follows the hand of [hand]", file=sys.stderr)
             report, targets = _over_lines(device, pitches, line, tried, files, force)
     show(report)
     say_written(targets)

@@ -11,6 +11,8 @@
 - `Device`: drive, magnet, control block and pin array
 - `Electromagnet`: what an electromagnet does to the plate
 - `Gap`: how close two neighbouring pins come
+- `Hand`: a hand that gives way to its pins
+- `HandMotion`: the path that such a hand takes, beside the intended one
 - `HandPath`: where the hand is over time
 - `lines`: a path line by line over a page
 - `Page`: what is on a page, and how the hand moves over it

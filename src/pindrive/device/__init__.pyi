@@ -11,7 +11,9 @@ from .device import Criteria as Criteria
 from .device import Device as Device
 from .electromagnet import Electromagnet as Electromagnet
 from .geometry import Gap as Gap
+from .compliant_hand import HandMotion as HandMotion
 from .hand import HandPath as HandPath
+from .hand_mechanics import Hand as Hand
 from .hand import lines as lines
 from .hand import strokes as strokes
 from .page import Scene as Scene

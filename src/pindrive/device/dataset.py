@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pindrive.device.coil import Coil, DataSheet
+from pindrive.device.compliant_hand import HandMotion
 from pindrive.device.geometry import doubts
 from pindrive.device.hand import HandPath
 from pindrive.device.hand_force import LARGEST, HandForce
@@ -22,12 +23,15 @@ from pindrive.lazy import xr
 from pindrive.motion.dataset import columns
 from pindrive.motion.profile import Profile
 from pindrive.quantities import budgets
+from pindrive.quantities.quantity import counted
 from pindrive.quantities.results import SERIES
 from pindrive.quantities.table import QUANTITIES
 
 EACH: Final = 1e-3
 """Between two samples unless their times are given, s."""
 ROUNDING: Final = 1e-9
+SLOWED: Final = 0.9
+"""Part of the intended speed below which a warning is given."""
 """So much too low is no sample rate too low."""
 
 
@@ -51,6 +55,8 @@ def dataset(scan: Scan, times: ArrayLike | None = None) -> xr.Dataset:
     plate_velocity = path.plate_velocity(device.array.axis)(t - path.begin)
     over_time = dict(zip(("hand_x", "hand_y"), path.position(t), strict=True))
     over_time["hand_force"] = scan.force_on_hand(t)
+    if scan.hand:
+        over_time["hand_deviation"] = scan.hand.deviation(t)
     if scan.touch is not None:
         touch = scan.touch
         over_time["touch"] = touch(t) if isinstance(touch, Profile) else np.full(t.shape, touch)
@@ -86,12 +92,19 @@ def dataset(scan: Scan, times: ArrayLike | None = None) -> xr.Dataset:
                 ("smallest_pin_gap", scan.smallest_gap and scan.smallest_gap.size),
                 ("smallest_magnet_gap", scan.smallest_magnet_gap and scan.smallest_magnet_gap.size),
                 ("slot_room", scan.slot_room and scan.slot_room.size),
+                *_hand_numbers(scan),
                 *((f"hand_force_{name}", value) for name, value in asdict(scan.hand_force).items()),
             )
             if value is not None
         },
     }
     return xr.Dataset(data, coords=coords, attrs=attributes)
+
+
+def _hand_numbers(scan: Scan) -> list[tuple[str, float]]:
+    """Numbers of the path of a hand that gave way, by the names of attributes."""
+    numbers = scan.hand.numbers if scan.hand else {}
+    return [(name.replace(".", "_"), value) for name, value in numbers.items()]
 
 
 def sample_count(path: HandPath) -> float:
@@ -306,11 +319,13 @@ def _doubts(scan: Scan) -> list[str]:
         )
     if device.friction.doubt:
         found.append(device.friction.doubt)
-    if scan.hand_force.largest > LARGEST:
+    if scan.hand:
+        found += _hand_warnings(scan.hand)
+    elif scan.hand_force.largest > LARGEST:
         found.append(
             f"the pins push the hand with up to {scan.hand_force.largest:.3g} N, more than "
             f"{LARGEST:g} N, the largest published force on a mouse: the hand would give way, and "
-            "this scan's does not"
+            "this scan's does not; [hand] lets it"
         )
     largest, mean = path.angles(device.array.axis)
     if largest > max_angle:
@@ -336,6 +351,38 @@ def _doubts(scan: Scan) -> list[str]:
                 f"a magnet is on for {most:.0%} of the time; {coil.power:.3g} W warm it by "
                 f"{coil.temperature_rise:g} K at {coil.duty:.0%}"
             )
+    return found
+
+
+def hand_words(hand: HandMotion) -> str:
+    """Return the path of a hand that gave way in a sentence."""
+    meant = float(hand.intended_speed(hand.slowest_time))
+    return (
+        f"The hand slows to {1e3 * hand.slowest_speed:.3g} mm/s where it means to move at "
+        f"{1e3 * meant:.3g} mm/s (at {hand.slowest_time:.4g} s), and is up to "
+        f"{1e3 * hand.error:.3g} mm off its path."
+    )
+
+
+def _hand_warnings(hand: HandMotion) -> list[str]:
+    found = []
+    meant = float(hand.intended_speed(hand.slowest_time))
+    if hand.stops:
+        total = sum(end - begin for begin, end in hand.stops)
+        found.append(
+            f"the pins stop the hand: it stands or goes back {counted(len(hand.stops), 'time')}, "
+            f"for {1e3 * total:.3g} ms in all, first at {hand.stops[0][0]:.4g} s"
+        )
+    elif hand.slowest_speed < SLOWED * meant:
+        found.append(
+            f"the pins slow the hand to {hand.slowest_speed / meant:.0%} of the speed that it "
+            f"means to have, {1e3 * hand.slowest_speed:.3g} mm/s at {hand.slowest_time:.4g} s"
+        )
+    if hand.ambiguous:
+        found.append(
+            f"the path of the hand is ambiguous from {hand.ambiguous[0]:.6g} s on: there a sample "
+            "falls on an edge to within rounding"
+        )
     return found
 
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from pindrive import _core
 from pindrive.device.controller import ControlBlock
 from pindrive.device.electromagnet import Electromagnet
+from pindrive.device.hand_mechanics import Hand
 from pindrive.device.pin_array import Neighbours, PinArray
 from pindrive.motion.coefficients import Coefficients
 from pindrive.motion.drive import Drive, values_of
@@ -32,6 +33,7 @@ class Device:
         magnet: Electromagnet of each pin.
         control: The control block.
         array: Places of the pins.
+        hand: Hand that gives way to its pins; None: nothing can slow it.
 
     Raises:
         ValueError: A plate without friction, by which no magnet could hold.
@@ -41,6 +43,7 @@ class Device:
     magnet: Electromagnet = field(default_factory=Electromagnet)
     control: ControlBlock = field(default_factory=ControlBlock)
     array: PinArray = field(default_factory=PinArray)
+    hand: Hand | None = None
 
     def __post_init__(self) -> None:
         """Validate what fits together."""

@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 
 import pindrive
 from pindrive import _core, lazy
+from pindrive.device.compliant_hand import HandMotion, follow_hand
 from pindrive.device.device import Criteria, Device
 from pindrive.device.geometry import Gap, smallest_gaps
 from pindrive.device.hand import HandPath
@@ -69,10 +70,12 @@ class Scan(lazy.NotebookHtml):
     """Between motion and drive axis beyond which a warning is given, rad."""
     criteria: Criteria | None = None
     """Criteria of the device file, for `evaluate`."""
+    hand: HandMotion | None = None
+    """Path of a hand that gave way, beside the intended one; None: nothing could slow it."""
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickle the inputs of the scan, which is repeated."""
-        return followed, (self.inputs, self.max_angle, self.criteria)
+        return followed, (self.inputs, self.max_angle, self.criteria, 1, None, self.hand)
 
     @cached_property
     def pins(self) -> tuple[PinScan, ...]:
@@ -130,6 +133,18 @@ class Scan(lazy.NotebookHtml):
             A figure; `figure.savefig(FILE)` writes it.
         """
         return self.evaluate().plot(pin)  # type: ignore[no-any-return]
+
+    def plot_hand(self) -> mpl_figure.Figure:
+        """Plot speed and place of a hand that gave way beside those intended, over time.
+
+        Raises:
+            ValueError: Nothing could slow the hand.
+        """
+        from pindrive.plot.hand import plot_hand
+
+        if self.hand is None:
+            raise ValueError(refusal("the device", "one with a hand, [hand]", "one without"))
+        return plot_hand(self, self.hand)
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
@@ -272,7 +287,7 @@ def scan(
         hand: Motion of the hand: a `HandPath`, whose positions are those at which the hand's axis
             crosses the array's middle; a `Reading`, which strokes along the lines of the page; or
             the CSV of a recorded path. None: strokes along the lines of the page, with the speed of
-            the device file.
+            the device file. A hand that gives way (`Device.hand`) means to take this path.
         touch: Force with which the finger presses on each pin, N, at least 0: a number, or a
             `Profile` on the path's clock, 0 where it is lifted; for a finger with a coefficient.
             None: that of the device file, otherwise that of the drive.
@@ -339,7 +354,10 @@ def scan(
         None if touch is None else input_of("touch", touch),
     )
     criteria = None if described is None else described.criteria
-    return followed(given, angle, criteria, workers, progress)
+    moved: HandMotion | None = None
+    if whole.hand is not None:
+        given, moved = follow_hand(given)
+    return followed(given, angle, criteria, workers, progress, moved)
 
 
 def followed(
@@ -348,7 +366,17 @@ def followed(
     criteria: Criteria | None,
     threads: int = 1,
     progress: Progress | None = None,
+    hand: HandMotion | None = None,
 ) -> Scan:
-    """Simulate the pins of a scan; arguments and errors as for `scan`."""
+    """Simulate the pins of a scan along a path that is known; arguments and errors as for `scan`.
+
+    Args:
+        given: Inputs of the scan.
+        max_angle: Angle between motion and drive axis above which a warning is given, rad.
+        criteria: Criteria of the evaluation.
+        threads: Number of pins simulated at once.
+        progress: Function called after each pin.
+        hand: Path of a hand that gave way.
+    """
     core = simulated(given, threads, progress)
-    return Scan(inputs=given, core=core, max_angle=max_angle, criteria=criteria)
+    return Scan(inputs=given, core=core, max_angle=max_angle, criteria=criteria, hand=hand)

@@ -53,7 +53,7 @@ from pindrive.evaluation.line_crossings import (
 from pindrive.lazy import mpl_figure, xr
 from pindrive.quantities import budgets
 from pindrive.quantities.quantity import counted
-from pindrive.quantities.results import BAD_WHEN_SMALL, EDGES, LINE, last_part
+from pindrive.quantities.results import BAD_WHEN_SMALL, EDGES, HAND_PATH, LINE, last_part
 from pindrive.quantities.status import Status
 from pindrive.quantities.table import QUANTITIES
 from pindrive.quantities.value import equal_by_value
@@ -192,6 +192,12 @@ class Evaluation(lazy.NotebookHtml):
         return self.core.spreads()
 
     @property
+    def _hand_numbers(self) -> dict[str, float]:
+        """Numbers of the path of a hand that gave way; NaN where nothing could slow the hand."""
+        hand = self.scan.hand
+        return hand.numbers if hand else dict.fromkeys((q.name for q in HAND_PATH), nan)
+
+    @property
     def numbers(self) -> dict[str, float]:
         """Numbers of a scan for studies, SI, by their names there; NaN for missing ones."""
         counts, path = self.counts, self.scan.path
@@ -202,6 +208,7 @@ class Evaluation(lazy.NotebookHtml):
             "lines.shown_part": counts["lines.shown"] / lines if lines else nan,
             **counts,
             "hand.duration": duration,
+            **self._hand_numbers,
             "magnet.on_part": on / duration,
             "coil.warming": coil.thermal_resistance * coil.power * on / duration if coil else nan,
         }

@@ -128,7 +128,13 @@ class DeviceFile:
         """
         whole = self._whole
         control = ControlBlock(**table_of(whole.values, "control"))
-        return Device(drive=self.drive, magnet=whole.magnet(), control=control, array=whole.array())
+        return Device(
+            drive=self.drive,
+            magnet=whole.magnet(),
+            control=control,
+            array=whole.array(),
+            hand=whole.hand(),
+        )
 
     @property
     def reading(self) -> Reading:

@@ -89,6 +89,7 @@ ELSEWHERE: Final = {
     "control": "the importer commands the magnet, unless the unit has the control block",
     "array": "the unit is one pin of it",
     "scan": "the importer moves the plate",
+    "hand": "the importer moves the plate",
     "criteria": "criterion of the evaluation: the motion does not depend on it",
 }
 """The keys and tables of a device file that are no variables of its unit, and why."""

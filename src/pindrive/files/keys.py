@@ -44,7 +44,7 @@ STUDY_KEYS: Final = (
 )
 """Top-level keys of a study file beside the tables of a device and the name."""
 KEYS: Final = ("device.name", "device.description", *FILE_KEYS)
-AROUND: Final = ("magnet", "control", "array", "scan", "criteria")
+AROUND: Final = ("magnet", "control", "array", "scan", "hand", "criteria")
 ALONE: Final = ("device", "drive", "plate", "finger", "motion")
 TABLES: Final = (*ALONE, *AROUND)
 SUFFIX: Final = ".csv"

@@ -13,6 +13,7 @@ from typing import Any, Final
 
 from pindrive.device.coil import BY_SHEET, COIL, COIL_NEEDS, SHEET, Coil, DataSheet
 from pindrive.device.electromagnet import DIRECT, TIMES, Electromagnet
+from pindrive.device.hand_mechanics import Hand
 from pindrive.device.pin_array import PinArray
 from pindrive.files.functions import is_function, read_function
 from pindrive.files.keys import (
@@ -226,6 +227,11 @@ class Whole:
         given = table_of(self.values, "array")
         grid, places = {name: given.pop(name) for name in _GRID}, given.pop("places")
         return PinArray.grid(**grid, **given) if places is None else PinArray.at(places, **given)
+
+    def hand(self) -> Hand | None:
+        """The hand that gives way to its pins; None: nothing can slow it."""
+        given = table_of(self.values, "hand")
+        return None if given["mass"] is None else Hand(**given)
 
     def in_si(self) -> dict[str, Value]:
         """The value of each key, given or not; None where nothing was given and nothing holds."""

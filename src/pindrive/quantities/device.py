@@ -225,6 +225,58 @@ SCAN: Final = inputs(
     ),
 )
 
+_ARM: Final = "van Beek et al. 2015, 10.1038/srep18004: a relaxed arm at the hand"
+
+HAND: Final = inputs(
+    "",
+    Quantity(
+        "hand.mass",
+        "m_h",
+        "kg",
+        "hand, arm and mouse without its pins, as the drive axis feels them",
+        example=0.55,
+        source=_ARM,
+        remark="without it nothing can slow the hand",
+        seen=between(1e-3, 1e2),
+    ),
+    Quantity(
+        "hand.stiffness",
+        "k_h",
+        "N/m",
+        "stiffness of the arm about its intended path",
+        example=135.0,
+        source=_ARM,
+        seen=between(1.0, 1e5),
+    ),
+    Quantity(
+        "hand.damping",
+        "b_h",
+        "N*s/m",
+        "damping of the arm about its intended path",
+        example=6.5,
+        source=_ARM,
+        seen=between(1e-2, 1e4),
+    ),
+    Quantity(
+        "hand.kinetic",
+        "F_h",
+        "N",
+        "kinetic friction of the mouse on the page, which the arm overcomes while it slides",
+        example=0.3,
+        source="0.2 to 0.8 N on pads (Cabeças 2010, 10.2174/1875934301003010001)",
+    ),
+    Quantity(
+        "hand.static",
+        "F_hs",
+        "N",
+        "static friction of the mouse on the page",
+        example=0.4,
+        source="assumed: a third above kinetic friction",
+        remark="kinetic friction unless given",
+    ),
+)
+"""Hand that gives way to its pins."""
+
 DEVICE_PARTS: Final[tuple[Quantity, ...]] = (
     Quantity(
         "place.x", "x", "m", "place of a pin along the drive axis", bounds=between(-10.0, 10.0)

@@ -220,6 +220,7 @@ SCANNED: Final[tuple[Quantity, ...]] = (
     Quantity("hand_x", "x_h", "m", "place of the hand across the page"),
     Quantity("hand_y", "y_h", "m", "place of the hand down the page"),
     Quantity("hand_force", "H_h", "N", "force of all pins on the hand, against its drive axis"),
+    Quantity("hand_deviation", "e_h", "m", "distance of the hand from its intended path"),
     Quantity("touch", "N_f", "N", "touch force of the finger on each pin"),
     Quantity("luminance", "L", "1", "luminance under the pin's spot"),
     Quantity("command", "u", "", "whether the magnet is switched on"),
@@ -392,7 +393,20 @@ SPEED: Final[tuple[Quantity, ...]] = (
 )
 """Quantities of the search for the largest hand speed."""
 
-JUDGE: Final = LINE + LINE_COUNTS + SPEED
+HAND_PATH: Final[tuple[Quantity, ...]] = (
+    Quantity(
+        "hand.slowest_speed",
+        "v_h",
+        "m/s",
+        "least speed of a hand that gives way, where half its largest or more is intended",
+    ),
+    Quantity("hand.mean_speed", "v_m", "m/s", "mean speed of that hand, likewise"),
+    Quantity("hand.path_error", "e_h", "m", "largest distance of that hand from its path"),
+    Quantity("hand.stopped", "T_s", "s", "total time for which that hand stood or went back"),
+)
+"""Numbers of the path of a hand that gives way to its pins."""
+
+JUDGE: Final = LINE + LINE_COUNTS + SPEED + HAND_PATH
 """Results of scans and speeds."""
 
 DESIGNED: Final[tuple[Quantity, ...]] = (

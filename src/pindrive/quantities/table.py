@@ -9,7 +9,7 @@ from __future__ import annotations
 import warnings
 from typing import Final, TypeVar, dataclass_transform
 
-from pindrive.quantities.device import ARRAY, CONTROL, DEVICE_PARTS, PIN, SCAN
+from pindrive.quantities.device import ARRAY, CONTROL, DEVICE_PARTS, HAND, PIN, SCAN
 from pindrive.quantities.drive import DRIVE_QUANTITIES, PARTS
 from pindrive.quantities.electromagnet import COIL, MADE, MAGNET
 from pindrive.quantities.functions import parameters_of
@@ -19,7 +19,7 @@ from pindrive.quantities.results import CRITERIA, DESIGNED, FINAL, JUDGE, OUTPUT
 
 T = TypeVar("T")
 
-DEVICE_INPUTS: Final = MAGNET + COIL + CONTROL + ARRAY + SCAN + CRITERIA
+DEVICE_INPUTS: Final = MAGNET + COIL + CONTROL + ARRAY + SCAN + HAND + CRITERIA
 """Optional keys of a device file beyond the drive, in order."""
 
 FUNCTION_PARAMETERS: Final = parameters_of(DRIVE_QUANTITIES)

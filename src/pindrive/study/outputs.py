@@ -23,6 +23,7 @@ from pindrive.quantities.results import (
     DESIGNED,
     ENDING,
     ENERGY,
+    HAND_PATH,
     LINE,
     LINE_COUNTS,
     TRANSIENT,
@@ -51,6 +52,7 @@ SCANNED: Final[tuple[Quantity, ...]] = (
     *(_median(quantity) for quantity in LINE),
     *(_worst(quantity) for quantity in LINE),
     Quantity("hand.duration", "T_h", "s", "how long the hand moves and pauses"),
+    *HAND_PATH,
     Quantity("magnet.on_part", "D_on", "1", "part of that time that a magnet is on, the largest"),
     Quantity("coil.warming", "ΔT_on", "K", "by how much its coil warms, where one is described"),
 )
@@ -101,9 +103,10 @@ def is_stepped(name: str) -> bool:
     return name in _COUNTS or name == "lines_shown_part"
 
 
-def usual_outputs(among: Sequence[str], *, rigid: bool, coil: bool) -> tuple[str, ...]:
-    """Return all numbers but the energy ledger; skin and coil only if present."""
+def usual_outputs(among: Sequence[str], *, rigid: bool, coil: bool, hand: bool) -> tuple[str, ...]:
+    """Return all numbers but the energy ledger; skin, coil and hand only if present."""
     missing = (*LEDGER, *(_SKIN if rigid else ()), *(() if coil else ("coil_warming",)))
+    missing += () if hand else tuple(variables(HAND_PATH))
     return tuple(name for name in among if name not in missing)
 
 

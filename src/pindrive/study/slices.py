@@ -59,6 +59,10 @@ _WORDS: Final = {
     "median_skin": "median skin motion",
     "worst_skin": "least skin motion",
     "hand_duration": "time of the hand's way",
+    "hand_slowest_speed": "least speed of the hand",
+    "hand_mean_speed": "mean speed of the hand",
+    "hand_path_error": "error of the hand's path",
+    "hand_stopped": "time for which the hand stood",
     "magnet_on_part": "part of the time a magnet is on",
     "coil_warming": "warming of the coil",
 }

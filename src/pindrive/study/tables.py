@@ -219,7 +219,9 @@ class _Reader:
             rigid = self._device.drive.finger.rigid and "finger.stiffness" not in self._swept
             whole = self._device.whole
             coil = whole is not None and whole.magnet().coil is not None
-            return usual_outputs(self.among, rigid=rigid, coil=coil)
+            hand = whole is not None and whole.hand() is not None
+            hand = hand or any(key.startswith("hand.") for key in self._swept)
+            return usual_outputs(self.among, rigid=rigid, coil=coil, hand=hand)
         if not isinstance(given, list) or not given:
             required = 'a list of numbers, like ["settling_time", "swing"]'
             self._problems.append(refusal("outputs", required, quoted(given), self._file))
