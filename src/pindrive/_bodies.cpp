@@ -39,16 +39,18 @@ using BodyNumbers = std::tuple<double, Input, double, double>;
 using LinkNumbers = std::tuple<int, int, double, double, Input>;
 /// First and second body, kinetic and static friction, stiffness, damping, load, velocity, stretch.
 using ContactNumbers = std::tuple<int, int, double, double, double, double, Input, Input, double>;
-using SystemNumbers =
-    std::tuple<std::vector<BodyNumbers>, std::vector<LinkNumbers>, std::vector<ContactNumbers>>;
+/// First and second body, position, side, stiffness, damping, restitution.
+using StopNumbers = std::tuple<int, int, double, int, double, double, double>;
+using SystemNumbers = std::tuple<std::vector<BodyNumbers>, std::vector<LinkNumbers>,
+                                 std::vector<ContactNumbers>, std::vector<StopNumbers>>;
 
 /// A system with its initial state, and the arrays to which its inputs refer.
 template <class T>
 class OwnedSystem {
  public:
   OwnedSystem(SystemNumbers at, SystemNumbers along) {
-    auto& [bodies, links, contacts] = at;
-    auto& [bodies_along, links_along, contacts_along] = along;
+    auto& [bodies, links, contacts, stops] = at;
+    auto& [bodies_along, links_along, contacts_along, stops_along] = along;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       auto& [mass, force, position, velocity] = bodies[i];
       auto& [mass_rate, force_rate, position_rate, velocity_rate] = bodies_along[i];
@@ -71,6 +73,15 @@ class OwnedSystem {
            number<T>(stiffness, stiffness_rate), number<T>(damping, damping_rate),
            own(load, load_rate), own(velocity, velocity_rate)});
       state_.stretch.push_back(number<T>(stretch, stretch_rate));
+    }
+    for (std::size_t i = 0; i < stops.size(); ++i) {
+      const auto& [one, other, position, side, stiffness, damping, restitution] = stops[i];
+      const auto& [one_, other_, position_rate, side_, stiffness_rate, damping_rate,
+                   restitution_rate] = stops_along[i];
+      system_.stops.push_back({one, other, number<T>(position, position_rate), side,
+                               number<T>(stiffness, stiffness_rate),
+                               number<T>(damping, damping_rate),
+                               number<T>(restitution, restitution_rate)});
     }
   }
 
@@ -103,7 +114,7 @@ struct Followed {
   std::vector<bodies::Change<T>> changes;
   pd::Status status;
   bool rests;
-  std::size_t body_count, contact_count;
+  std::size_t body_count, contact_count, stop_count;
 };
 
 template <class T>
@@ -111,8 +122,9 @@ std::unique_ptr<Followed<T>> follow(SystemNumbers at, SystemNumbers along, doubl
   const OwnedSystem<T> owned(std::move(at), std::move(along));
   return interruptible([&](auto go_on) {
     const std::size_t count = owned.system().bodies.size(),
-                      contacts = owned.system().contacts.size();
-    bodies::StoredMotion<T> motion(count, contacts);
+                      contacts = owned.system().contacts.size(),
+                      stops = owned.system().stops.size();
+    bodies::StoredMotion<T> motion(count, contacts, stops);
     bodies::Following<T> following(owned.system(), owned.state());
     const auto keep = [&](const bodies::Step<T>& step) {
       motion.add(step);
@@ -130,7 +142,7 @@ std::unique_ptr<Followed<T>> follow(SystemNumbers at, SystemNumbers along, doubl
     }
     return std::make_unique<Followed<T>>(Followed<T>{std::move(motion), following.changes(),
                                                      following.status(), following.resting(), count,
-                                                     contacts});
+                                                     contacts, stops});
   });
 }
 
@@ -138,8 +150,9 @@ std::unique_ptr<Followed<T>> follow(SystemNumbers at, SystemNumbers along, doubl
 template <class T>
 nb::tuple at(const Followed<T>& followed, const Column& times, bool right) {
   const std::size_t count = times.size(), size = followed.body_count,
-                    contacts = followed.contact_count;
-  std::vector<double> moving(3 * size * count), touching(4 * contacts * count);
+                    contacts = followed.contact_count, stops = followed.stop_count;
+  std::vector<double> moving(3 * size * count), touching(4 * contacts * count),
+      pushing(stops * count);
   interruptible([&](auto go_on) {
     bodies::Quantities<T> found;
     for (std::size_t k = 0; k < count && go_on(); ++k) {
@@ -155,10 +168,12 @@ nb::tuple at(const Followed<T>& followed, const Column& times, bool right) {
         touching[(2 * contacts + j) * count + k] = result(found.sliding[j]);
         touching[(3 * contacts + j) * count + k] = static_cast<double>(found.slip[j]);
       }
+      for (std::size_t s = 0; s < stops; ++s) pushing[s * count + k] = result(found.push[s]);
     }
     return true;
   });
-  return nb::make_tuple(to_array(std::move(moving)), to_array(std::move(touching)));
+  return nb::make_tuple(to_array(std::move(moving)), to_array(std::move(touching)),
+                        to_array(std::move(pushing)));
 }
 
 template <class T>
@@ -193,6 +208,7 @@ nb::dict certify(SystemNumbers given, double duration) {
   laws["kinematics"] = worst.kinematics;
   laws["friction"] = worst.friction;
   laws["sliding"] = worst.sliding;
+  laws["stops"] = worst.stops;
   laws["continuity"] = worst.continuity;
   laws["energy"] = worst.energy;
   energy["before"] = ledger.before;
@@ -200,6 +216,7 @@ nb::dict certify(SystemNumbers given, double duration) {
   energy["inputs"] = ledger.inputs;
   energy["dampers"] = ledger.dampers;
   energy["contacts"] = ledger.contacts;
+  energy["stops"] = ledger.stops;
   nb::dict both;
   both["laws"] = laws;
   both["energy"] = energy;
@@ -229,7 +246,7 @@ nb::class_<Followed<T>> bind(nb::module_& m, const char* name, const char* meani
       .def("at", &at<T>, "times"_a, "right"_a,
            "Position, velocity and acceleration of each body, and friction, stretch, sliding speed "
            "and slip of each "
-           "contact, over all times.")
+           "contact, and the force of each stop, over all times.")
       .def("changes", &changes<T>, "Columns, one row an event.");
 }
 
@@ -257,7 +274,8 @@ void bind_bodies(nb::module_& m) {
       "body, second or -1, "
       "stiffness, damping, length); contacts (first body, second or -1, kinetic, static, "
       "stiffness, damping, load, "
-      "velocity, stretch).");
+      "velocity, stretch); stops (first body, second or -1, position, side, stiffness, damping, "
+      "restitution).");
   m.def(
       "differentiate_system",
       [](SystemNumbers numbers, SystemNumbers along, double duration) {

@@ -162,7 +162,7 @@ class SystemMotion:
 
     def at(self, times: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], right: bool) -> tuple:
         """
-        Position, velocity and acceleration of each body, and friction, stretch, sliding speed and slip of each contact, over all times.
+        Position, velocity and acceleration of each body, and friction, stretch, sliding speed and slip of each contact, and the force of each stop, over all times.
         """
 
     def changes(self) -> dict:
@@ -188,18 +188,18 @@ class SystemDerivative:
 
     def at(self, times: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], right: bool) -> tuple:
         """
-        Position, velocity and acceleration of each body, and friction, stretch, sliding speed and slip of each contact, over all times.
+        Position, velocity and acceleration of each body, and friction, stretch, sliding speed and slip of each contact, and the force of each stop, over all times.
         """
 
     def changes(self) -> dict:
         """Columns, one row an event."""
 
-def simulate_system(numbers: tuple[Sequence[tuple[float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], float, float]], Sequence[tuple[int, int, float, float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]]]], Sequence[tuple[int, int, float, float, float, float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], float]]], duration: float) -> SystemMotion:
+def simulate_system(numbers: tuple[Sequence[tuple[float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], float, float]], Sequence[tuple[int, int, float, float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]]]], Sequence[tuple[int, int, float, float, float, float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], float]], Sequence[tuple[int, int, float, int, float, float, float]]], duration: float) -> SystemMotion:
     """
-    Simulates several bodies. Bodies are (mass, force, position, velocity); springs (first body, second or -1, stiffness, damping, length); contacts (first body, second or -1, kinetic, static, stiffness, damping, load, velocity, stretch).
+    Simulates several bodies. Bodies are (mass, force, position, velocity); springs (first body, second or -1, stiffness, damping, length); contacts (first body, second or -1, kinetic, static, stiffness, damping, load, velocity, stretch); stops (first body, second or -1, position, side, stiffness, damping, restitution).
     """
 
-def differentiate_system(numbers: tuple[Sequence[tuple[float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], float, float]], Sequence[tuple[int, int, float, float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]]]], Sequence[tuple[int, int, float, float, float, float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], float]]], along: tuple[Sequence[tuple[float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], float, float]], Sequence[tuple[int, int, float, float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]]]], Sequence[tuple[int, int, float, float, float, float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], float]]], duration: float) -> SystemDerivative:
+def differentiate_system(numbers: tuple[Sequence[tuple[float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], float, float]], Sequence[tuple[int, int, float, float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]]]], Sequence[tuple[int, int, float, float, float, float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], float]], Sequence[tuple[int, int, float, int, float, float, float]]], along: tuple[Sequence[tuple[float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], float, float]], Sequence[tuple[int, int, float, float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]]]], Sequence[tuple[int, int, float, float, float, float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], float]], Sequence[tuple[int, int, float, int, float, float, float]]], duration: float) -> SystemDerivative:
     """The derivatives of a motion of several bodies along a direction."""
 
 def input_at(input: Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], times: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], right: bool) -> tuple:
@@ -211,7 +211,7 @@ def function_integral(pieces: Sequence[tuple[float, Sequence[float], Sequence[Se
 def function_integral_along(pieces: Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], along: Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]]) -> list[tuple[float, list[float], list[list[float]]]]:
     """The derivative of that integral along a direction of the pieces."""
 
-def certify_system(numbers: tuple[Sequence[tuple[float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], float, float]], Sequence[tuple[int, int, float, float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]]]], Sequence[tuple[int, int, float, float, float, float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], float]]], duration: float) -> dict:
+def certify_system(numbers: tuple[Sequence[tuple[float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], float, float]], Sequence[tuple[int, int, float, float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]]]], Sequence[tuple[int, int, float, float, float, float, Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], Sequence[tuple[float, float]] | Sequence[tuple[float, Sequence[float], Sequence[Sequence[float]]]], float]], Sequence[tuple[int, int, float, int, float, float, float]]], duration: float) -> dict:
     """The worst violation of each law, and the energy."""
 
 def direction(angle: float) -> tuple[float, float]:

@@ -42,7 +42,7 @@ def test_random_systems_move_as_an_integrator_has_them() -> None:
         assert motion.status == pd.Status.ok
         assert motion.certificate().worst < 1e-12, seed
         expected, _ = follow(system, DURATION, [])
-        moving, _ = motion.state_at(np.array([DURATION]))
+        moving, *_ = motion.state_at(np.array([DURATION]))
         size = max(np.abs(motion.state_at(motion.sample_times())[0][0]).max(), 1e-6)
         off = float(np.abs(moving[0, :, 0] - expected).max() / size)
         worst = max(worst, off)
@@ -284,6 +284,74 @@ def test_a_figure_shows_bodies_and_contacts() -> None:
     assert {"body hand", "body pin 7"} <= drawn
 
 
+def test_a_ball_bounces_and_comes_to_rest() -> None:
+    """Each flight is shorter by the restitution; all of them together end at a known time."""
+    fall = (2.0 / 9.81) ** 0.5
+    system = pd.System()
+    ball = system.body("ball", "10 g", position="1 m")
+    system.force(ball, -0.0981)
+    system.stop(ball, lower=0, restitution=0.6)
+    motion = system.simulate(3)
+    times = [event.time for event in motion.stop("ball-ground").events]
+    flights = np.diff(times)
+    assert times[0] == pytest.approx(fall, rel=1e-15)
+    assert np.allclose(flights[1:12] / flights[:11], 0.6, rtol=1e-9)
+    assert times[-1] == pytest.approx(fall * (1 + 2 * 0.6 / 0.4), rel=1e-11)
+    assert motion.rests
+    assert motion.stop(ball, "ground").force(2.9) == pytest.approx(0.0981, rel=1e-12)
+    assert motion.energy.stops == pytest.approx(0.0981, rel=1e-12)
+    assert motion.certificate().worst < 1e-14
+    key = "stop.ball-ground.restitution"
+    found = motion.sensitivity([key]).position(ball, 1.2)
+    ends = [
+        system.with_values({key: 0.6 + h}).simulate(3)[ball].position(1.2) for h in (1e-6, -1e-6)
+    ]
+    assert found[0] == pytest.approx((ends[0] - ends[1]) / 2e-6, rel=1e-7)
+
+
+def test_balls_in_a_row_hand_on_their_momentum() -> None:
+    system = pd.System()
+    for i in range(4):
+        system.body(f"ball {i}", 1.0, position=0.0 if i else -1.0, velocity=0.0 if i else 1.0)
+    for i in range(3):
+        system.stop(f"ball {i + 1}", f"ball {i}", lower=0, restitution=1)
+    motion = system.simulate(3)
+    ends = [motion[f"ball {i}"].velocity(3.0) for i in range(4)]
+    assert ends == pytest.approx([0.0, 0.0, 0.0, 1.0], abs=1e-15)
+
+
+def test_an_elastic_stop_pushes_and_never_pulls() -> None:
+    system = pd.System()
+    cart, wall = system.body("cart", 1.0, velocity=1.0), "ground"
+    system.stop(cart, wall, upper=0.5, stiffness="10 kN/m", damping="30 N*s/m")
+    motion = system.simulate(2)
+    met, left = motion.stop(cart, wall).events
+    assert (met.kind, left.kind) == ("stop", "leave")
+    t = np.linspace(met.time, left.time, 200)
+    force = np.asarray(motion.stop(cart, wall).force(t, "left"))[1:]
+    assert (force <= 1e-9).all()
+    assert motion[cart].position(left.time) > 0.5  # the damper lets the wall come back later
+    assert -1.0 < motion[cart].velocity(2.0) < -0.6
+    assert motion.energy.stops == pytest.approx(0.5 - 0.5 * motion[cart].velocity(2.0) ** 2)
+
+
+def test_a_system_is_pushed_against_a_rigid_stop() -> None:
+    """Friction holds no impulse; a stop and a contact share what presses the body."""
+    system = pd.System()
+    box = system.body("box", 1.0)
+    system.force(box, 5.0)
+    system.contact(box, kinetic=2.0, static=3.0)
+    system.stop(box, upper="0.5 m", restitution=0.3)
+    motion = system.simulate()
+    assert motion.rests
+    assert motion[box].position(motion.duration) == pytest.approx(0.5)
+    force = motion.contact(box, "ground").force(motion.duration)
+    assert force + motion.stop(box, "ground").force(motion.duration) == pytest.approx(-5.0)
+    data = motion.to_dataset([0.1])
+    assert data.stop_force.dims == ("stop", "time")
+    assert motion.numbers()["stop.box-ground.events"] > 3
+
+
 @pytest.mark.parametrize(
     ("build", "words"),
     [
@@ -312,6 +380,14 @@ def test_a_figure_shows_bodies_and_contacts() -> None:
         (
             lambda s: s.with_values({"a.mas": 2}),
             "unknown parameter a.mas; did you mean body.a.mass",
+        ),
+        (lambda s: s.stop("a"), "stop.a-ground must be given with lower, upper or both"),
+        (lambda s: s.stop("a", lower=1, upper=0), "upper must be greater than lower (1.0 m)"),
+        (lambda s: s.stop("a", lower=0, restitution=2), "restitution must be"),
+        (lambda s: s.stop("a", lower=0, damping=1), "damping must be 0 of a rigid stop"),
+        (
+            lambda s: (s.stop("a", lower=1), s.simulate(1)),
+            "the position of a must be within 1.0 m at t = 0",
         ),
         (lambda s: s.simulate(0), "duration must be"),
         (lambda s: s.simulate(), "duration must be given, as the bodies do not come to rest"),

@@ -17,7 +17,7 @@ using check::expect;
 
 namespace {
 
-/// One to six bodies with links and contacts between them, under constant inputs, rows and sinusoids.
+/// One to six bodies with links, contacts and stops between them, under constant inputs, rows and sinusoids.
 class RandomSystem {
  public:
   bodies::System<double> system;
@@ -47,6 +47,17 @@ class RandomSystem {
       if (contact.other == bodies::ground && below(2)) contact.velocity = input(near(0.05), false);
       system.contacts.push_back(contact);
       state.stretch.push_back(0);
+    }
+    for (int i = below(2) * (1 + below(3)); i > 0; --i) {
+      bodies::Stop<double> stop{};
+      join(stop);
+      stop.side = below(2) ? 1 : -1;
+      const double other = stop.other == bodies::ground ? 0 : state.position[stop.other];
+      stop.position = state.position[stop.one] - other + stop.side * near(3e-4);
+      if (below(3) == 0) stop.stiffness = near(2e4);
+      if (!stop.rigid() && below(2)) stop.damping = near(1);
+      if (stop.rigid() && below(2)) stop.restitution = below(2) ? 0.5 : 0.8;
+      system.stops.push_back(stop);
     }
   }
   RandomSystem(const RandomSystem&) = delete;

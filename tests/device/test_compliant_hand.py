@@ -186,12 +186,26 @@ def test_a_study_keeps_the_numbers_of_the_hand() -> None:
     assert "hand_slowest_speed" not in usual.outputs
 
 
+@pytest.mark.parametrize("stop", [{}, {"drive.stop_stiffness": 2e4, "drive.stop_damping": 1.0}])
+def test_pins_strike_the_ends_of_their_travel(stop: dict[str, float]) -> None:
+    """The hand feels the impacts; the pins of the scan are those that slowed the hand."""
+    device, scene, path = lines_under(4, 8e-3, 0.0, **{"drive.travel": 0.5e-3, **stop})
+    scan = pd.scan(device, scene, path)
+    struck = [event for pin in scan.pins for event in pin.events if event.contact == "stop"]
+    assert len(struck) > 4
+    given = ScanInputs(device, scene, path, None, None)
+    *_, deflections = given.core().hand(device.hand.core)  # type: ignore[union-attr]
+    at_end = [float(pin.position(path.end)) for pin in scan.pins]
+    assert np.abs(np.array(at_end) - deflections).max() < 1e-8
+    assert scan.hand is not None
+    assert scan.hand.slowest_speed < 0.01
+
+
 @pytest.mark.parametrize(
     ("values", "words"),
     [
         ({"hand.stiffness": 0.0, "hand.damping": 0.0}, "to lead the hand"),
         ({"hand.kinetic": 0.4, "hand.static": 0.3}, "hand.static must be at least hand.kinetic"),
-        ({"drive.travel": 2e-3}, "drive.travel must be left out for a hand that gives way"),
         ({"array.axis": 0.3}, "must be along the drive axis for a hand that gives way"),
     ],
 )

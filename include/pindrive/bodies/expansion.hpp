@@ -58,16 +58,20 @@ class Expansion {
     T most{0};
     for (const T& limit : limits) most = std::max(most, limit);
     const T share = most > 0 ? 1000 * most : T(1);
-    for (std::size_t s = 0; s < system_->stops.size(); ++s) {
+    // Stops come first: bodies that they join do not part, and a contact there has to slip.
+    for (std::size_t s = system_->stops.size(); s-- > 0;) {
       if (mode[contacts() + s] != bodies::Slip::stick || !system_->stops[s].rigid()) continue;
-      stuck.push_back(static_cast<int>(contacts() + s));
-      limits.push_back(share);
+      stuck.insert(stuck.begin(), static_cast<int>(contacts() + s));
+      limits.insert(limits.begin(), share);
     }
     joined_ = JoinedBodies<T>(*system_, std::move(stuck), std::move(limits));
   }
 
   /// True of a contact in stick whose surfaces may move apart.
-  bool may_part(int j) const { return contact(j).rigid() && !joined_.joins(j); }
+  bool may_part(int j) const {
+    const bool rigid = is_stop(j) ? system_->stops[stop_of(j)].rigid() : contact(j).rigid();
+    return rigid && !joined_.joins(j);
+  }
 
   /// True if rigid contacts hold each body to the ground.
   bool all_held() const { return joined_.all_grounded(); }

@@ -62,6 +62,7 @@ class Step {
   using Series = typename detail::Expansion<T>::Series;
   const Series& position_series(std::size_t body) const { return series_->position(body); }
   const Series& velocity_series(std::size_t body) const { return series_->velocity(body); }
+  const Series& push_series(std::size_t stop) const { return series_->push(stop); }
   const Series& stretch_series(std::size_t contact) const { return series_->stretch(contact); }
   const Series& friction_series(std::size_t contact) const { return series_->friction(contact); }
   const Series& sliding_series(std::size_t contact) const { return series_->sliding(contact); }
@@ -351,9 +352,8 @@ class Following {
   }
 
   /// Selects the mode after an event; a rigid contact whose sliding came to zero then has exactly none.
-  void settle(const std::vector<int>& active) {
+  void settle(std::vector<int> active) {
     const Mode before = mode_;
-    const std::vector<int> hit = strike(active);
     for (const int contact : active) {
       if (series_.is_stop(contact)) continue;
       const Contact<T>& c = system_->contacts[contact];
@@ -363,6 +363,8 @@ class Following {
       state_.velocity[c.one] -= part * error;
       if (c.other != ground) state_.velocity[c.other] += (1 - part) * error;
     }
+    const std::vector<int> hit = strike(active);
+    if (!hit.empty()) slip_after_impact(active);
     const Real step = fastest_ > 0 ? 1 / fastest_ : Real(1);
     if (!selection_.select(state_, active, step, mode_)) status_ = Status::inconsistent;
     series_.set(mode_, state_.time);
@@ -378,7 +380,7 @@ class Following {
     std::vector<int> touching, hit;
     for (std::size_t s = 0; s < system_->stops.size(); ++s) {
       const int j = static_cast<int>(system_->contacts.size() + s);
-      const bool met = std::find(active.begin(), active.end(), j) != active.end();
+      const bool met = std::find(active.begin(), active.end(), j) != active.end() || touches(s);
       if (!system_->stops[s].rigid() || !(met || mode_[j] == Slip::stick)) continue;
       if (met) place_at(s);
       touching.push_back(j);
@@ -402,8 +404,23 @@ class Following {
       if (std::find(hit.begin(), hit.end(), next) == hit.end()) hit.push_back(next);
     }
     for (const int j : hit) struck_[series_.stop_of(j)] = plain(state_.time);
-    if (!hit.empty()) slip_after_impact();
     return hit;
+  }
+  /// True if both bodies of a rigid stop touch, within the rounding of their places and of the time.
+  bool touches(std::size_t s) const {
+    using std::abs;
+    const Stop<T>& stop = system_->stops[s];
+    Real known = 16 * detail::rounding<Real> * abs(plain(stop.position));
+    const auto place = [&](int body) {
+      if (body == ground) return T(0);
+      const T x = state_.position[body];
+      const auto& errors = state_.errors.position;
+      known += 16 * detail::rounding<Real> * abs(plain(x)) +
+               (errors.empty() ? Real(0) : 16 * errors[body]);
+      return x;
+    };
+    const T depth = T(stop.side) * (place(stop.one) - place(stop.other) - stop.position);
+    return plain(depth) >= -known;
   }
   /// Moves the bodies of a stop that was met to where they touch, within the rounding of its time.
   void place_at(std::size_t s) {
@@ -447,8 +464,8 @@ class Following {
     state_.velocity[stop.one] -= one * impulse;
     if (stop.other != ground) state_.velocity[stop.other] += other * impulse;
   }
-  /// Sets the slip of rigid contacts whose bodies an impact has moved apart.
-  void slip_after_impact() {
+  /// Sets the slip of rigid contacts to which an impact has given a speed; these are no longer `active`.
+  void slip_after_impact(std::vector<int>& active) {
     using std::abs;
     for (std::size_t j = 0; j < system_->contacts.size(); ++j) {
       const Contact<T>& c = system_->contacts[j];
@@ -456,8 +473,9 @@ class Following {
       const T speed = speed_of(static_cast<int>(j));
       Real size = abs(plain(state_.velocity[c.one]));
       if (c.other != ground) size += abs(plain(state_.velocity[c.other]));
-      if (abs(plain(speed)) > 64 * detail::rounding<Real> * size)
-        mode_[j] = speed > 0 ? Slip::forward : Slip::backward;
+      if (!(abs(plain(speed)) > 64 * detail::rounding<Real> * size)) continue;
+      mode_[j] = speed > 0 ? Slip::forward : Slip::backward;
+      active.erase(std::remove(active.begin(), active.end(), static_cast<int>(j)), active.end());
     }
   }
 

@@ -221,7 +221,9 @@ class ModeSelection {
     if (slip == bodies::Slip::stick) {
       instead = open;
       zero_[j][1] = push == 0;
-      const bool parts = rigid && sign_now(series_.approach(stop)) < 0;
+      const auto& approach = series_.approach(stop);
+      const bool parts = rigid && (series_.may_part(static_cast<int>(j)) ? sign_in(approach)
+                                                                         : sign_now(approach)) < 0;
       return depth >= 0 && push >= 0 && !parts;
     }
     instead = depth < 0 || rigid ? bodies::Slip::backward : bodies::Slip::stick;

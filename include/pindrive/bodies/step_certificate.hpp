@@ -20,19 +20,23 @@ struct Violations {
   T kinematics{0};  ///< velocity against the rate of the position, and the rate of a stretch
   T friction{0};    ///< friction in slip against kinetic friction, in stick against its limit
   T sliding{0};     ///< slip against its direction, and sliding in stick
-  T continuity{0};  ///< jumps of position or velocity between two steps
+  T stops{0};  ///< bodies beyond a rigid stop, a stop that pulls, and impacts against Newton's law
+  T continuity{0};  ///< jumps of position, or of velocity without an impact, between two steps
   T energy{0};      ///< balance of energy, over what was stored and exchanged
 
-  T worst() const { return std::max({motion, kinematics, friction, sliding, continuity, energy}); }
+  T worst() const {
+    return std::max({motion, kinematics, friction, sliding, stops, continuity, energy});
+  }
 };
 
-/// Energy over a motion, J: `after` − `before` = `inputs` − `dampers` − `contacts` but for rounding.
+/// Energy over a motion, J: `after` − `before` = `inputs` − `dampers` − `contacts` − `stops` but for rounding.
 template <class T>
 struct Ledger {
   T before{0}, after{0};  ///< of motion and of springs, without that of skin
   T inputs{0};            ///< work of forces, prescribed motions and surfaces
   T dampers{0};           ///< loss in the dampers of springs
   T contacts{0};          ///< loss in contacts, with what their skin stores
+  T stops{0};             ///< loss at impacts and in elastic stops, with what these store
 };
 
 /// Checks each step of a motion. Reads inputs and polynomials alone.
@@ -42,6 +46,7 @@ class StepCertificate {
   explicit StepCertificate(const System<T>& system) : system_(&system) {}
 
   void add(const Step<T>& step) {
+    if (began_) strike(step);
     for (std::size_t i = 0; i < system_->bodies.size(); ++i) meet(step, static_cast<int>(i));
     const T before = energy(step, T(0)), after = energy(step, step.length());
     if (!began_) ledger_.before = before;
@@ -66,12 +71,14 @@ class StepCertificate {
   Violations<T> violations() const {
     using std::abs;
     const auto part = [](T of, T scale) { return of > 0 ? of / scale : T(0); };
-    return {part(found_.motion, force_),
-            part(found_.kinematics, speed_),
-            part(found_.friction, force_),
-            part(found_.sliding, speed_),
-            std::max(part(found_.continuity, size_), part(jump_, speed_)),
-            part(abs(drift_), exchanged_)};
+    return {
+        part(found_.motion, force_),
+        part(found_.kinematics, speed_),
+        part(found_.friction, force_),
+        part(found_.sliding, speed_),
+        std::max({part(beyond_, size_), part(found_.stops, force_), part(wrong_impact_, speed_)}),
+        std::max(part(found_.continuity, size_), part(jump_, speed_)),
+        part(std::max(abs(drift_), drift_of_impacts_), exchanged_)};
   }
   const Ledger<T>& ledger() const { return ledger_; }
   long steps() const { return steps_; }
@@ -95,7 +102,40 @@ class StepCertificate {
     raise(speed_, v);
     if (!began_) return;
     raise(found_.continuity, x - last_[2 * body]);
-    raise(jump_, v - last_[2 * body + 1]);
+    if (!struck_) raise(jump_, v - last_[2 * body + 1]);
+  }
+  /// Looks for an impact before a step: at each rigid stop that touches bodies end to approach, by Newton's law where
+  /// only one is hit, and nothing is gained.
+  void strike(const Step<T>& step) {
+    using std::abs;
+    struck_ = false;
+    T jump{0}, before{0}, after{0}, size{0};
+    for (std::size_t i = 0; i < system_->bodies.size(); ++i) {
+      const T m = system_->bodies[i].mass, was = last_[2 * i + 1];
+      const T is = step.velocity(static_cast<int>(i), T(0));
+      raise(jump, is - was);
+      before += m * was * was / 2;
+      after += m * is * is / 2;
+      raise(size, was);
+    }
+    if (!(jump > 1e-12 * std::max(size, speed_))) return;
+    int touching = 0;
+    for (std::size_t s = 0; s < system_->stops.size(); ++s) {
+      const Stop<T>& stop = system_->stops[s];
+      if (!stop.rigid() || abs(step.depth(static_cast<int>(s), T(0))) > 1e-14 * size_) continue;
+      const auto was = [&](int body) { return body == ground ? T(0) : last_[2 * body + 1]; };
+      const T approached = T(stop.side) * (was(stop.one) - was(stop.other));
+      const T approaches = T(stop.side) * between(step, stop.one, stop.other, T(0), true);
+      raise(wrong_impact_, std::max(T(0), approaches));
+      if (++touching == 1 && approached > 0)
+        rebound_ = std::min(abs(approaches), abs(approaches + stop.restitution * approached));
+    }
+    struck_ = touching > 0;
+    if (touching == 1) raise(wrong_impact_, rebound_);
+    if (!struck_) return;
+    raise(drift_of_impacts_, std::max(T(0), after - before));
+    ledger_.stops += before - after;
+    exchanged_ += abs(before - after);
   }
   T between(const Step<T>& step, int one, int other, T tau, bool velocities) const {
     const auto of = [&](int body) {
@@ -140,7 +180,29 @@ class StepCertificate {
       push(system_->contacts[j].one, system_->contacts[j].other, step.friction(contact, tau));
       rub(step, contact, tau);
     }
+    for (std::size_t s = 0; s < system_->stops.size(); ++s) {
+      const Stop<T>& stop = system_->stops[s];
+      const T force = step.push(static_cast<int>(s), tau);
+      push(stop.one, stop.other, -T(stop.side) * force);
+      halt(step, static_cast<int>(s), tau);
+    }
     for (const T each : rest) raise(found_.motion, each);
+  }
+  void halt(const Step<T>& step, int s, T tau) {
+    using std::abs;
+    const Stop<T>& stop = system_->stops[static_cast<std::size_t>(s)];
+    const T side = T(stop.side), force = step.push(s, tau);
+    const T beyond = side * (between(step, stop.one, stop.other, tau, false) - stop.position);
+    const T approach = side * between(step, stop.one, stop.other, tau, true);
+    raise(size_, stop.position);
+    raise(found_.stops, std::max(T(0), -force));
+    if (stop.rigid()) {
+      raise(beyond_, step.pushes(s) ? abs(beyond) : std::max(T(0), beyond));
+      return;
+    }
+    const T pressed =
+        beyond > 0 ? std::max(T(0), stop.stiffness * beyond + stop.damping * approach) : T(0);
+    raise(found_.stops, force - pressed);
   }
   void rub(const Step<T>& step, int contact, T tau) {
     const Contact<T>& c = system_->contacts[contact];
@@ -205,6 +267,11 @@ class StepCertificate {
       give(force * (between(step, c.one, c.other, tau, true) - surface), ledger_.contacts, -1);
       give(force * surface, ledger_.inputs, 1);
     }
+    for (std::size_t s = 0; s < system_->stops.size(); ++s) {
+      const Stop<T>& stop = system_->stops[s];
+      const T force = during * T(-stop.side) * step.push(static_cast<int>(s), tau);
+      give(force * between(step, stop.one, stop.other, tau, true), ledger_.stops, -1);
+    }
     return sum;
   }
 
@@ -212,7 +279,8 @@ class StepCertificate {
   Violations<T> found_{};
   Ledger<T> ledger_{};
   T jump_{0}, force_{0}, speed_{0}, size_{0}, drift_{0}, exchanged_{0};
-  bool began_{false};
+  T beyond_{0}, wrong_impact_{0}, rebound_{0}, drift_of_impacts_{0};
+  bool began_{false}, struck_{false};
   std::vector<T> last_;
   long steps_{0};
 };

@@ -21,6 +21,7 @@ struct Quantities {
   std::vector<T> friction;                          ///< on the first body, N, contact by contact
   std::vector<T> sliding;  ///< speed over the surface, m/s, contact by contact
   std::vector<Slip> slip;  ///< contact by contact
+  std::vector<T> push;     ///< force with which a stop pushes, N, stop by stop
 };
 
 /// Steps of a motion, one after another, as their polynomials.
@@ -29,7 +30,8 @@ class StoredMotion {
  public:
   using Real = detail::Real<T>;
 
-  StoredMotion(std::size_t bodies, std::size_t contacts) : bodies_(bodies), contacts_(contacts) {}
+  StoredMotion(std::size_t bodies, std::size_t contacts, std::size_t stops = 0)
+      : bodies_(bodies), contacts_(contacts), stops_(stops) {}
 
   void add(const Step<T>& step) {
     kept_.push_back({step.begin(), step.length(), step.span(), step.order(), numbers_.size()});
@@ -39,6 +41,10 @@ class StoredMotion {
       keep(step, step.friction_series(j));
       keep(step, step.sliding_series(j));
       slips_.push_back(step.slip(static_cast<int>(j)));
+    }
+    for (std::size_t s = 0; s < stops_; ++s) {
+      keep(step, step.push_series(s));
+      pushes_.push_back(step.pushes(static_cast<int>(s)));
     }
   }
 
@@ -70,6 +76,9 @@ class StoredMotion {
       found.sliding[j] = value(c + 2 * size, step, tau, 0);
       found.slip[j] = slips_[k * contacts_ + j];
     }
+    found.push.resize(stops_);
+    for (std::size_t s = 0; s < stops_; ++s, c += size)
+      found.push[s] = pushes_[k * stops_ + s] ? value(c, step, tau, 0) : T(0);
   }
 
   /// Least and largest position of a body, m.
@@ -130,10 +139,11 @@ class StoredMotion {
     return sum;
   }
 
-  std::size_t bodies_, contacts_;
+  std::size_t bodies_, contacts_, stops_;
   std::vector<Kept> kept_;
   std::vector<T> numbers_;
   std::vector<Slip> slips_;
+  std::vector<char> pushes_;  ///< stops that push, step by step
 };
 
 }  // namespace pindrive::bodies

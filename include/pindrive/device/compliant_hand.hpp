@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <deque>
 #include <limits>
 #include <vector>
 
@@ -101,6 +100,7 @@ class CompliantHand {
     system.bodies.push_back({hand.mass, {led_.data(), led_.size()}});
     system.links.push_back(
         {0, bodies::ground, hand.stiffness, hand.damping, {intended_.data(), intended_.size()}});
+    held_.reserve(pins_);
     for (std::size_t i = 0; i < pins_; ++i) {
       const int pin = static_cast<int>(i) + 1;
       system.bodies.push_back({drive.mass});
@@ -118,6 +118,10 @@ class CompliantHand {
         system.contacts.push_back({static_cast<int>(i) + 1, 0, drive.finger.kinetic,
                                    drive.finger.static_limit, drive.finger.stiffness,
                                    drive.finger.damping, scan_->finger_load});
+    for (std::size_t i = 0; drive.stops.present() && i < pins_; ++i)
+      for (const int side : {-1, 1})
+        system.stops.push_back({static_cast<int>(i) + 1, 0, side * drive.stops.travel, side,
+                                drive.stops.stiffness, drive.stops.damping});
     if (hand.static_limit > 0)
       system.contacts.push_back({0, bodies::ground, hand.kinetic, hand.static_limit});
     for (std::size_t i = 0; i < pins_; ++i) system.contacts[i].load = pressed(i, 0);
@@ -229,7 +233,8 @@ class CompliantHand {
   bool sample_until(const bodies::Step<double>& step, double& tau) {
     const Controller& controller = scan_->device.controller;
     const double begin = scan_->begin + step.begin(), end = begin + tau;
-    double due = scan_->begin + next_change();  // a switching may have become due in the step before
+    double due =
+        scan_->begin + next_change();  // a switching may have become due in the step before
     controller.each_sample(std::max(begin, sampled_), end, [&](double time) {
       if (time >= due) return false;
       const double place = step.position(0, time - begin);
@@ -265,9 +270,21 @@ class CompliantHand {
     rows_.times.push_back(scan_->begin + time);
     rows_.velocity.push_back(velocity);
   }
+  /// Velocity of the hand, zero within the rounding of the fastest: pins at their stops may lock a hand.
+  double velocity_at(const bodies::Step<double>& step, double tau) const {
+    const double velocity = step.velocity(0, tau);
+    return std::abs(velocity) > 1e-15 * fastest_ ? velocity : 0;
+  }
   /// Adds stretches of degree 4 that leave less than `fine` of the velocity of a step.
   void add_rows(const bodies::Step<double>& step) {
     if (step.length() < shortest) return;
+    const double before = rows_.velocity.back(), now = velocity_at(step, 0);
+    if (std::abs(now - before) >
+        fine * fastest_) {  // a pin struck a rigid stop: a ramp just before
+      rows_.times.back() -= 0.5 * shortest;
+      add_row(step.begin(), now);
+      rows_.bends.push_back({});
+    }
     const auto& series = step.velocity_series(0);
     const double part = step.length() / step.span();
     double rest = 0, power = std::pow(part, 5);
@@ -282,12 +299,12 @@ class CompliantHand {
   }
   /// Adds a stretch whose velocity is that of a step at five points.
   void add_stretch(const bodies::Step<double>& step, double from, double lasts) {
-    const double before = rows_.velocity.back(), after = step.velocity(0, from + lasts);
+    const double before = rows_.velocity.back(), after = velocity_at(step, from + lasts);
     // The bend over s (1 − s) at three points, as a polynomial b₀ + b₁ s + b₂ s².
     const double s[3] = {0.17267316464601143, 0.5, 0.8273268353539887};
     double f[3];
     for (int i = 0; i < 3; ++i)
-      f[i] = (step.velocity(0, from + lasts * s[i]) - before - (after - before) * s[i]) /
+      f[i] = (velocity_at(step, from + lasts * s[i]) - before - (after - before) * s[i]) /
              (s[i] * (1 - s[i]));
     const double first = (f[1] - f[0]) / (s[1] - s[0]), second = (f[2] - f[1]) / (s[2] - s[1]);
     const double bend = (second - first) / (s[2] - s[0]);
@@ -304,7 +321,7 @@ class CompliantHand {
   std::size_t pins_;
   double fastest_{0};                               ///< largest intended speed, m/s
   std::vector<InputPiece<double>> intended_, led_;  ///< place and force of the arm
-  std::deque<Pin> held_;                            ///< the system refers to their loads
+  std::vector<Pin> held_;  ///< of constant size: the system refers to their loads
   bodies::System<double> system_;
   double sampled_{-infinity};
   std::vector<double> ambiguous_;

@@ -10,6 +10,8 @@
 - `BodyMotion`: the motion of one body
 - `ContactMotion`: a contact under way
 - `SpringMotion`: a spring under way
+- `Stop`: stops of the distance between two bodies
+- `StopMotion`: a stop under way
 - `SystemEvent`: a change at a contact
 - `SystemLedger`: energy over a motion
 - `SystemCertificate`: the largest violation of each law

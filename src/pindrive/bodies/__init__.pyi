@@ -3,10 +3,12 @@
 from .system import Body as Body
 from .system import ContactPair as ContactPair
 from .system import Spring as Spring
+from .system import Stop as Stop
 from .system import System as System
 from .system_motion import BodyMotion as BodyMotion
 from .system_motion import ContactMotion as ContactMotion
 from .system_motion import SpringMotion as SpringMotion
+from .system_motion import StopMotion as StopMotion
 from .system_motion import SystemCertificate as SystemCertificate
 from .system_motion import SystemEvent as SystemEvent
 from .system_motion import SystemLedger as SystemLedger

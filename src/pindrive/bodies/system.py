@@ -93,7 +93,31 @@ class ContactPair:
     stretch: float = 0.0
 
 
-Entry = Body | Spring | ContactPair
+@concise
+@dataclass(frozen=True, slots=True)
+class Stop:
+    """Stops of the distance between two bodies, or of a body and the ground; made by `System.stop`.
+
+    Attributes:
+        name: Name: "pin-hand" unless another was given.
+        between: Names of the first and the second body; the second may be "ground".
+        lower: Least position of the first body less that of the second, m; None: no stop there.
+        upper: Largest, m; None: no stop there.
+        stiffness: N/m; infinite: rigid stops.
+        damping: Damping coefficient of elastic stops, N*s/m.
+        restitution: Speed after an impact on a rigid stop over that before.
+    """
+
+    name: str
+    between: tuple[str, str]
+    lower: float | None = None
+    upper: float | None = None
+    stiffness: float = inf
+    damping: float = 0.0
+    restitution: float = 0.0
+
+
+Entry = Body | Spring | ContactPair | Stop
 
 
 class System:
@@ -121,6 +145,7 @@ class System:
         self.bodies: dict[str, Body] = {}
         self.springs: dict[str, Spring] = {}
         self.contacts: dict[str, ContactPair] = {}
+        self.stops: dict[str, Stop] = {}
 
     # ---- building --------------------------------------------------------------------------------
 
@@ -246,6 +271,52 @@ class System:
         self.contacts[name] = made
         return made
 
+    def stop(
+        self,
+        body: str | Body,
+        other: str | Body = GROUND,
+        *,
+        lower: float | str | None = None,
+        upper: float | str | None = None,
+        stiffness: float | str = inf,
+        damping: float | str = 0.0,
+        restitution: float | str = 0.0,
+        name: str = "",
+    ) -> Stop:
+        """Add stops, which push two bodies apart or hold them together, and never pull.
+
+        A rigid stop ends the approach at an impact: the bodies part with `restitution` times the
+        speed of their approach. Bounces come shorter and shorter, and end when they would last less
+        than the resolution of time. Friction has a limit and holds no impulse.
+
+        Args:
+            body: First body.
+            other: Second body, or "ground".
+            lower: Least position of the first body less that of the second, m; None: no stop there.
+            upper: Largest, m, greater than `lower`; None: no stop there.
+            stiffness: N/m; infinite: rigid stops.
+            damping: Damping coefficient of elastic stops, N*s/m.
+            restitution: Of rigid stops, from 0 (the bodies stay together) to 1.
+            name: Name; "pin-hand" unless given, and "pin-hand 2" for a second one.
+
+        Raises:
+            ValueError: A body is unknown, neither end is given, or a value is out of range.
+        """
+        between = self._between(body, other)
+        name = self._named(name, "stop", between, self.stops)
+        made = Stop(
+            name,
+            between,
+            None if lower is None else _checked("stop", name, "lower", lower),
+            None if upper is None else _checked("stop", name, "upper", upper),
+            _checked("stop", name, "stiffness", stiffness),
+            _checked("stop", name, "damping", damping),
+            _checked("stop", name, "restitution", restitution),
+        )
+        _check_stop(made)
+        self.stops[name] = made
+        return made
+
     def force(self, body: str | Body, force: float | str | Profile | Function) -> None:
         """Set the external force on a body, N, constant or over time; functions are added by `+`.
 
@@ -319,6 +390,7 @@ class System:
         changed.bodies = dict(self.bodies)
         changed.springs = dict(self.springs)
         changed.contacts = dict(self.contacts)
+        changed.stops = dict(self.stops)
         for given, value in values.items():
             kind, name, part, *parameter = _split(self.key_of(given))
             table: dict[str, Any] = getattr(changed, _TABLES[kind])
@@ -336,6 +408,8 @@ class System:
             _check_spring(spring)
         for contact in changed.contacts.values():
             _check_contact(contact)
+        for stop in changed.stops.values():
+            _check_stop(stop)
         return changed
 
     # ---- motion ----------------------------------------------------------------------------------
@@ -361,6 +435,7 @@ class System:
         for contact in self.contacts.values():
             if refused := negative(f"contact.{contact.name}.load", contact.load, end):
                 raise ValueError(refused)
+        self._check_stops()
         frozen = self.with_values({})
         numbers = frozen.core_numbers()
         core = _core.simulate_system(numbers, inf if end is None else end)
@@ -397,7 +472,36 @@ class System:
                 )
                 for c in self.contacts.values()
             ],
+            [
+                (
+                    *(place[name] for name in s.between),
+                    end,
+                    side,
+                    s.stiffness,
+                    s.damping,
+                    s.restitution,
+                )
+                for _, s, end, side in self.stop_ends()
+            ],
         )
+
+    def stop_ends(self) -> Iterator[tuple[str, Stop, float, int]]:
+        """Yield each end of each stop, in the order of the core: name, stop, place, and side."""
+        for name, stop in self.stops.items():
+            if stop.lower is not None:
+                yield name, stop, stop.lower, -1
+            if stop.upper is not None:
+                yield name, stop, stop.upper, 1
+
+    def _check_stops(self) -> None:
+        """Refuse bodies that begin beyond a rigid stop."""
+        for name, stop, end, side in self.stop_ends():
+            places = [self.bodies[b].position if b != GROUND else 0.0 for b in stop.between]
+            beyond = side * (places[0] - places[1] - end)
+            if stop.stiffness == inf and beyond > 1e-15 * max(map(abs, (*places, end))):
+                required = f"within {end!r} m at t = 0, the end of stop.{name}"
+                words = f"the position of {stop.between[0]}"
+                raise ValueError(refusal(words, required, f"{places[0] - places[1]!r} m"))
 
     def __eq__(self, other: object) -> bool:
         """Return True if all parts are equal."""
@@ -409,12 +513,13 @@ class System:
         """Return the numbers of its parts in a line."""
         from pindrive.quantities.quantity import counted
 
-        parts = (
+        parts = [
             counted(len(self.bodies), "body", "bodies"),
             counted(len(self.springs), "spring"),
             counted(len(self.contacts), "contact"),
-        )
-        return f"<System of {parts[0]}, {parts[1]} and {parts[2]}>"
+        ]
+        parts += [counted(len(self.stops), "stop")] if self.stops else []
+        return f"<System of {', '.join(parts[:-1])} and {parts[-1]}>"
 
     # ---- names -----------------------------------------------------------------------------------
 
@@ -451,7 +556,7 @@ class System:
         return next(name for name in names if name not in taken)
 
 
-_TABLES: Final = {"body": "bodies", "spring": "springs", "contact": "contacts"}
+_TABLES: Final = {"body": "bodies", "spring": "springs", "contact": "contacts", "stop": "stops"}
 
 
 def _values(entry: Entry) -> list[str]:
@@ -500,6 +605,22 @@ def _check_spring(spring: Spring) -> None:
         position = given is not None and getattr(given, "unit", "") != "m/s"
         if position:
             input_of(PARTS["spring"], part, given, f"spring.{spring.name}.{part}", continuous=True)
+
+
+def _check_stop(stop: Stop) -> None:
+    """Refuse stops without an end, or with parts that contradict each other."""
+    label = f"stop.{stop.name}"
+    if stop.lower is None and stop.upper is None:
+        raise ValueError(refusal(label, "given with lower, upper or both", "neither"))
+    if stop.lower is not None and stop.upper is not None and not stop.lower < stop.upper:
+        required = f"greater than lower ({stop.lower!r} m)"
+        raise ValueError(refusal(f"{label}.upper", required, f"{stop.upper!r} m"))
+    if stop.stiffness == inf and stop.damping:
+        given = f"{stop.damping!r} N*s/m"
+        raise ValueError(refusal(f"{label}.damping", "0 of a rigid stop", given))
+    if stop.stiffness < inf and stop.restitution:
+        required = "0 of an elastic stop, which has a damping"
+        raise ValueError(refusal(f"{label}.restitution", required, repr(stop.restitution)))
 
 
 def _check_contact(contact: ContactPair) -> None:

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pindrive import _core, lazy
 from pindrive.bodies.inputs import integrated
-from pindrive.bodies.system import GROUND, Body, ContactPair, Spring, System
+from pindrive.bodies.system import GROUND, Body, ContactPair, Spring, Stop, System
 from pindrive.lazy import mpl_figure, xr
 from pindrive.quantities.names import Names
 from pindrive.quantities.quantity import counted
@@ -23,21 +23,23 @@ from pindrive.quantities.status import Side, Status
 from pindrive.quantities.table import default
 from pindrive.quantities.value import concise
 
-Kind = Literal["stick", "slip", "reverse"]
+Kind = Literal["stick", "slip", "reverse", "stop", "leave"]
 
 
 @concise
 @dataclass(frozen=True, slots=True)
 class SystemEvent:
-    """A change at a contact.
+    """A change at a contact or a stop.
 
     Attributes:
         time: s.
-        contact: Name of the contact.
+        contact: Name of the contact or the stop.
         kind: `stick`: sliding stopped and the contact holds; `slip`: it begins to slide; `reverse`:
-            the sliding velocity changes sign.
-        before: Direction of slip before: -1, 1, or 0 in stick.
-        after: Direction of slip after.
+            the sliding velocity changes sign. At a stop `stop`: the bodies meet it; `leave`: it
+            ceases to push.
+        before: Direction of slip before: -1, 1, or 0 in stick. Of a stop 0 where it pushes, -1 or 1
+            at its lower or upper end where it does not.
+        after: The same after; of an impact, after which the bodies part at once, as before.
     """
 
     time: float
@@ -50,7 +52,7 @@ class SystemEvent:
 @concise
 @dataclass(frozen=True, slots=True)
 class SystemLedger:
-    """Energy over a motion, J: `after` - `before` = `inputs` - `dampers` - `contacts`.
+    """Energy over a motion, J: `after` - `before` = `inputs` - `dampers` - `contacts` - `stops`.
 
     Attributes:
         before: Energy of motion and of springs at t = 0.
@@ -58,6 +60,7 @@ class SystemLedger:
         inputs: Work of forces, prescribed motions and moving surfaces.
         dampers: Loss in the dampers beside springs.
         contacts: Loss in contacts, with the energy that their skin holds at the end.
+        stops: Loss at impacts and in elastic stops, with the energy that these hold at the end.
     """
 
     before: float
@@ -65,11 +68,13 @@ class SystemLedger:
     inputs: float
     dampers: float
     contacts: float
+    stops: float
 
     @property
     def residual(self) -> float:
         """Difference of both sides, J: rounding alone."""
-        return self.after - self.before - self.inputs + self.dampers + self.contacts
+        lost = self.dampers + self.contacts + self.stops
+        return self.after - self.before - self.inputs + lost
 
 
 @concise
@@ -82,7 +87,8 @@ class SystemCertificate:
         kinematics: Velocities against the rates of positions and stretches, over the largest speed.
         friction: Friction in slip against kinetic friction, and in stick beyond static friction.
         sliding: Sliding against the direction of slip, and in stick, over the largest speed.
-        continuity: Jumps of positions and velocities at events.
+        stops: Bodies beyond a rigid stop, a stop that pulls, and impacts against Newton's law.
+        continuity: Jumps of positions, and of velocities without an impact.
         energy: Balance of the energy, over all that was exchanged.
     """
 
@@ -90,6 +96,7 @@ class SystemCertificate:
     kinematics: float
     friction: float
     sliding: float
+    stops: float
     continuity: float
     energy: float
 
@@ -98,7 +105,7 @@ class SystemCertificate:
         """The largest of all."""
         return max(
             *(self.motion, self.kinematics, self.friction),
-            *(self.sliding, self.continuity, self.energy),
+            *(self.sliding, self.stops, self.continuity, self.energy),
         )
 
 
@@ -159,6 +166,10 @@ class SystemMotion(lazy.NotebookHtml):
         """Return a spring under way; arguments and errors as for `contact`."""
         return SpringMotion(self, _between("spring", name, other, self.system.springs))
 
+    def stop(self, name: str | Body | Stop, other: str | Body | None = None) -> StopMotion:
+        """Return a stop under way; arguments and errors as for `contact`."""
+        return StopMotion(self, _between("stop", name, other, self.system.stops))
+
     @property
     def status(self) -> Status:
         """Complete, or the reason for its end (`Status.explanation`)."""
@@ -173,12 +184,22 @@ class SystemMotion(lazy.NotebookHtml):
     def events(self) -> tuple[SystemEvent, ...]:
         """Changes at contacts, in order."""
         names = [*self.system.contacts]
+        ends = [*self.system.stop_ends()]
         table = self.core.changes()
         rows = zip(*(table[column].tolist() for column in table), strict=True)
-        return tuple(
-            SystemEvent(time, names[int(contact)], _kind(before, after), int(before), int(after))
-            for time, contact, before, after in rows
-        )
+        found = []
+        for time, place, before, after in rows:
+            j = int(place) - len(names)
+            if j < 0:
+                kind = _kind(before, after)
+                found.append(SystemEvent(time, names[int(place)], kind, int(before), int(after)))
+                continue
+            name, _, _, side = ends[j]
+            kind = "stop" if after == 0 or before == after else "leave"
+            if before == 0 or after == 0 or before == after:
+                was, now = (0 if slip == 0 else side for slip in (before, after))
+                found.append(SystemEvent(time, name, kind, was, now))
+        return tuple(found)
 
     @cached_property
     def _certified(self) -> dict[str, dict[str, float]]:
@@ -216,7 +237,7 @@ class SystemMotion(lazy.NotebookHtml):
 
     def state_at(
         self, t: NDArray[np.float64], side: Side = "right"
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
         """Return all quantities at times.
 
         Args:
@@ -225,11 +246,17 @@ class SystemMotion(lazy.NotebookHtml):
 
         Returns:
             Position, velocity and acceleration of the bodies, shape (3, bodies, n); friction force,
-            stretch, sliding speed and slip of the contacts, shape (4, contacts, n).
+            stretch, sliding speed and slip of the contacts, shape (4, contacts, n); force of the
+            stops on the first bodies, shape (stops, n).
         """
-        moving, touching = self.core.at(np.ascontiguousarray(t), side == "right")
+        moving, touching, pushing = self.core.at(np.ascontiguousarray(t), side == "right")
         counts = len(self.system.bodies), len(self.system.contacts)
-        return moving.reshape(3, counts[0], len(t)), touching.reshape(4, counts[1], len(t))
+        names = [*self.system.stops]
+        force = np.zeros((len(names), len(t)))
+        ends = pushing.reshape(-1, len(t))
+        for (name, _, _, way), push in zip(self.system.stop_ends(), ends, strict=True):
+            force[names.index(name)] -= way * push
+        return moving.reshape(3, counts[0], len(t)), touching.reshape(4, counts[1], len(t)), force
 
     def sample_times(self, count: int = 1001) -> NDArray[np.float64]:
         """`count` even times over [0, duration] and the events among them, s, shape (n,)."""
@@ -245,7 +272,7 @@ class SystemMotion(lazy.NotebookHtml):
         `end_velocity` is the velocity at the end.
         """
         found: dict[str, float] = {}
-        moving, _ = self.state_at(np.array([self.core.end]), "left")
+        moving, *_ = self.state_at(np.array([self.core.end]), "left")
         for i, name in enumerate(self.system.bodies):
             least, largest = self.core.range(i)
             found |= {
@@ -254,9 +281,14 @@ class SystemMotion(lazy.NotebookHtml):
                 f"body.{name}.least": least,
                 f"body.{name}.largest": largest,
             }
-        for name in self.system.contacts:
-            own = [event for event in self.events if event.contact == name]
-            found[f"contact.{name}.events"] = float(len(own))
+        of_contact = len(self.system.contacts)
+        places = self.core.changes()["contact"]
+        for i, name in enumerate(self.system.contacts):
+            found[f"contact.{name}.events"] = float(np.count_nonzero(places == i))
+        ends = [name for name, *_ in self.system.stop_ends()]
+        for name in self.system.stops:
+            own = [of_contact + i for i, end in enumerate(ends) if end == name]
+            found[f"stop.{name}.events"] = float(np.count_nonzero(np.isin(places, own)))
         energy = self._certified["energy"]
         return found | {f"energy.{name}": value for name, value in energy.items()}
 
@@ -385,7 +417,9 @@ class ContactMotion(_Part):
     @property
     def events(self) -> tuple[SystemEvent, ...]:
         """Changes at this contact, in order."""
-        return tuple(event for event in self._motion.events if event.contact == self.name)
+        kinds = ("stick", "slip", "reverse")
+        every = (event for event in self._motion.events if event.contact == self.name)
+        return tuple(event for event in every if event.kind in kinds)
 
     @overload
     def force(self, t: float, side: Side = ...) -> float: ...
@@ -424,6 +458,30 @@ class ContactMotion(_Part):
         return self._at(True, 3, t, side)
 
 
+class StopMotion(_Part):
+    """One stop under way."""
+
+    __slots__ = ()
+
+    @property
+    def events(self) -> tuple[SystemEvent, ...]:
+        """Times at which the bodies meet the stop or leave it, in order."""
+        names = {*self._motion.system.contacts}
+        own = (event for event in self._motion.events if event.contact == self.name)
+        return (
+            tuple(own)
+            if self.name not in names
+            else tuple(event for event in own if event.kind in ("stop", "leave"))
+        )
+
+    def force(self, t: ArrayLike, side: Side = "right") -> float | NDArray[np.float64]:
+        """Force of the stop on the first body, N; arguments as for `BodyMotion.position`."""
+        times = self._motion.known(t, side)
+        place = [*self._motion.system.stops].index(self.name)
+        found = self._motion.state_at(times.ravel(), side)[2][place]
+        return float(found[0]) if times.ndim == 0 else found.reshape(times.shape)
+
+
 class SpringMotion(_Part):
     """One spring under way."""
 
@@ -433,7 +491,7 @@ class SpringMotion(_Part):
         """Elongation and its rate."""
         times = self._motion.known(t, side)
         flat = times.ravel()
-        system, (moving, _) = self._motion.system, self._motion.state_at(flat, side)
+        system, (moving, *_) = self._motion.system, self._motion.state_at(flat, side)
         spring = system.springs[self.name]
         names = [*system.bodies]
         one, other = (

@@ -28,6 +28,7 @@ _PLACES: Final = {
         *("", "", "kinetic", "static", "stiffness", "damping"),
         *("load", "velocity", "stretch"),
     ),
+    "stop": ("", "", "", "", "stiffness", "damping", "restitution"),
 }
 """Values of each part in the order in which the core has them."""
 
@@ -103,7 +104,7 @@ class SystemSensitivity:
         place = names.index(self._motion[body].name)
         rows = []
         for core, until in zip(self._cores, self._until, strict=True):
-            moving, _ = core.at(flat, side == "right")
+            moving, *_ = core.at(flat, side == "right")
             found = moving.reshape(3, len(names), len(flat))[quantity, place]
             rows.append(np.where(flat < until, found, nan))
         return np.array(rows).reshape(len(rows), *times.shape)
@@ -138,6 +139,8 @@ def direction_of(system: System, numbers: Any, key: str) -> Any:
         ValueError: The parameter is of an input that is a sum of two that change over time.
     """
     kind, name, part, *parameter = key.split(".")
+    if kind == "stop":
+        return _along_stop(system, numbers, name, part)
     table = ("body", "spring", "contact").index(kind)
     entries: dict[str, Any] = getattr(system, ("bodies", "springs", "contacts")[table])
     row = [*entries].index(name)
@@ -155,6 +158,17 @@ def direction_of(system: System, numbers: Any, key: str) -> Any:
             along = replaced(along, place, _along_function(given, part, parameter[0], key))
         else:
             along = replaced(along, place, _along_constant(at))
+    return along
+
+
+def _along_stop(system: System, numbers: Any, name: str, part: str) -> Any:
+    """Return the derivative by a value of a stop, which each of its ends has."""
+    along = mapped(lambda x: x if isinstance(x, int) else 0.0, numbers)
+    for row, (of, _, _, side) in enumerate(system.stop_ends()):
+        end = {"lower": -1, "upper": 1}.get(part)
+        if of == name and end in (None, side):
+            column = 2 if end else _PLACES["stop"].index(part)
+            along = replaced(along, (3, row, column), 1.0)
     return along
 
 

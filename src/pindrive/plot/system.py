@@ -63,7 +63,7 @@ def plot_system(motion: SystemMotion) -> Figure:
 def _sampled(motion: SystemMotion) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Even times and both sides of each event, and the bodies at them."""
     t = motion.sample_times(_SAMPLES)
-    moving, _ = motion.state_at(t)
+    moving, *_ = motion.state_at(t)
     return t, moving
 
 
@@ -89,7 +89,7 @@ def _draw_bodies(
 
 def _draw_contacts(motion: SystemMotion, contacts: list[str], axes: Axes) -> None:
     """Draw a row for each contact, coloured by its slip."""
-    _, touching = motion.state_at(np.zeros(1))
+    _, touching, _ = motion.state_at(np.zeros(1))
     end, first = motion.core.end, dict(zip(motion.system.contacts, touching[3, :, 0], strict=True))
     for row, name in enumerate(contacts):
         events = motion.contact(name).events

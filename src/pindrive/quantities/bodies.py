@@ -14,6 +14,7 @@ from pindrive.quantities.quantity import (
     POSITIVE,
     POSITIVE_OR_RIGID,
     Quantity,
+    between,
 )
 
 
@@ -64,7 +65,30 @@ CONTACT: Final = (
     _input(_free("velocity", "w", "m/s", "velocity of the surface, as of a belt")),
     _free("stretch", "s", "m", "stretch of the skin at t = 0"),
 )
-KINDS: Final = {"body": BODY, "spring": SPRING, "contact": CONTACT}
+STOP: Final = (
+    replace(_free("lower", "l_1", "m", "least distance between the bodies"), absent=None),
+    replace(_free("upper", "l_2", "m", "largest distance between the bodies"), absent=None),
+    Quantity(
+        "stiffness",
+        "k_e",
+        "N/m",
+        "stiffness of an elastic stop; infinite: a rigid one",
+        absent=inf,
+        example=1e5,
+        bounds=POSITIVE_OR_RIGID,
+        limits=OR_INFINITE,
+    ),
+    _positive("damping", "b_e", "N*s/m", "damping coefficient of an elastic stop"),
+    Quantity(
+        "restitution",
+        "e",
+        "1",
+        "speed after an impact on a rigid stop over that before",
+        absent=0.0,
+        bounds=between(0.0, 1.0),
+    ),
+)
+KINDS: Final = {"body": BODY, "spring": SPRING, "contact": CONTACT, "stop": STOP}
 """Quantities of each part of a system."""
 PARTS: Final = {kind: Part(rows) for kind, rows in KINDS.items()}
 
@@ -79,6 +103,7 @@ OF_CONTACT: Final = (
     Quantity("sliding_speed", "u", "m/s", "velocity of the first body over the surface, in slip"),
     Quantity("slip", "σ", "", "direction of slip: -1, 1, or 0 in stick"),
 )
+OF_STOP: Final = (Quantity("force", "N_e", "N", "force of the stop on the first body"),)
 OF_SPRING: Final = (
     Quantity("force", "F", "N", "force of spring and damper on the first body"),
     Quantity("elongation", "e", "m", "elongation of the spring"),
