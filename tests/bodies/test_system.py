@@ -285,7 +285,7 @@ def test_a_figure_shows_bodies_and_contacts() -> None:
 
 
 def test_a_ball_bounces_and_comes_to_rest() -> None:
-    """Each flight is shorter by the restitution; all of them together end at a known time."""
+    """Each flight is shorter by the restitution; their sum is known."""
     fall = (2.0 / 9.81) ** 0.5
     system = pd.System()
     ball = system.body("ball", "10 g", position="1 m")

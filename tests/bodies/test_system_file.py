@@ -12,7 +12,7 @@ from command import run
 from pindrive.files import ConfigError
 
 ROOT = Path(__file__).resolve().parents[2]
-EXAMPLE = ROOT / "examples" / "two-pins.toml"
+EXAMPLE = ROOT / "examples" / "two-pins-system.toml"
 SMALL = """
 [system]
 duration = "1 s"
@@ -100,6 +100,11 @@ def test_a_mistake_is_said_with_its_place(
         pd.load_system(path)
     assert any(words in problem for problem in error.value.problems), error.value.problems
     assert all(problem.startswith(str(path)) for problem in error.value.problems)
+
+
+def test_a_system_file_is_no_device_file() -> None:
+    with pytest.raises(ConfigError, match=r"is a system file, as it has \[body\]"):
+        pd.load_device(EXAMPLE)
 
 
 def test_a_function_in_a_file_is_that_of_python(tmp_path: Path) -> None:

@@ -188,7 +188,7 @@ def test_a_study_keeps_the_numbers_of_the_hand() -> None:
 
 @pytest.mark.parametrize("stop", [{}, {"drive.stop_stiffness": 2e4, "drive.stop_damping": 1.0}])
 def test_pins_strike_the_ends_of_their_travel(stop: dict[str, float]) -> None:
-    """The hand feels the impacts; the pins of the scan are those that slowed the hand."""
+    """The hand feels the impacts, and the pins of the scan agree with them."""
     device, scene, path = lines_under(4, 8e-3, 0.0, **{"drive.travel": 0.5e-3, **stop})
     scan = pd.scan(device, scene, path)
     struck = [event for pin in scan.pins for event in pin.events if event.contact == "stop"]

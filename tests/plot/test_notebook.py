@@ -57,7 +57,7 @@ ROOT = Path(__file__).parents[2]
 MADE = re.compile(r"^class (\w+)\(lazy\.NotebookHtml", re.M)
 SPEEDS = np.linspace(0.0, 0.2, 30)
 READER = EXAMPLE.parent / "tactile-reader.toml"
-SYSTEM = EXAMPLE.parent / "two-pins.toml"
+SYSTEM = EXAMPLE.parent / "two-pins-system.toml"
 RESULTS = (
     *("motion", "sensitivity", "scan", "evaluation", "robustness", "local sensitivity", "sobol"),
     *("fit", "friction curve", "sweep", "page speeds", "bifurcation", "system motion"),

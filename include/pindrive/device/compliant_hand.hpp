@@ -22,7 +22,7 @@ namespace pindrive::device {
 /// Hand and mouse without their pins, and the arm that leads them.
 struct Hand {
   double mass;                         ///< kg; > 0
-  double stiffness, damping;           ///< of the arm about the intended path, N/m and N s/m; >= 0
+  double stiffness, damping;           ///< arm about the intended path, N/m and N s/m; >= 0
   double kinetic{0}, static_limit{0};  ///< friction of the mouse on the page, N
 };
 
@@ -30,7 +30,7 @@ struct Hand {
 struct HandRows {
   std::vector<double> times;     ///< s
   std::vector<double> velocity;  ///< m/s
-  std::vector<Bend> bends;       ///< of each stretch
+  std::vector<Bend> bends;       ///< bend of each stretch
 };
 
 /// Hand and pins as bodies on the drive axis, from the begin of the intended path to its end. The control block of each
@@ -87,7 +87,7 @@ class CompliantHand {
     Coil<double> coil;
     bool decision;
     std::vector<double> due;  ///< times of the switchings to come, s
-    OwnedPiece<double> load;  ///< of the plate
+    OwnedPiece<double> load;  ///< load of the plate
   };
 
   // ---- hand and pins as bodies ------------------------------------------------------------------
@@ -321,7 +321,7 @@ class CompliantHand {
   std::size_t pins_;
   double fastest_{0};                               ///< largest intended speed, m/s
   std::vector<InputPiece<double>> intended_, led_;  ///< place and force of the arm
-  std::vector<Pin> held_;  ///< of constant size: the system refers to their loads
+  std::vector<Pin> held_;  ///< never resized: the system refers to their loads
   bodies::System<double> system_;
   double sampled_{-infinity};
   std::vector<double> ambiguous_;

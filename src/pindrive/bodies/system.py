@@ -296,7 +296,7 @@ class System:
             upper: Largest, m, greater than `lower`; None: no stop there.
             stiffness: N/m; infinite: rigid stops.
             damping: Damping coefficient of elastic stops, N*s/m.
-            restitution: Of rigid stops, from 0 (the bodies stay together) to 1.
+            restitution: Restitution of rigid stops, from 0 (the bodies stay together) to 1.
             name: Name; "pin-hand" unless given, and "pin-hand 2" for a second one.
 
         Raises:

@@ -39,7 +39,8 @@ class SystemEvent:
             ceases to push.
         before: Direction of slip before: -1, 1, or 0 in stick. Of a stop 0 where it pushes, -1 or 1
             at its lower or upper end where it does not.
-        after: The same after; of an impact, after which the bodies part at once, as before.
+        after: Direction of slip after, likewise; at an impact, after which the bodies part at once,
+            that before.
     """
 
     time: float

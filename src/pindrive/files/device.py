@@ -495,6 +495,9 @@ def read_tables(file: Path, template: str = "`pindrive init FILE` writes a devic
 
 
 def _refuse_study(file: Path, given: Mapping[str, Any]) -> None:
+    if "body" in given:
+        said = "is a system file, as it has [body]; `pindrive simulate` and `load_system` take it"
+        raise ConfigError([f"{file}: {said}"])
     found = [key for key in STUDY_KEYS if key in given]
     if found:
         shown = [f"[{key}]" if isinstance(given[key], dict) else key for key in found[:2]]
