@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
-from . import belt, decay, end_stop, forced, friction_curve, shaken
+from . import belt, bodies, decay, end_stop, forced, friction_curve, shaken
 from .case import Case
 
 CASES: Final[tuple[Callable[[], Case], ...]] = (
@@ -16,5 +16,8 @@ CASES: Final[tuple[Callable[[], Case], ...]] = (
     forced.den_hartog_lag,
     belt.stick_slip,
     end_stop.aster,
+    bodies.rubbed,
+    bodies.struck,
+    bodies.clutches,
 )
 """Each computes its case when it is called, once."""

@@ -149,6 +149,8 @@ def published_points() -> dict[str, tuple[str, list[float]]]:
     amplitude = ((belt["velocity"] / w) ** 2 + (gap / belt["stiffness"]) ** 2) ** 0.5
     middle = belt["kinetic"] / belt["stiffness"]
     decays = load("aster-sdnd100")["published"]
+    rubbed, struck = (load(f"aster-sdnd{n}")["published"] for n in (106, 102))
+    speeds = load("msl-coupled-clutches")["published"]["speeds"]
     return {
         "aster-sdnd100": (
             "published, sdnd100a",
@@ -158,12 +160,15 @@ def published_points() -> dict[str, tuple[str, list[float]]]:
             "closed form, largest force",
             [1e-3 * float(stop["derived"]["largest_force"])],
         ),
+        "aster-sdnd102": ("published", [1e3 * float(x) for _, x in struck]),
         "aster-sdnd104": ("published", [float(text) for text in power[:-1]]),
+        "aster-sdnd106": ("published", [float(x) for b in rubbed.values() for _, x in b]),
         "den-hartog": ("pindrive", [number.computed for number in forced.den_hartog().numbers]),
         "den-hartog-lag": (
             "pindrive",
             [degrees(number.computed) for number in forced.den_hartog_lag().numbers],
         ),
+        "msl-coupled-clutches": ("published, J1", [float(row[1]) for row in speeds]),
         "msl-friction-stop2": ("its turning points", [s for _, s in curve]),
         "stick-slip": ("published amplitude", [1e3 * (middle + amplitude)] * 2),
     }

@@ -381,7 +381,7 @@ class Following {
     for (std::size_t s = 0; s < system_->stops.size(); ++s) {
       const int j = static_cast<int>(system_->contacts.size() + s);
       const bool met = std::find(active.begin(), active.end(), j) != active.end() || touches(s);
-      if (!system_->stops[s].rigid() || !(met || mode_[j] == Slip::stick)) continue;
+      if (!system_->stops[s].rigid() || (!met && mode_[j] != Slip::stick)) continue;
       if (met) place_at(s);
       touching.push_back(j);
     }
