@@ -80,11 +80,11 @@ class SystemSensitivity:
         return Status.incomplete if self.gaps else Status.ok
 
     def position(self, body: str | Body, t: ArrayLike, side: Side = "right") -> NDArray[np.float64]:
-        """Derivative of a position at fixed times t (s), shape (parameters, *t.shape)."""
+        """Derivative of a position at fixed times t (s), shape ``(parameters, *t.shape)``."""
         return self._of(0, body, t, side)
 
     def velocity(self, body: str | Body, t: ArrayLike, side: Side = "right") -> NDArray[np.float64]:
-        """Derivative of a velocity at fixed times t (s), shape (parameters, *t.shape)."""
+        """Derivative of a velocity at fixed times t (s), shape ``(parameters, *t.shape)``."""
         return self._of(1, body, t, side)
 
     @property
