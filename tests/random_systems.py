@@ -44,6 +44,7 @@ def random_system(seed: int) -> pd.System:
         static = kinetic if one_of(2) else 1.5 * kinetic
         skin = one_of(2)
         load = pd.harmonic(2.0, 1.0, near(5.0)) if one_of(4) else 1.0
+        presses = [c for c in system.contacts.values() if c.pressed_by is None]
         system.contact(
             f"body {i}",
             other,
@@ -53,5 +54,17 @@ def random_system(seed: int) -> pd.System:
             damping=near(0.3) if skin else 0.0,
             load=load,
             velocity=pd.harmonic(0.0, near(0.03), near(4.0)) if one_of(4) else 0.0,
+            pressed_by=presses[0] if presses and i % 3 == 2 else None,
+        )
+    if one_of(2):
+        body, measured = (f"body {random.integers(count)}" for _ in range(2))
+        system.feedback(
+            body,
+            measured=measured,
+            proportional=near(20.0),
+            derivative=near(0.1),
+            integral=near(100.0) if one_of(2) else 0.0,
+            reference=pd.harmonic(0.0, near(2e-3), near(3.0)) if one_of(2) else near(2e-3),
+            period=near(0.01) if one_of(2) else 0.0,
         )
     return system

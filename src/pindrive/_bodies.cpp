@@ -37,20 +37,25 @@ using pd::number, pd::plain, pd::result;
 using BodyNumbers = std::tuple<double, Input, double, double>;
 /// First and second body (−1: ground), stiffness, damping, length.
 using LinkNumbers = std::tuple<int, int, double, double, Input>;
-/// First and second body, kinetic and static friction, stiffness, damping, load, velocity, stretch.
-using ContactNumbers = std::tuple<int, int, double, double, double, double, Input, Input, double>;
+/// First and second body, kinetic and static friction, stiffness, damping, load, velocity, stretch, mode that presses
+/// it, share.
+using ContactNumbers =
+    std::tuple<int, int, double, double, double, double, Input, Input, double, int, double>;
 /// First and second body, position, side, stiffness, damping, restitution.
 using StopNumbers = std::tuple<int, int, double, int, double, double, double>;
-using SystemNumbers = std::tuple<std::vector<BodyNumbers>, std::vector<LinkNumbers>,
-                                 std::vector<ContactNumbers>, std::vector<StopNumbers>>;
+/// Bodies of the force, bodies whose distance is measured, gains of position, velocity and integral, reference, period.
+using FeedbackNumbers = std::tuple<int, int, int, int, double, double, double, Input, double>;
+using SystemNumbers =
+    std::tuple<std::vector<BodyNumbers>, std::vector<LinkNumbers>, std::vector<ContactNumbers>,
+               std::vector<StopNumbers>, std::vector<FeedbackNumbers>>;
 
 /// A system with its initial state, and the arrays to which its inputs refer.
 template <class T>
 class OwnedSystem {
  public:
   OwnedSystem(SystemNumbers at, SystemNumbers along) {
-    auto& [bodies, links, contacts, stops] = at;
-    auto& [bodies_along, links_along, contacts_along, stops_along] = along;
+    auto& [bodies, links, contacts, stops, feedbacks] = at;
+    auto& [bodies_along, links_along, contacts_along, stops_along, feedbacks_along] = along;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       auto& [mass, force, position, velocity] = bodies[i];
       auto& [mass_rate, force_rate, position_rate, velocity_rate] = bodies_along[i];
@@ -65,13 +70,14 @@ class OwnedSystem {
                                number<T>(damping, damping_rate), own(length, length_rate)});
     }
     for (std::size_t i = 0; i < contacts.size(); ++i) {
-      auto& [one, other, kinetic, fixed, stiffness, damping, load, velocity, stretch] = contacts[i];
+      auto& [one, other, kinetic, fixed, stiffness, damping, load, velocity, stretch, by, share] =
+          contacts[i];
       auto& [one_, other_, kinetic_rate, fixed_rate, stiffness_rate, damping_rate, load_rate,
-             velocity_rate, stretch_rate] = contacts_along[i];
+             velocity_rate, stretch_rate, by_, share_rate] = contacts_along[i];
       system_.contacts.push_back(
           {one, other, number<T>(kinetic, kinetic_rate), number<T>(fixed, fixed_rate),
            number<T>(stiffness, stiffness_rate), number<T>(damping, damping_rate),
-           own(load, load_rate), own(velocity, velocity_rate)});
+           own(load, load_rate), own(velocity, velocity_rate), by, number<T>(share, share_rate)});
       state_.stretch.push_back(number<T>(stretch, stretch_rate));
     }
     for (std::size_t i = 0; i < stops.size(); ++i) {
@@ -82,6 +88,16 @@ class OwnedSystem {
                                number<T>(stiffness, stiffness_rate),
                                number<T>(damping, damping_rate),
                                number<T>(restitution, restitution_rate)});
+    }
+    for (std::size_t i = 0; i < feedbacks.size(); ++i) {
+      auto& [one, other, measured, against, position, velocity, sum, reference, period] =
+          feedbacks[i];
+      auto& [one_, other_, measured_, against_, position_rate, velocity_rate, sum_rate,
+             reference_rate, period_] = feedbacks_along[i];
+      system_.feedbacks.push_back({one, other, measured, against,
+                                   number<T>(position, position_rate),
+                                   number<T>(velocity, velocity_rate), number<T>(sum, sum_rate),
+                                   own(reference, reference_rate), period});
     }
   }
 
@@ -114,18 +130,16 @@ struct Followed {
   std::vector<bodies::Change<T>> changes;
   pd::Status status;
   bool rests;
-  std::size_t body_count, contact_count, stop_count;
+  std::size_t body_count, contact_count, stop_count, feedback_count;
 };
 
 template <class T>
 std::unique_ptr<Followed<T>> follow(SystemNumbers at, SystemNumbers along, double duration) {
   const OwnedSystem<T> owned(std::move(at), std::move(along));
   return interruptible([&](auto go_on) {
-    const std::size_t count = owned.system().bodies.size(),
-                      contacts = owned.system().contacts.size(),
-                      stops = owned.system().stops.size();
-    bodies::StoredMotion<T> motion(count, contacts, stops);
-    bodies::Following<T> following(owned.system(), owned.state());
+    const bodies::System<T>& system = owned.system();
+    bodies::StoredMotion<T> motion(system);
+    bodies::Following<T> following(system, owned.state());
     const auto keep = [&](const bodies::Step<T>& step) {
       motion.add(step);
       return go_on();
@@ -141,8 +155,9 @@ std::unique_ptr<Followed<T>> follow(SystemNumbers at, SystemNumbers along, doubl
       following.advance(T(rest > 0 ? rest * seen_at_rest : 1), keep);
     }
     return std::make_unique<Followed<T>>(Followed<T>{std::move(motion), following.changes(),
-                                                     following.status(), following.resting(), count,
-                                                     contacts, stops});
+                                                     following.status(), following.resting(),
+                                                     system.bodies.size(), system.contacts.size(),
+                                                     system.stops.size(), system.feedbacks.size()});
   });
 }
 
@@ -150,9 +165,10 @@ std::unique_ptr<Followed<T>> follow(SystemNumbers at, SystemNumbers along, doubl
 template <class T>
 nb::tuple at(const Followed<T>& followed, const Column& times, bool right) {
   const std::size_t count = times.size(), size = followed.body_count,
-                    contacts = followed.contact_count, stops = followed.stop_count;
+                    contacts = followed.contact_count, stops = followed.stop_count,
+                    feedbacks = followed.feedback_count;
   std::vector<double> moving(3 * size * count), touching(4 * contacts * count),
-      pushing(stops * count);
+      pushing((stops + feedbacks) * count);
   interruptible([&](auto go_on) {
     bodies::Quantities<T> found;
     for (std::size_t k = 0; k < count && go_on(); ++k) {
@@ -169,6 +185,8 @@ nb::tuple at(const Followed<T>& followed, const Column& times, bool right) {
         touching[(3 * contacts + j) * count + k] = static_cast<double>(found.slip[j]);
       }
       for (std::size_t s = 0; s < stops; ++s) pushing[s * count + k] = result(found.push[s]);
+      for (std::size_t f = 0; f < feedbacks; ++f)
+        pushing[(stops + f) * count + k] = result(found.control[f]);
     }
     return true;
   });
@@ -246,7 +264,7 @@ nb::class_<Followed<T>> bind(nb::module_& m, const char* name, const char* meani
       .def("at", &at<T>, "times"_a, "right"_a,
            "Position, velocity and acceleration of each body, and friction, stretch, sliding speed "
            "and slip of each "
-           "contact, and the force of each stop, over all times.")
+           "contact, and the force of each stop and of each feedback, over all times.")
       .def("changes", &changes<T>, "Columns, one row an event.");
 }
 
@@ -274,8 +292,9 @@ void bind_bodies(nb::module_& m) {
       "body, second or -1, "
       "stiffness, damping, length); contacts (first body, second or -1, kinetic, static, "
       "stiffness, damping, load, "
-      "velocity, stretch); stops (first body, second or -1, position, side, stiffness, damping, "
-      "restitution).");
+      "velocity, stretch, place of what presses it or -1, share); stops (first body, second or -1, "
+      "position, side, stiffness, damping, restitution); feedbacks (both bodies of the force, both "
+      "bodies that are measured, gains of position, velocity and integral, reference, period).");
   m.def(
       "differentiate_system",
       [](SystemNumbers numbers, SystemNumbers along, double duration) {

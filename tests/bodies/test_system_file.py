@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -131,3 +132,54 @@ def test_the_command_simulates_a_system(tmp_path: Path) -> None:
     found = run("simulate", str(path), "--set", "a.velocity=fast")
     assert found.exit_code == 2
     assert "a.velocity" in found.output
+
+
+def test_a_file_may_have_feedback_and_contacts_that_others_press(tmp_path: Path) -> None:
+    text = """
+[body.a]
+mass = "1 kg"
+[body.b]
+mass = "1 kg"
+[contact.skin]
+between = ["a", "b"]
+kinetic = "1 N"
+load = 2
+[contact.plate]
+between = "a"
+kinetic = "1 N"
+pressed_by = "end"
+share = 0.5
+[stop.end]
+between = "a"
+upper = "5 mm"
+stiffness = "100 N/m"
+[feedback.drive]
+between = "a"
+measured = ["b", "a"]
+proportional = "20 N/m"
+integral = "3 N/(m*s)"
+reference = { distance = "10 mm", duration = "0.5 s" }
+period = "10 ms"
+"""
+    system = pd.load_system(written(tmp_path, text)).system
+    expected = pd.System()
+    for body in ("a", "b"):
+        expected.body(body, 1.0)
+    end = expected.stop("a", upper=5e-3, stiffness=100, name="end")
+    expected.contact("a", "b", kinetic=1, load=2, name="skin")
+    expected.contact("a", kinetic=1, pressed_by=end, share=0.5, name="plate")
+    stroke = pd.minimum_jerk("10 mm", "0.5 s")
+    gains: dict[str, Any] = {"proportional": 20, "integral": 3}
+    expected.feedback(
+        "a", measured=("b", "a"), reference=stroke, period=0.01, name="drive", **gains
+    )
+    assert system == expected
+    assert system.with_values({"drive.period": "20 ms"}).feedbacks["drive"].period == 0.02
+    for wrong, words in (
+        ('pressed_by = "end"', "pressed_by"),
+        ('measured = ["b", "a"]', "measured"),
+    ):
+        key = wrong.split(" ")[0]
+        path = written(tmp_path, text.replace(wrong, f'{key} = "nothing"'))
+        with pytest.raises(ConfigError, match=words):
+            pd.load_system(path)

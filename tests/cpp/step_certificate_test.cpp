@@ -17,6 +17,8 @@ using check::expect;
 
 namespace {
 
+constexpr double duration = 0.1;
+
 /// One to six bodies with links, contacts and stops between them, under constant inputs, rows and sinusoids.
 class RandomSystem {
  public:
@@ -58,6 +60,30 @@ class RandomSystem {
       if (!stop.rigid() && below(2)) stop.damping = near(1);
       if (stop.rigid() && below(2)) stop.restitution = below(2) ? 0.5 : 0.8;
       system.stops.push_back(stop);
+    }
+    for (int i = below(2) * (1 + below(2)); i > 0; --i) {
+      bodies::Feedback<double> feedback{};
+      join(feedback);
+      feedback.measured = below(bodies_count);
+      feedback.proportional = sign() * near(20);
+      feedback.derivative = near(0.1);
+      if (below(2)) feedback.integral = near(100);
+      if (below(2)) feedback.reference = input(near(1e-3), false);
+      if (below(2)) feedback.period = near(0.01);
+      if (!feedback.sampled() && feedback.reference.next_breakpoint(0) < duration)
+        feedback.derivative = 0;
+      system.feedbacks.push_back(feedback);
+    }
+    for (std::size_t j = 1; j < system.contacts.size(); ++j) {
+      bodies::Contact<double>& contact = system.contacts[j];
+      if (below(4) != 0 || system.contacts[0].pressed_by >= 0) continue;
+      if (contact.rigid() || contact.damping > 0) {
+        contact.pressed_by = 0;
+        contact.share = near(0.5);
+        for (std::size_t s = 0; s < system.stops.size(); ++s)
+          if (!system.stops[s].rigid())
+            contact.pressed_by = static_cast<int>(system.contacts.size() + s);
+      }
     }
   }
   RandomSystem(const RandomSystem&) = delete;
@@ -102,8 +128,6 @@ class RandomSystem {
   std::deque<pd::InputPiece<double>> pieces_;
 };
 
-constexpr double duration = 0.1;
-
 void random_systems() {
   const int count = cases(400);
   double worst = 0;
@@ -135,6 +159,13 @@ double violation(const std::function<void(bodies::System<double>&)>& change) {
   system.links = {{0, 1, 150, 0.2}};
   system.contacts = {{0, bodies::ground, 0.02, 0.03}, {1, bodies::ground, 0.01, 0.01, 400, 0.3}};
   system.contacts[0].velocity = 0.05;
+  system.contacts[1].pressed_by = 2;
+  system.contacts[1].share = 2;
+  system.stops = {{1, bodies::ground, 1e-3, 1, 1000}};
+  system.feedbacks = {{1, 0, 1, 0, 20, 0.1, 300, 1e-3}, {0, bodies::ground, 1}};
+  system.feedbacks[1].proportional = 10;
+  system.feedbacks[1].integral = 100;
+  system.feedbacks[1].period = 0.01;
   bodies::System<double> other = system;
   change(other);
   bodies::Following<double> following(system, {0, {0, 2e-3}, {0.05, 0}, {0, 0}});
@@ -158,7 +189,14 @@ void wrong_motions() {
       [](System& s) { s.contacts[0].velocity = 0.0501; },
       [](System& s) { s.contacts[1].load = 1.0001; },
       [](System& s) { s.contacts[1].stiffness *= 1.0001; },
-      [](System& s) { s.contacts[1].damping *= 1.001; }};
+      [](System& s) { s.contacts[1].damping *= 1.001; },
+      [](System& s) { s.contacts[1].share *= 1.001; },
+      [](System& s) { s.feedbacks[0].proportional *= 1.0001; },
+      [](System& s) { s.feedbacks[0].derivative *= 1.001; },
+      [](System& s) { s.feedbacks[0].integral *= 1.001; },
+      [](System& s) { s.feedbacks[0].reference = 1.001e-3; },
+      [](System& s) { s.feedbacks[1].integral *= 1.01; },
+      [](System& s) { s.feedbacks[1].period = 0.02; }};
   for (const auto& change : changes) expect(violation(change) > 1e-6, "and that of no other");
 }
 

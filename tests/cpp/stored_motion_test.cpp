@@ -15,7 +15,7 @@ int main() {
   system.links.push_back({1, bodies::ground, 4.0});
   system.contacts = {{0, bodies::ground, 4.0, 5.0}};
   bodies::Following<double> following(system, {0, {0, 0.5}, {3, 0}, {0}});
-  bodies::StoredMotion<double> motion(2, 1);
+  bodies::StoredMotion<double> motion(system);
   following.advance(4.0, [&](const bodies::Step<double>& step) { motion.add(step); });
   expect(following.status() == pindrive::Status::ok && motion.steps() > 3, "a motion is kept");
   expect(motion.end() == 4.0, "to its end");

@@ -32,11 +32,17 @@ class Bodies:
         self.skins = [j for j, c in enumerate(self.contacts) if np.isfinite(c.stiffness)]
         self.forces = [body.force for body in system.bodies.values()]
         self.springs = [*system.springs.values()]
+        self.feedbacks = [*system.feedbacks.values()]
+        self.acts = [self._way(names, f.between) for f in self.feedbacks]
+        self.seen = [self._way(names, f.measured) for f in self.feedbacks]
+        self.held = np.zeros(len(self.feedbacks))
+        self.sums = np.zeros(len(self.feedbacks))
         self.start = np.array(
             [
                 *(body.position for body in system.bodies.values()),
                 *(body.velocity for body in system.bodies.values()),
                 *(self.contacts[j].stretch for j in self.skins),
+                *(0.0 for _ in self.feedbacks),
             ]
         )
         self.ways = [self._way(names, c.between) for c in self.contacts]
@@ -62,17 +68,28 @@ class Bodies:
     def _forces(self, t: float, y: Array, mode: Mode) -> tuple[Array, Array, Array, Array]:
         n = len(self.mass)
         x, v = y[:n], y[n : 2 * n]
-        stretch = dict(zip(self.skins, y[2 * n :], strict=True))
+        stretch = dict(zip(self.skins, y[2 * n :], strict=False))
         total = np.array([_at(force, t) for force in self.forces])
         for spring, way in zip(self.springs, self.pulls, strict=True):
             longer = way @ x - _at(spring.length, t)
             faster = way @ v - _rate(spring.length, t)
             total -= way * (spring.stiffness * longer + spring.damping * faster)
+        for i, (feedback, way) in enumerate(zip(self.feedbacks, self.acts, strict=True)):
+            if feedback.period:
+                total += way * self.held[i]
+                continue
+            error, rate = self.error(i, t, y)
+            summed = y[2 * n + len(self.skins) + i]
+            total += way * (
+                feedback.proportional * error
+                + feedback.derivative * rate
+                + feedback.integral * summed
+            )
         friction, rates, sliding = (np.zeros(len(self.contacts)) for _ in range(3))
         stuck = []
         for j, (contact, way) in enumerate(zip(self.contacts, self.ways, strict=True)):
             speed = way @ v - _at(contact.velocity, t)
-            kinetic = mode[j] * contact.kinetic * _at(contact.load, t)
+            kinetic = mode[j] * contact.kinetic * self.load(j, t)
             sliding[j] = speed
             if j in stretch and mode[j] == 0:
                 rates[j], sliding[j] = speed, 0.0
@@ -95,11 +112,37 @@ class Bodies:
             total = total + ways.T @ held
         return total / self.mass, friction, rates, sliding
 
+    def load(self, j: int, t: float) -> float:
+        """Load of contact j, with that of the contact that presses it."""
+        contact = self.contacts[j]
+        load = _at(contact.load, t)
+        if contact.pressed_by:
+            name = contact.pressed_by.removeprefix("contact.")
+            by = next(c for c in self.contacts if c.name == name)
+            load += (contact.share or 0.0) * _at(by.load, t)
+        return load
+
+    def error(self, i: int, t: float, y: Array) -> tuple[float, float]:
+        """Error of feedback i, and its rate."""
+        n, reference = len(self.mass), self.feedbacks[i].reference
+        error = _at(reference, t) - self.seen[i] @ y[:n]
+        return float(error), float(_rate(reference, t) - self.seen[i] @ y[n : 2 * n])
+
+    def sample(self, i: int, t: float, y: Array) -> None:
+        """Take a sample of feedback i."""
+        feedback = self.feedbacks[i]
+        error, rate = self.error(i, t, y)
+        self.sums[i] += feedback.period * error
+        self.held[i] = feedback.proportional * error + feedback.derivative * rate
+        self.held[i] += feedback.integral * self.sums[i]
+        self._last = (None, None)
+
     def derivative(self, t: float, y: Array, mode: Mode) -> Array:
         """Rate of the state in a mode."""
         n = len(self.mass)
         acceleration, _, rates, _ = self.forces_of(t, y, mode)
-        return np.concatenate([y[n : 2 * n], acceleration, rates[self.skins]])
+        errors = [self.error(i, t, y)[0] for i in range(len(self.feedbacks))]
+        return np.concatenate([y[n : 2 * n], acceleration, rates[self.skins], errors])
 
     def guard(self, j: int, t: float, y: Array, mode: Mode) -> float:
         """Positive while contact j may keep its mode."""
@@ -107,7 +150,7 @@ class Bodies:
         if mode[j]:
             return float(mode[j] * sliding[j])
         contact = self.contacts[j]
-        return float(contact.static * _at(contact.load, t) - abs(friction[j]))
+        return float(contact.static * self.load(j, t) - abs(friction[j]))
 
     def slide_rate(self, j: int, t: float, y: Array, mode: Mode) -> float:
         """Rate of the sliding speed of contact j that slips."""
@@ -148,8 +191,16 @@ def follow(system: System, duration: float, breaks: list[float]) -> tuple[Array,
     t, y, changes = 0.0, bodies.start.copy(), 0
     speeds = np.abs(y[n : 2 * n]).max(initial=0.0) + 1e-3
     forces = max((c.static for c in bodies.contacts), default=1.0)
+    samples = {(0.0, i) for i, f in enumerate(bodies.feedbacks) if f.period}
+    for i, feedback in enumerate(bodies.feedbacks):
+        if feedback.period:
+            samples |= {
+                (k * feedback.period, i) for k in range(int(duration / feedback.period) + 1)
+            }
+            bodies.sample(i, 0.0, y)
     mode = _next(bodies, t, y, None, 1e-9 * speeds, 1e-9 * forces)
-    stops = [*sorted(b for b in breaks if 0.0 < b < duration), duration]
+    breaks = [*breaks, *(time for time, _ in samples)]
+    stops = [*sorted({b for b in breaks if 0.0 < b < duration}), duration]
     while t < duration:
         until = next(stop for stop in stops if stop > t)
         solved = solve_ivp(
@@ -168,6 +219,9 @@ def follow(system: System, duration: float, breaks: list[float]) -> tuple[Array,
         speeds = max(speeds, np.abs(y[n : 2 * n]).max())
         if not met:
             t = until
+        for time, i in samples:
+            if time == t > 0.0:
+                bodies.sample(i, t, y)
         active = {j for j in range(count) if len(solved.t_events[j])}
         old = mode
         mode = _next(bodies, t, y, (mode, active), 1e-8 * speeds, 1e-8 * forces)

@@ -36,7 +36,9 @@ class Expansion {
         friction_(system.contacts.size()),
         depth_(system.stops.size()),
         approach_(system.stops.size()),
-        push_(system.stops.size()) {}
+        push_(system.stops.size()),
+        control_(system.feedbacks.size()),
+        integral_(system.feedbacks.size()) {}
 
   /// Takes a mode, from a time on, s. Of contacts whose surfaces move apart `late` ones hold no body that another holds.
   void set(const Mode& mode, const T& time, const std::vector<int>& late = {}) {
@@ -84,8 +86,9 @@ class Expansion {
       const T next = T(step) / T(n + 1);
       for (std::size_t i = 0; i < position_.size(); ++i) order_.force[i] = given(pushes_[i], n);
       for (std::size_t l = 0; l < system_->links.size(); ++l) pull(l, n);
-      for (std::size_t j = 0; j < contacts(); ++j) rub(j, n, next);
+      for (std::size_t f = 0; f < control_.size(); ++f) control(f, n, next);
       for (std::size_t s = 0; s < depth_.size(); ++s) press(s, n);
+      for (std::size_t j = 0; j < contacts(); ++j) rub(j, n, next);
       for (const int j : joined_.stuck())
         order_.surface[j] = is_stop(j) ? N(T(0)) : rate_of(surfaces_[j], n);
       joined_.solve(order_);
@@ -115,26 +118,23 @@ class Expansion {
   const Series& approach(std::size_t stop) const { return approach_[stop]; }
   /// Force with which a stop pushes, or an elastic one would push, N.
   const Series& push(std::size_t stop) const { return push_[stop]; }
+  /// Force of a feedback on its first body, N, and the integral of its error, m s.
+  const Series& control(std::size_t feedback) const { return control_[feedback]; }
+  const Series& integral(std::size_t feedback) const { return integral_[feedback]; }
   std::size_t stops() const { return depth_.size(); }
-  bool is_stop(int j) const { return static_cast<std::size_t>(j) >= contacts(); }
-  std::size_t stop_of(int j) const { return static_cast<std::size_t>(j) - contacts(); }
+  bool is_stop(int j) const { return system_->is_stop(j); }
+  std::size_t stop_of(int j) const { return system_->stop_of(j); }
   /// Order n of the largest friction force of a contact that sticks, N.
-  N limit(std::size_t j, int n) const { return contact(j).static_limit * given(loads_[j], n); }
+  N limit(std::size_t j, int n) const { return contact(j).static_limit * load(j, n); }
 
   /// Longest step over which the terms of the inputs are their Taylor polynomials, s.
   Real input_reach(T time) const {
     Real least = std::numeric_limits<Real>::infinity();
-    const auto look = [&](const Profile<T>& input) {
+    system_->each_input([&](const Profile<T>& input) {
       const Curve<T> curve = input.from(time);
       if (!curve.straight())
         least = std::min(least, curve.reach(T(0), series_order, Real(longest_input)));
-    };
-    for (const auto& body : system_->bodies) look(body.force);
-    for (const auto& link : system_->links) look(link.length);
-    for (const auto& each : system_->contacts) {
-      look(each.load);
-      look(each.velocity);
-    }
+    });
     return least;
   }
 
@@ -142,8 +142,29 @@ class Expansion {
   const bodies::Contact<T>& contact(std::size_t j) const { return system_->contacts[j]; }
   std::size_t contacts() const { return system_->contacts.size(); }
   T side(std::size_t stop) const { return T(system_->stops[stop].side); }
+  /// Static friction at a time, N; that of a contact which a stop may press is as under 1 N.
   T limit_of(std::size_t j, const T& time) const {
-    return contact(j).static_limit * contact(j).load.from(time).value;
+    const bodies::Contact<T>& c = contact(j);
+    T load = c.load.from(time).value;
+    if (c.pressed_by >= 0)
+      load +=
+          c.share * (is_stop(c.pressed_by) ? T(1) : contact(c.pressed_by).load.from(time).value);
+    return c.static_limit * load;
+  }
+  /// Order n of the load of a contact.
+  N load(std::size_t j, int n) const {
+    const bodies::Contact<T>& c = contact(j);
+    if (c.pressed_by < 0) return given(loads_[j], n);
+    if (!is_stop(c.pressed_by))
+      return given(loads_[j], n) + c.share * given(loads_[c.pressed_by], n);
+    if (mode_[c.pressed_by] != bodies::Slip::stick) return given(loads_[j], n);
+    return given(loads_[j], n) + c.share * push_[stop_of(c.pressed_by)][n];
+  }
+  /// Order n of its rate; that of a stop that presses is left out, as only skin without damping needs it.
+  N load_rate(std::size_t j, int n) const {
+    const bodies::Contact<T>& c = contact(j);
+    if (c.pressed_by < 0 || is_stop(c.pressed_by)) return rate_of(loads_[j], n);
+    return rate_of(loads_[j], n) + c.share * rate_of(loads_[c.pressed_by], n);
   }
 
   void begin(const bodies::State<T>& state, Real step) {
@@ -151,6 +172,7 @@ class Expansion {
     lengths_.clear();
     loads_.clear();
     surfaces_.clear();
+    references_.clear();
     const T time = state.time;
     late_ = rounding<Real> * std::abs(plain(time)) / step;
     for (const auto& body : system_->bodies) pushes_.emplace_back(body.force.from(time), step);
@@ -159,12 +181,18 @@ class Expansion {
       loads_.emplace_back(each.load.from(time), step);
       surfaces_.emplace_back(each.velocity.from(time), step);
     }
+    for (const auto& each : system_->feedbacks)
+      references_.emplace_back(each.reference.from(time), step);
     for (std::size_t i = 0; i < position_.size(); ++i) {
       position_[i][0] = known(state.position[i], error(state.errors.position, i));
       velocity_[i][0] = known(state.velocity[i], error(state.errors.velocity, i));
     }
     for (std::size_t j = 0; j < stretch_.size(); ++j)
       stretch_[j][0] = known(state.stretch[j], error(state.errors.stretch, j));
+    for (std::size_t f = 0; f < control_.size(); ++f) {
+      integral_[f][0] = known(state.integral[f], error(state.errors.integral, f));
+      control_[f][0] = known(state.held[f]);
+    }
   }
   static Real error(const std::vector<Real>& of, std::size_t i) {
     return of.empty() ? Real(0) : of[i];
@@ -198,13 +226,27 @@ class Expansion {
     const N faster = apart(velocity_, link.one, link.other, n) - rate_of(lengths_[l], n);
     apply(link.one, link.other, -(link.stiffness * longer + link.damping * faster));
   }
+  /// Order n of the force of a feedback, and the next order of the integral of its error.
+  void control(std::size_t f, int n, T next) {
+    const bodies::Feedback<T>& c = system_->feedbacks[f];
+    if (c.sampled()) {
+      if (n > 0) control_[f][n] = N(T(0));
+      integral_[f][n + 1] = N(T(0));
+    } else {
+      const N error = given(references_[f], n) - apart(position_, c.measured, c.against, n);
+      const N rate = rate_of(references_[f], n) - apart(velocity_, c.measured, c.against, n);
+      control_[f][n] = c.force(error, rate, integral_[f][n]);
+      integral_[f][n + 1] = next * error;
+    }
+    apply(c.one, c.other, control_[f][n]);
+  }
   /// Order n of the friction of a contact, and of the sliding speed; of skin also the next order of the stretch.
   void rub(std::size_t j, int n, T next) {
     const bodies::Contact<T>& c = contact(j);
     const bodies::Slip slip = mode_[j];
     const N speed = apart(velocity_, c.one, c.other, n) - given(surfaces_[j], n);
     const T side = T(static_cast<int>(slip));
-    const N kinetic = side * c.kinetic * given(loads_[j], n);
+    const N kinetic = side * c.kinetic * load(j, n);
     sliding_[j][n] = speed;
     if (c.rigid()) {
       friction_[j][n] = -kinetic;  // none in stick, to which the joined bodies add theirs
@@ -220,7 +262,7 @@ class Expansion {
         rate = (kinetic - c.stiffness * stretch_[j][n]) / c.damping;
         stretch_[j][n + 1] = next * rate;
       } else {
-        rate = side * c.kinetic * rate_of(loads_[j], n) / c.stiffness;
+        rate = side * c.kinetic * load_rate(j, n) / c.stiffness;
         stretch_[j][n] = kinetic / c.stiffness;
       }
       sliding_[j][n] = speed - rate;
@@ -246,10 +288,11 @@ class Expansion {
   Mode mode_;
   JoinedBodies<T> joined_;
   typename JoinedBodies<T>::template Order<N> order_;
-  std::vector<Series> position_, velocity_, stretch_, sliding_, friction_, depth_, approach_, push_;
+  std::vector<Series> position_, velocity_, stretch_, sliding_, friction_, depth_, approach_, push_,
+      control_, integral_;
   int order_count_{0};
   Real late_{0};  ///< resolution of the time over the step
-  std::vector<InputSeries<T>> pushes_, lengths_, loads_, surfaces_;
+  std::vector<InputSeries<T>> pushes_, lengths_, loads_, surfaces_, references_;
 };
 
 }  // namespace pindrive::detail

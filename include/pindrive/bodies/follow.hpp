@@ -58,11 +58,16 @@ class Step {
   Slip stop_slip(int stop) const { return (*mode_)[mode_->size() - series_->stops() + stop]; }
   /// Speed of `one` or of its skin over the surface, m/s.
   T sliding(int contact, T tau) const { return at(series_->sliding(contact), tau); }
+  /// Force of a feedback on its first body, N; the integral of its error, m s, and the rate of that, m.
+  T control(int feedback, T tau) const { return at(series_->control(feedback), tau); }
+  T integral(int feedback, T tau) const { return at(series_->integral(feedback), tau); }
+  T integral_rate(int feedback, T tau) const { return rate(series_->integral(feedback), tau); }
 
   using Series = typename detail::Expansion<T>::Series;
   const Series& position_series(std::size_t body) const { return series_->position(body); }
   const Series& velocity_series(std::size_t body) const { return series_->velocity(body); }
   const Series& push_series(std::size_t stop) const { return series_->push(stop); }
+  const Series& control_series(std::size_t feedback) const { return series_->control(feedback); }
   const Series& stretch_series(std::size_t contact) const { return series_->stretch(contact); }
   const Series& friction_series(std::size_t contact) const { return series_->friction(contact); }
   const Series& sliding_series(std::size_t contact) const { return series_->sliding(contact); }
@@ -119,6 +124,10 @@ class Following {
       if (plain(beyond) >= -16 * detail::rounding<Real> * size)
         active.push_back(static_cast<int>(system.contacts.size() + s));
     }
+    state_.integral.resize(system.feedbacks.size());
+    state_.held.resize(system.feedbacks.size());
+    due_.assign(system.feedbacks.size(), state_.time);
+    sample();
     settle(active);
     changes_.clear();  // the first mode is none
   }
@@ -152,8 +161,15 @@ class Following {
       return now.straight() && now.rate == 0 && (!zero || now.value == 0);
     };
     const auto& s = *system_;
+    const auto holds = [&](const Feedback<T>& feedback) {
+      const auto [error, rate] = error_of(feedback);
+      const T held = state_.held[&feedback - s.feedbacks.data()];
+      return constant(feedback.reference, false) && (feedback.integral == 0 || error == 0) &&
+             (!feedback.sampled() || held == feedback.force(error, rate, T(0)));
+    };
     return series_.all_held() &&
            !(s.next_breakpoint(state_.time) < std::numeric_limits<Real>::infinity()) &&
+           std::all_of(s.feedbacks.begin(), s.feedbacks.end(), holds) &&
            std::all_of(s.bodies.begin(), s.bodies.end(),
                        [&](const Body<T>& body) { return constant(body.force, false); }) &&
            std::all_of(s.links.begin(), s.links.end(),
@@ -182,7 +198,7 @@ class Following {
   static Real fastest_of(const System<T>& system) {
     using std::sqrt;
     const std::size_t count = system.bodies.size();
-    std::vector<Real> stiff(count), damped(count);
+    std::vector<Real> stiff(count), damped(count), summed(count);
     Real skin{0};
     const auto add = [&](int one, int other, Real stiffness, Real damping) {
       for (const bool first : {true, false}) {
@@ -204,9 +220,19 @@ class Following {
     }
     for (const Stop<T>& stop : system.stops)
       if (!stop.rigid()) add(stop.one, stop.other, plain(stop.stiffness), plain(stop.damping));
+    using std::abs, std::cbrt;
+    for (const Feedback<T>& c : system.feedbacks)
+      for (const int i : {c.one, c.other})
+        for (const int j : {c.measured, c.against}) {
+          if (c.sampled() || i == ground || j == ground) continue;
+          const Real part = 1 / sqrt(plain(system.bodies[i].mass * system.bodies[j].mass));
+          stiff[i] += part * abs(plain(c.proportional));
+          damped[i] += part * abs(plain(c.derivative));
+          summed[i] += part * abs(plain(c.integral));
+        }
     Real fastest = skin;
     for (std::size_t i = 0; i < count; ++i)
-      fastest = std::max(fastest, Real(sqrt(stiff[i])) + damped[i]);
+      fastest = std::max(fastest, Real(sqrt(stiff[i])) + damped[i] + Real(cbrt(summed[i])));
     return fastest;
   }
 
@@ -232,7 +258,8 @@ class Following {
 
   /// False if the step was cut.
   bool step(T until, Sink sink, Cut cut = {}) {
-    const T breakpoint = std::min(system_->next_breakpoint(state_.time), until);
+    T breakpoint = std::min(system_->next_breakpoint(state_.time), until);
+    for (const T& due : due_) breakpoint = std::min(breakpoint, due);
     const Real rest = plain(breakpoint - state_.time);
     const Real rate =
         std::max(fastest_, Real(detail::longest_input) / series_.input_reach(state_.time));
@@ -255,8 +282,42 @@ class Following {
     if (standing_ > detail::standstill_limit) status_ = Status::standstill;
     if (!sink(Step<T>(series_, mode_, state_.time, tau, span))) status_ = Status::stopped;
     move(tau, whole ? breakpoint : state_.time + tau, span);
-    if (!active.empty() || whole) settle(active);
+    if (sample() || !active.empty() || whole) settle(active);
     return goes_on;
+  }
+
+  /// Takes the samples of feedbacks that are due; false if none is.
+  bool sample() {
+    bool taken = false;
+    for (std::size_t f = 0; f < due_.size(); ++f) {
+      const Feedback<T>& feedback = system_->feedbacks[f];
+      if (!feedback.sampled()) due_[f] = std::numeric_limits<Real>::infinity();
+      if (!(due_[f] <= state_.time)) continue;
+      taken = true;
+      due_[f] = next_sample(feedback.period, plain(state_.time));
+      const auto [error, rate] = error_of(feedback);
+      state_.integral[f] += T(feedback.period) * error;
+      state_.held[f] = feedback.force(error, rate, state_.integral[f]);
+    }
+    return taken;
+  }
+  /// First multiple of a period after a time, s.
+  static Real next_sample(Real period, Real time) {
+    using std::floor;
+    Real count = floor(time / period);
+    while (!(count * period > time)) ++count;
+    return count * period;
+  }
+  /// Error of a feedback and its rate, m and m/s.
+  std::pair<T, T> error_of(const Feedback<T>& feedback) const {
+    const Curve<T> reference = feedback.reference.from(state_.time);
+    const auto part = [&](int body, const std::vector<T>& of) {
+      return body == ground ? T(0) : of[body];
+    };
+    const auto apart = [&](const std::vector<T>& of) {
+      return part(feedback.measured, of) - part(feedback.against, of);
+    };
+    return {reference.value - apart(state_.position), reference.rate - apart(state_.velocity)};
   }
 
   /// First time at which a guard of a contact becomes negative, s; infinite within the step if none.
@@ -341,6 +402,7 @@ class Following {
     errors.position.resize(state_.position.size());
     errors.velocity.resize(state_.velocity.size());
     errors.stretch.resize(state_.stretch.size());
+    errors.integral.resize(state_.integral.size());
     for (std::size_t i = 0; i < state_.position.size(); ++i) {
       move_to(series_.position(i), state_.position[i], errors.position[i]);
       move_to(series_.velocity(i), state_.velocity[i], errors.velocity[i]);
@@ -348,6 +410,9 @@ class Following {
     for (std::size_t j = 0; j < state_.stretch.size(); ++j)
       if (!system_->contacts[j].rigid())
         move_to(series_.stretch(j), state_.stretch[j], errors.stretch[j]);
+    for (std::size_t f = 0; f < state_.integral.size(); ++f)
+      if (!system_->feedbacks[f].sampled())
+        move_to(series_.integral(f), state_.integral[f], errors.integral[f]);
     state_.time = time;
   }
 
@@ -398,7 +463,7 @@ class Following {
       if (next < 0) break;
       const std::size_t s = series_.stop_of(next);
       const bool bounces =
-          std::find(hit.begin(), hit.end(), next) != hit.end() || !comes_to_rest(s);
+          std::find(hit.begin(), hit.end(), next) != hit.end() || !comes_to_rest(s, fastest);
       push_apart(s, bounces && 2 * n < most_impacts ? system_->stops[s].restitution : T(0),
                  fastest);
       if (std::find(hit.begin(), hit.end(), next) == hit.end()) hit.push_back(next);
@@ -448,12 +513,18 @@ class Following {
     const Real known = 16 * detail::rounding<Real> * (abs(plain(one)) + abs(plain(other)));
     return plain(speed) > known ? speed : T(0);
   }
-  /// True of a stop whose bounces, each shorter by the restitution, end within the resolution of time.
-  bool comes_to_rest(std::size_t s) const {
-    const Real e = plain(system_->stops[s].restitution), time = plain(state_.time);
-    const Real known =
-        1024 * detail::rounding<Real> * time + (fastest_ > 0 ? Real(1e-12) / fastest_ : 0);
-    return (time - struck_[s]) * e < (1 - e) * known;
+  /// True of a stop whose bounces, each shorter by the restitution, end within the resolution of time, or no longer lift
+  /// the bodies beyond the rounding of their places.
+  bool comes_to_rest(std::size_t s, T speed) const {
+    using std::abs;
+    const Stop<T>& stop = system_->stops[s];
+    const Real e = plain(stop.restitution), lasted = plain(state_.time) - struck_[s];
+    const Real known = 1024 * detail::rounding<Real> * plain(state_.time) +
+                       (fastest_ > 0 ? Real(1e-12) / fastest_ : 0);
+    Real place = abs(plain(stop.position)) + abs(plain(state_.position[stop.one]));
+    if (stop.other != ground) place += abs(plain(state_.position[stop.other]));
+    const Real height = e * e * lasted * plain(speed) / 4;
+    return lasted * e < (1 - e) * known || height < 16 * detail::rounding<Real> * place;
   }
   /// Ends the approach of both bodies of a stop; they part with a part of its speed.
   void push_apart(std::size_t s, T restitution, T speed) {
@@ -489,6 +560,7 @@ class Following {
   Real fastest_;
   std::vector<Change<T>> changes_;
   std::vector<Real> struck_;  ///< time of the last impact at each stop, s
+  std::vector<T> due_;        ///< time of the next sample of each feedback, s; infinite: none
   Status status_{Status::ok};
   long steps_{0};
   int standing_{0};  ///< events at this time

@@ -21,8 +21,10 @@ struct Violations {
   T friction{0};    ///< friction in slip against kinetic friction, in stick against its limit
   T sliding{0};     ///< slip against its direction, and sliding in stick
   T stops{0};  ///< bodies beyond a rigid stop, a stop that pulls, and impacts against Newton's law
-  T continuity{0};  ///< jumps of position, or of velocity without an impact, between two steps
-  T energy{0};      ///< balance of energy, over what was stored and exchanged
+  T continuity{
+      0};  ///< jumps of position, or of velocity without an impact, between two steps; the rate of the integral
+           ///< of a feedback against its error
+  T energy{0};  ///< balance of energy, over what was stored and exchanged
 
   T worst() const {
     return std::max({motion, kinematics, friction, sliding, stops, continuity, energy});
@@ -33,7 +35,7 @@ struct Violations {
 template <class T>
 struct Ledger {
   T before{0}, after{0};  ///< of motion and of springs, without that of skin
-  T inputs{0};            ///< work of forces, prescribed motions and surfaces
+  T inputs{0};            ///< work of forces, feedbacks, prescribed motions and surfaces
   T dampers{0};           ///< loss in the dampers of springs
   T contacts{0};          ///< loss in contacts, with what their skin stores
   T stops{0};             ///< loss at impacts and in elastic stops, with what these store
@@ -48,6 +50,7 @@ class StepCertificate {
   void add(const Step<T>& step) {
     if (began_) strike(step);
     for (std::size_t i = 0; i < system_->bodies.size(); ++i) meet(step, static_cast<int>(i));
+    for (std::size_t f = 0; f < system_->feedbacks.size(); ++f) sample(step, static_cast<int>(f));
     const T before = energy(step, T(0)), after = energy(step, step.length());
     if (!began_) ledger_.before = before;
     ledger_.after = after;
@@ -91,6 +94,8 @@ class StepCertificate {
   static constexpr std::array<double, 5> weights{0.29552422471475287, 0.26926671930999635,
                                                  0.21908636251598204, 0.1494513491505806,
                                                  0.06667134430868814};
+
+  static constexpr double resolution = 1e-15;  ///< of a place, over the largest
 
   static void raise(T& most, T value) {
     using std::abs;
@@ -144,6 +149,34 @@ class StepCertificate {
     };
     return of(one) - of(other);
   }
+  /// Error of a feedback, and the rate of it.
+  struct Error {
+    T value, rate;
+  };
+  Error error_of(const Step<T>& step, const Feedback<T>& c, T tau) const {
+    const Curve<T> reference = c.reference.from(step.begin());
+    return {reference.at(tau) - between(step, c.measured, c.against, tau, false),
+            reference.rate_at(tau) - between(step, c.measured, c.against, tau, true)};
+  }
+  /// Samples where a step begins at a multiple of the period.
+  void sample(const Step<T>& step, int f) {
+    const Feedback<T>& c = system_->feedbacks[static_cast<std::size_t>(f)];
+    held_.resize(system_->feedbacks.size());
+    if (!c.sampled()) return;
+    Held& held = held_[static_cast<std::size_t>(f)];
+    if (step.begin() < T(held.samples) * c.period) return;
+    const auto [error, rate] = error_of(step, c, T(0));
+    held.sum += c.period * error;
+    held.force = c.proportional * error + c.derivative * rate + c.integral * held.sum;
+    ++held.samples;
+  }
+  /// Force of a feedback by its law, N.
+  T control(const Step<T>& step, int f, T tau) const {
+    const Feedback<T>& c = system_->feedbacks[static_cast<std::size_t>(f)];
+    if (c.sampled()) return held_[static_cast<std::size_t>(f)].force;
+    const auto [error, rate] = error_of(step, c, tau);
+    return c.proportional * error + c.derivative * rate + c.integral * step.integral(f, tau);
+  }
   /// Elongation of a link, and the rate of it.
   struct Pull {
     T longer, faster, given;
@@ -186,6 +219,14 @@ class StepCertificate {
       push(stop.one, stop.other, -T(stop.side) * force);
       halt(step, static_cast<int>(s), tau);
     }
+    for (std::size_t i = 0; i < system_->feedbacks.size(); ++i) {
+      const Feedback<T>& c = system_->feedbacks[i];
+      const int f = static_cast<int>(i);
+      push(c.one, c.other, control(step, f, tau));
+      raise(found_.motion, step.control(f, tau) - control(step, f, tau));
+      if (!c.sampled())
+        raise(found_.continuity, step.integral_rate(f, tau) - error_of(step, c, tau).value);
+    }
     for (const T each : rest) raise(found_.motion, each);
   }
   void halt(const Step<T>& step, int s, T tau) {
@@ -200,13 +241,31 @@ class StepCertificate {
       raise(beyond_, step.pushes(s) ? abs(beyond) : std::max(T(0), beyond));
       return;
     }
-    const T pressed =
-        beyond > 0 ? std::max(T(0), stop.stiffness * beyond + stop.damping * approach) : T(0);
-    raise(found_.stops, force - pressed);
+    raise(found_.stops, force - pressed(stop, beyond, approach));
+  }
+  /// Force of an elastic stop, N. A damper begins with a force where the bodies meet, within the rounding of their places.
+  T pressed(const Stop<T>& stop, T beyond, T approach) const {
+    return beyond > -resolution * size_
+               ? std::max(T(0), stop.stiffness * beyond + stop.damping * approach)
+               : T(0);
+  }
+  T load_of(const Step<T>& step, const Contact<T>& c, T tau) const {
+    const T own = c.load.from(step.begin()).at(tau);
+    if (c.pressed_by < 0) return own;
+    if (!system_->is_stop(c.pressed_by)) {
+      const Contact<T>& by = system_->contacts[static_cast<std::size_t>(c.pressed_by)];
+      return own + c.share * by.load.from(step.begin()).at(tau);
+    }
+    const Stop<T>& stop = system_->stops[system_->stop_of(c.pressed_by)];
+    const T side = T(stop.side);
+    return own + c.share * pressed(stop,
+                                   side * (between(step, stop.one, stop.other, tau, false) -
+                                           stop.position),
+                                   side * between(step, stop.one, stop.other, tau, true));
   }
   void rub(const Step<T>& step, int contact, T tau) {
     const Contact<T>& c = system_->contacts[contact];
-    const T load = c.load.from(step.begin()).at(tau), friction = step.friction(contact, tau);
+    const T load = load_of(step, c, tau), friction = step.friction(contact, tau);
     const T speed =
         between(step, c.one, c.other, tau, true) - c.velocity.from(step.begin()).at(tau);
     const int side = static_cast<int>(step.slip(contact));
@@ -267,6 +326,12 @@ class StepCertificate {
       give(force * (between(step, c.one, c.other, tau, true) - surface), ledger_.contacts, -1);
       give(force * surface, ledger_.inputs, 1);
     }
+    for (std::size_t i = 0; i < system_->feedbacks.size(); ++i) {
+      const Feedback<T>& c = system_->feedbacks[i];
+      give(during * control(step, static_cast<int>(i), tau) *
+               between(step, c.one, c.other, tau, true),
+           ledger_.inputs, 1);
+    }
     for (std::size_t s = 0; s < system_->stops.size(); ++s) {
       const Stop<T>& stop = system_->stops[s];
       const T force = during * T(-stop.side) * step.push(static_cast<int>(s), tau);
@@ -281,7 +346,14 @@ class StepCertificate {
   T jump_{0}, force_{0}, speed_{0}, size_{0}, drift_{0}, exchanged_{0};
   T beyond_{0}, wrong_impact_{0}, rebound_{0}, drift_of_impacts_{0};
   bool began_{false}, struck_{false};
+  /// What a sampled feedback holds.
+  struct Held {
+    long samples{0};
+    T sum{0}, force{0};
+  };
+
   std::vector<T> last_;
+  std::vector<Held> held_;
   long steps_{0};
 };
 

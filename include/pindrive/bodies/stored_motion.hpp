@@ -22,6 +22,7 @@ struct Quantities {
   std::vector<T> sliding;  ///< speed over the surface, m/s, contact by contact
   std::vector<Slip> slip;  ///< contact by contact
   std::vector<T> push;     ///< force with which a stop pushes, N, stop by stop
+  std::vector<T> control;  ///< force of a feedback on its first body, N, one by one
 };
 
 /// Steps of a motion, one after another, as their polynomials.
@@ -30,8 +31,11 @@ class StoredMotion {
  public:
   using Real = detail::Real<T>;
 
-  StoredMotion(std::size_t bodies, std::size_t contacts, std::size_t stops = 0)
-      : bodies_(bodies), contacts_(contacts), stops_(stops) {}
+  explicit StoredMotion(const System<T>& system)
+      : bodies_(system.bodies.size()),
+        contacts_(system.contacts.size()),
+        stops_(system.stops.size()),
+        feedbacks_(system.feedbacks.size()) {}
 
   void add(const Step<T>& step) {
     kept_.push_back({step.begin(), step.length(), step.span(), step.order(), numbers_.size()});
@@ -46,6 +50,7 @@ class StoredMotion {
       keep(step, step.push_series(s));
       pushes_.push_back(step.pushes(static_cast<int>(s)));
     }
+    for (std::size_t f = 0; f < feedbacks_; ++f) keep(step, step.control_series(f));
   }
 
   std::size_t steps() const { return kept_.size(); }
@@ -79,6 +84,9 @@ class StoredMotion {
     found.push.resize(stops_);
     for (std::size_t s = 0; s < stops_; ++s, c += size)
       found.push[s] = pushes_[k * stops_ + s] ? value(c, step, tau, 0) : T(0);
+    found.control.resize(feedbacks_);
+    for (std::size_t f = 0; f < feedbacks_; ++f, c += size)
+      found.control[f] = value(c, step, tau, 0);
   }
 
   /// Least and largest position of a body, m.
@@ -139,7 +147,7 @@ class StoredMotion {
     return sum;
   }
 
-  std::size_t bodies_, contacts_, stops_;
+  std::size_t bodies_, contacts_, stops_, feedbacks_;
   std::vector<Kept> kept_;
   std::vector<T> numbers_;
   std::vector<Slip> slips_;

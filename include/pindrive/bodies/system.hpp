@@ -36,6 +36,8 @@ struct Contact {
   T damping{0};                                     ///< parallel to the stiffness, N s/m; >= 0
   Profile<T> load{T(1)};                            ///< factor of both frictions; >= 0
   Profile<T> velocity{T(0)};                        ///< surface that moves along `other`, m/s
+  int pressed_by{-1};  ///< mode of another contact or of an elastic stop; −1: none
+  T share{0};          ///< load per load of that contact, or per force of that stop (1/N); >= 0
 
   bool rigid() const { return !(stiffness < std::numeric_limits<T>::infinity()); }
 };
@@ -53,6 +55,24 @@ struct Stop {
   bool rigid() const { return !(stiffness < std::numeric_limits<T>::infinity()); }
 };
 
+/// Force of a controller that leads the distance of two bodies along a reference. A sampled one holds its force between
+/// its samples at multiples of a period, and sums the error at them.
+template <class T>
+struct Feedback {
+  int one, other{ground};         ///< bodies on which the force and its opposite act
+  int measured, against{ground};  ///< bodies whose distance is measured
+  T proportional{0}, derivative{0}, integral{0};  ///< gains, N/m, N s/m and N/(m s)
+  Profile<T> reference{T(0)};                     ///< intended distance, m
+  detail::Real<T> period{0};                      ///< s; 0: continuous
+
+  bool sampled() const { return period > 0; }
+  /// Force from an error, its rate, and its integral.
+  template <class N>
+  N force(const N& error, const N& rate, const N& sum) const {
+    return proportional * error + derivative * rate + integral * sum;
+  }
+};
+
 /// Both bodies of a contact or a stop.
 struct Pair {
   int one, other;
@@ -65,27 +85,33 @@ struct System {
   std::vector<Link<T>> links;
   std::vector<Contact<T>> contacts;
   std::vector<Stop<T>> stops{};
+  std::vector<Feedback<T>> feedbacks{};
 
   /// Contacts, and after them stops: what has a mode of its own.
   std::size_t modes() const { return contacts.size() + stops.size(); }
+  bool is_stop(int mode) const { return static_cast<std::size_t>(mode) >= contacts.size(); }
+  std::size_t stop_of(int mode) const { return static_cast<std::size_t>(mode) - contacts.size(); }
   Pair pair(std::size_t j) const {
     if (j < contacts.size()) return {contacts[j].one, contacts[j].other};
     const Stop<T>& stop = stops[j - contacts.size()];
     return {stop.one, stop.other};
   }
 
-  /// First breakpoint of any input after a time, s; infinite without one.
-  T next_breakpoint(T t) const {
-    T next = std::numeric_limits<T>::infinity();
-    const auto look = [&](const Profile<T>& input) {
-      next = std::min(next, input.next_breakpoint(t));
-    };
+  /// Calls a function with each input.
+  template <class Look>
+  void each_input(Look&& look) const {
     for (const Body<T>& body : bodies) look(body.force);
     for (const Link<T>& link : links) look(link.length);
     for (const Contact<T>& contact : contacts) {
       look(contact.load);
       look(contact.velocity);
     }
+    for (const Feedback<T>& feedback : feedbacks) look(feedback.reference);
+  }
+  /// First breakpoint of any input after a time, s; infinite without one.
+  T next_breakpoint(T t) const {
+    T next = std::numeric_limits<T>::infinity();
+    each_input([&](const Profile<T>& input) { next = std::min(next, input.next_breakpoint(t)); });
     return next;
   }
 };
@@ -97,13 +123,15 @@ enum class Slip : signed char { backward = -1, stick = 0, forward = 1 };
 /// Positions and velocities of bodies, and the stretch of skin, at a time.
 template <class T>
 struct State {
-  T time{0};                ///< s
-  std::vector<T> position;  ///< m, body by body
-  std::vector<T> velocity;  ///< m/s
-  std::vector<T> stretch;   ///< m, contact by contact; 0 of a rigid one
+  T time{0};                  ///< s
+  std::vector<T> position;    ///< m, body by body
+  std::vector<T> velocity;    ///< m/s
+  std::vector<T> stretch;     ///< m, contact by contact; 0 of a rigid one
+  std::vector<T> integral{};  ///< of the error of each feedback, m s
+  std::vector<T> held{};      ///< force that each sampled feedback holds, N
   /// Errors of these numbers, since the time is known to rounding; none of given ones.
   struct Errors {
-    std::vector<detail::Real<T>> position, velocity, stretch;
+    std::vector<detail::Real<T>> position, velocity, stretch, integral;
   } errors{};
 };
 

@@ -12,6 +12,8 @@
 - `SpringMotion`: a spring under way
 - `Stop`: stops of the distance between two bodies
 - `StopMotion`: a stop under way
+- `Feedback`: a controller between two bodies
+- `FeedbackMotion`: a controller under way
 - `SystemEvent`: a change at a contact
 - `SystemLedger`: energy over a motion
 - `SystemCertificate`: the largest violation of each law

@@ -11,7 +11,7 @@ from pindrive.bodies.system_motion import SystemMotion
 from pindrive.lazy import xr
 from pindrive.motion.function import Function
 from pindrive.motion.profile import Profile
-from pindrive.quantities.bodies import OF_BODY, OF_CONTACT, OF_SPRING, OF_STOP
+from pindrive.quantities.bodies import OF_BODY, OF_CONTACT, OF_FEEDBACK, OF_SPRING, OF_STOP
 from pindrive.quantities.quantity import heading
 from pindrive.quantities.status import outcome_attributes
 
@@ -24,7 +24,7 @@ def columns(motion: SystemMotion, t: NDArray[np.float64]) -> dict[str, NDArray[n
         t: s, shape (n,).
     """
     found = {heading("time", "s"): t}
-    moving, touching, pushing = motion.state_at(t)
+    moving, touching, pushing, controlling = motion.state_at(t)
     for i, name in enumerate(motion.system.bodies):
         for quantity, values in zip(OF_BODY, moving[:, i], strict=True):
             found[heading(f"body.{name}.{quantity.name}", quantity.unit)] = values
@@ -33,6 +33,8 @@ def columns(motion: SystemMotion, t: NDArray[np.float64]) -> dict[str, NDArray[n
             found[heading(f"contact.{name}.{quantity.name}", quantity.unit)] = values
     for name, force in zip(motion.system.stops, pushing, strict=True):
         found[heading(f"stop.{name}.force", "N")] = force
+    for name, force in zip(motion.system.feedbacks, controlling, strict=True):
+        found[heading(f"feedback.{name}.force", "N")] = force
     for name in motion.system.springs:
         pull = motion.spring(name)
         for quantity, values in zip(OF_SPRING, (pull.force(t), pull.elongation(t)), strict=True):
@@ -45,7 +47,7 @@ def dataset(motion: SystemMotion, t: NDArray[np.float64]) -> xr.Dataset:
     from pindrive import __version__
 
     system = motion.system
-    moving, touching, pushing = motion.state_at(t)
+    moving, touching, pushing, controlling = motion.state_at(t)
     data: dict[str, Any] = {
         q.name: (("body", "time"), values, q.attributes)
         for q, values in zip(OF_BODY, moving, strict=True)
@@ -59,6 +61,9 @@ def dataset(motion: SystemMotion, t: NDArray[np.float64]) -> xr.Dataset:
         data[f"spring_{quantity.name}"] = (("spring", "time"), values, quantity.attributes)
     if system.stops:
         data["stop_force"] = (("stop", "time"), pushing, OF_STOP[0].attributes)
+    if system.feedbacks:
+        of = OF_FEEDBACK[0].attributes
+        data["feedback_force"] = (("feedback", "time"), controlling, of)
     events = motion.events
     data["event_time"] = ("event", np.array([e.time for e in events]), {"units": "s"})
     for name in ("contact", "kind"):
@@ -70,6 +75,7 @@ def dataset(motion: SystemMotion, t: NDArray[np.float64]) -> xr.Dataset:
         "contact": [*system.contacts],
         "spring": [*system.springs],
         **({"stop": [*system.stops]} if system.stops else {}),
+        **({"feedback": [*system.feedbacks]} if system.feedbacks else {}),
     }
     attributes = {
         "title": "Motion of a system of bodies",

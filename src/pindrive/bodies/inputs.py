@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import inf
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, overload
 
 from pindrive import _core
 from pindrive.motion.core_numbers import Input
@@ -66,13 +66,17 @@ def negative(label: str, given: Given, duration: float | None) -> Refusal | None
     return refusal(label, ">= 0", f"{least!r} at {time!r} s")
 
 
-def integrated(motion: Profile | Function, label: str = "a motion") -> Profile | Function:
+@overload
+def integrated(motion: Profile | Function, label: str = ...) -> Profile | Function: ...
+@overload
+def integrated(motion: Given, label: str = ...) -> Given: ...
+def integrated(motion: Given, label: str = "a motion") -> Given:
     """Return positions from velocities in m/s, as of `minimum_jerk`, from 0 on; positions as is.
 
     Raises:
         ValueError: A polynomial of the highest degree, whose integral has a higher one.
     """
-    if motion.unit != "m/s":
+    if isinstance(motion, float) or motion.unit != "m/s":
         return motion
     pieces = as_function(motion, "m/s").core
     for _, polynomial, _ in pieces:

@@ -3,13 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import replace
 from math import inf
-from typing import Any, Final
+from typing import Any
 
 import pindrive
 from pindrive import _core
-from pindrive.bodies.inputs import Given, input_of, integrated, negative, summed
+from pindrive.bodies.core_numbers import numbers_of_system, stop_ends
+from pindrive.bodies.inputs import Given, input_of, integrated, negative
+from pindrive.bodies.parts import (
+    GROUND,
+    TABLES,
+    Body,
+    ContactPair,
+    Entry,
+    Feedback,
+    Spring,
+    Stop,
+    check_name,
+    check_part,
+    values_of,
+)
 from pindrive.motion.function import Function
 from pindrive.motion.profile import Profile
 from pindrive.quantities.bodies import PARTS
@@ -17,107 +31,6 @@ from pindrive.quantities.names import Names
 from pindrive.quantities.refusal import quoted, refusal
 from pindrive.quantities.status import Status
 from pindrive.quantities.table import check
-from pindrive.quantities.value import concise
-
-GROUND: Final = "ground"
-"""Name of the ground, in place of a body."""
-
-
-@concise
-@dataclass(frozen=True, slots=True)
-class Body:
-    """A body of a system; made by `System.body`.
-
-    Attributes:
-        name: Name of the body.
-        mass: kg.
-        position: At t = 0, m.
-        velocity: At t = 0, m/s.
-        force: External force, N; constant or over time.
-    """
-
-    name: str
-    mass: float
-    position: float = 0.0
-    velocity: float = 0.0
-    force: Given = 0.0
-
-
-@concise
-@dataclass(frozen=True, slots=True)
-class Spring:
-    """A spring with a damper beside it; made by `System.spring`.
-
-    Attributes:
-        name: Name: "pin-hand" unless another was given.
-        between: Names of the first and the second body; the second may be "ground".
-        stiffness: N/m.
-        damping: N*s/m.
-        length: Position of the first body less that of the second, m, at which the spring rests.
-        motion: Prescribed motion of the other end, m or m/s; None: it has none.
-    """
-
-    name: str
-    between: tuple[str, str]
-    stiffness: float = 0.0
-    damping: float = 0.0
-    length: Given = 0.0
-    motion: Profile | Function | None = None
-
-
-@concise
-@dataclass(frozen=True, slots=True)
-class ContactPair:
-    """Dry friction between two bodies, or a body and the ground; made by `System.contact`.
-
-    Attributes:
-        name: Name: "pin-hand" unless another was given.
-        between: Names of the first and the second body; the second may be "ground".
-        kinetic: Friction force in slip, N.
-        static: Largest friction force in stick, N.
-        stiffness: Stiffness of the skin, N/m; infinite: a rigid contact.
-        damping: Damping coefficient of the skin, N*s/m.
-        load: Factor of both frictions.
-        velocity: Velocity of the surface along the second body, m/s.
-        stretch: Stretch of the skin at t = 0, m.
-    """
-
-    name: str
-    between: tuple[str, str]
-    kinetic: float
-    static: float
-    stiffness: float = inf
-    damping: float = 0.0
-    load: Given = 1.0
-    velocity: Given = 0.0
-    stretch: float = 0.0
-
-
-@concise
-@dataclass(frozen=True, slots=True)
-class Stop:
-    """Stops of the distance between two bodies, or of a body and the ground; made by `System.stop`.
-
-    Attributes:
-        name: Name: "pin-hand" unless another was given.
-        between: Names of the first and the second body; the second may be "ground".
-        lower: Least position of the first body less that of the second, m; None: no stop there.
-        upper: Largest, m; None: no stop there.
-        stiffness: N/m; infinite: rigid stops.
-        damping: Damping coefficient of elastic stops, N*s/m.
-        restitution: Speed after an impact on a rigid stop over that before.
-    """
-
-    name: str
-    between: tuple[str, str]
-    lower: float | None = None
-    upper: float | None = None
-    stiffness: float = inf
-    damping: float = 0.0
-    restitution: float = 0.0
-
-
-Entry = Body | Spring | ContactPair | Stop
 
 
 class System:
@@ -146,6 +59,7 @@ class System:
         self.springs: dict[str, Spring] = {}
         self.contacts: dict[str, ContactPair] = {}
         self.stops: dict[str, Stop] = {}
+        self.feedbacks: dict[str, Feedback] = {}
 
     # ---- building --------------------------------------------------------------------------------
 
@@ -171,7 +85,7 @@ class System:
         Raises:
             ValueError: The name is empty, "ground", has a dot or is taken; a value is out of range.
         """
-        _check_name(name, "body", self.bodies)
+        check_name(name, "body", self.bodies)
         made = Body(
             name,
             _checked("body", name, "mass", mass),
@@ -215,9 +129,9 @@ class System:
             _checked("spring", name, "stiffness", stiffness),
             _checked("spring", name, "damping", damping),
             _input("spring", name, "length", length),
-            None if motion is None else _motion_of(name, motion),
+            None if motion is None else _motion_of(f"spring.{name}.motion", motion),
         )
-        _check_spring(made)
+        check_part(made)
         self.springs[name] = made
         return made
 
@@ -233,6 +147,8 @@ class System:
         load: float | str | Profile | Function = 1.0,
         velocity: float | str | Profile | Function = 0.0,
         stretch: float | str = 0.0,
+        pressed_by: str | ContactPair | Stop | None = None,
+        share: float | str | None = None,
         name: str = "",
     ) -> ContactPair:
         """Add dry friction between two bodies, or a body and the ground.
@@ -248,6 +164,9 @@ class System:
             velocity: Velocity of the surface along the second body, m/s, without steps, as of a
                 belt.
             stretch: Stretch of the skin at t = 0, m.
+            pressed_by: A contact, whose load adds to `load`, or an elastic stop with one end, whose
+                force does; their name, or "stop.NAME" where both have one.
+            share: Load per load of that contact, or per newton of that stop, at least 0; None: 1.
             name: Name; "pin-hand" unless given, and "pin-hand 2" for a second one.
 
         Raises:
@@ -266,8 +185,12 @@ class System:
             _input("contact", name, "load", load),
             _input("contact", name, "velocity", velocity, continuous=True),
             _checked("contact", name, "stretch", stretch),
+            self._pressing(name, pressed_by),
+            None
+            if share is None and pressed_by is None
+            else _checked("contact", name, "share", 1.0 if share is None else share),
         )
-        _check_contact(made)
+        check_part(made)
         self.contacts[name] = made
         return made
 
@@ -313,8 +236,65 @@ class System:
             _checked("stop", name, "damping", damping),
             _checked("stop", name, "restitution", restitution),
         )
-        _check_stop(made)
+        check_part(made)
         self.stops[name] = made
+        return made
+
+    def feedback(
+        self,
+        body: str | Body,
+        other: str | Body = GROUND,
+        *,
+        proportional: float | str = 0.0,
+        derivative: float | str = 0.0,
+        integral: float | str = 0.0,
+        reference: float | str | Profile | Function = 0.0,
+        measured: str | Body | tuple[str | Body, str | Body] | None = None,
+        period: float | str = 0.0,
+        name: str = "",
+    ) -> Feedback:
+        """Add a controller, whose force on a body leads a distance along a reference.
+
+        With the error e, the reference less the distance, the force is `proportional` e +
+        `derivative` e' + `integral` ∫ e dt. A sampled controller reads e and e' at multiples of its
+        `period`, from t = 0 on, takes the sum of e times the period for the integral, and holds its
+        force until the next sample.
+
+        Args:
+            body: First body, on which the force acts.
+            other: Second body, on which the opposite force acts, or "ground".
+            proportional: Gain of the error, N/m.
+            derivative: Gain of the rate of the error, N*s/m.
+            integral: Gain of the integral of the error, N/(m*s).
+            reference: Intended distance: positions (m) or, as `minimum_jerk` has them, velocities
+                (m/s), then from 0 on.
+            measured: Body, or both bodies, of the distance: the position of the first less that of
+                the second; None: `body` and `other`.
+            period: Time between two samples, s; 0: continuous.
+            name: Name; "pin-hand" unless given, and "pin-hand 2" for a second one.
+
+        Raises:
+            ValueError: A body is unknown, no gain is given, or a value is out of range.
+        """
+        between = self._between(body, other)
+        pair = measured if isinstance(measured, tuple) else (measured, GROUND)
+        seen = between if measured is None else self._between(*pair)
+        name = self._named(name, "feedback", between, self.feedbacks)
+        label = f"feedback.{name}.reference"
+        made = Feedback(
+            name,
+            between,
+            seen,
+            _checked("feedback", name, "proportional", proportional),
+            _checked("feedback", name, "derivative", derivative),
+            _checked("feedback", name, "integral", integral),
+            _motion_of(label, reference)
+            if isinstance(reference, (Profile, Function))
+            else _checked("feedback", name, "reference", reference),
+            _checked("feedback", name, "period", period),
+        )
+        check_part(made)
+        self.feedbacks[name] = made
         return made
 
     def force(self, body: str | Body, force: float | str | Profile | Function) -> None:
@@ -356,7 +336,7 @@ class System:
         """
         found: dict[str, Any] = {}
         for kind, entry in self._entries():
-            for part in _values(entry):
+            for part in values_of(entry):
                 value = getattr(entry, part)
                 key = f"{kind}.{entry.name}.{part}"
                 found[key] = value
@@ -387,14 +367,12 @@ class System:
             ValueError: A parameter is unknown or a value out of range.
         """
         changed = System()
-        changed.bodies = dict(self.bodies)
-        changed.springs = dict(self.springs)
-        changed.contacts = dict(self.contacts)
-        changed.stops = dict(self.stops)
+        for table in TABLES.values():
+            setattr(changed, table, dict(getattr(self, table)))
         for given, value in values.items():
             kind, name, part, *parameter = _split(self.key_of(given))
-            table: dict[str, Any] = getattr(changed, _TABLES[kind])
-            entry = table[name]
+            entries: dict[str, Any] = getattr(changed, TABLES[kind])
+            entry = entries[name]
             if parameter:
                 new: Any = getattr(entry, part).replace(**{parameter[0]: value})
             else:
@@ -403,13 +381,9 @@ class System:
             tied = {part: new}
             if kind == "contact" and part == "kinetic" and entry.kinetic == entry.static:
                 tied["static"] = new
-            table[name] = replace(entry, **tied)
-        for spring in changed.springs.values():
-            _check_spring(spring)
-        for contact in changed.contacts.values():
-            _check_contact(contact)
-        for stop in changed.stops.values():
-            _check_stop(stop)
+            entries[name] = replace(entry, **tied)
+        for _, changed_part in changed._entries():
+            check_part(changed_part)
         return changed
 
     # ---- motion ----------------------------------------------------------------------------------
@@ -437,7 +411,7 @@ class System:
                 raise ValueError(refused)
         self._check_stops()
         frozen = self.with_values({})
-        numbers = frozen.core_numbers()
+        numbers = numbers_of_system(frozen)
         core = _core.simulate_system(numbers, inf if end is None else end)
         followed = core.status in (Status.ok, Status.stopped)
         if end is None and followed and not core.rests:
@@ -445,57 +419,9 @@ class System:
             raise ValueError(refusal("duration", required, f"None ({core.end:g} s were followed)"))
         return SystemMotion(frozen, numbers, core, core.end if end is None else end)
 
-    def core_numbers(self) -> Any:
-        """Bodies, springs and contacts as the core has them."""
-        place = {GROUND: -1} | {name: i for i, name in enumerate(self.bodies)}
-        return (
-            [(b.mass, summed(b.force), b.position, b.velocity) for b in self.bodies.values()],
-            [
-                (
-                    *(place[name] for name in s.between),
-                    s.stiffness,
-                    s.damping,
-                    summed(s.length, None if s.motion is None else integrated(s.motion)),
-                )
-                for s in self.springs.values()
-            ],
-            [
-                (
-                    *(place[name] for name in c.between),
-                    c.kinetic,
-                    c.static,
-                    c.stiffness,
-                    c.damping,
-                    summed(c.load),
-                    summed(c.velocity),
-                    c.stretch,
-                )
-                for c in self.contacts.values()
-            ],
-            [
-                (
-                    *(place[name] for name in s.between),
-                    end,
-                    side,
-                    s.stiffness,
-                    s.damping,
-                    s.restitution,
-                )
-                for _, s, end, side in self.stop_ends()
-            ],
-        )
-
-    def stop_ends(self) -> Iterator[tuple[str, Stop, float, int]]:
-        """Yield each end of each stop, in the order of the core: name, stop, place, and side."""
-        for name, stop in self.stops.items():
-            if stop.lower is not None:
-                yield name, stop, stop.lower, -1
-            if stop.upper is not None:
-                yield name, stop, stop.upper, 1
-
     def _check_stops(self) -> None:
         """Refuse bodies that begin beyond a rigid stop."""
-        for name, stop, end, side in self.stop_ends():
+        for name, stop, end, side in stop_ends(self):
             places = [self.bodies[b].position if b != GROUND else 0.0 for b in stop.between]
             beyond = side * (places[0] - places[1] - end)
             if stop.stiffness == inf and beyond > 1e-15 * max(map(abs, (*places, end))):
@@ -519,12 +445,13 @@ class System:
             counted(len(self.contacts), "contact"),
         ]
         parts += [counted(len(self.stops), "stop")] if self.stops else []
+        parts += [counted(len(self.feedbacks), "feedback")] if self.feedbacks else []
         return f"<System of {', '.join(parts[:-1])} and {parts[-1]}>"
 
     # ---- names -----------------------------------------------------------------------------------
 
     def _entries(self) -> Iterator[tuple[str, Entry]]:
-        for kind, table in _TABLES.items():
+        for kind, table in TABLES.items():
             for entry in getattr(self, table).values():
                 yield kind, entry
 
@@ -545,24 +472,40 @@ class System:
             raise ValueError(refusal("the second body", f"another one than {quoted(one)}", "it"))
         return one, two
 
+    def _pressing(self, name: str, given: object) -> str | None:
+        """Key of the contact or the stop that presses another contact."""
+        if given is None:
+            return None
+        label = f"contact.{name}.pressed_by"
+        kind = "stop" if isinstance(given, Stop) else "contact"
+        words = f"{kind}.{given.name}" if isinstance(given, (Stop, ContactPair)) else given
+        known = {f"contact.{each}": () for each in self.contacts}
+        known |= {f"stop.{each}": () for each in self.stops}
+        if not isinstance(words, str) or not known:
+            required = "a contact or an elastic stop of the system"
+            raise ValueError(refusal(label, required, repr(given)))
+        key = Names("contact or stop", known).find(words, label)
+        kind, _, pressing = key.partition(".")
+        if kind == "contact" and self.contacts[pressing].pressed_by:
+            required = "a contact that no other one presses"
+            raise ValueError(refusal(label, required, quoted(pressing)))
+        if kind == "stop":
+            stop = self.stops[pressing]
+            if stop.stiffness == inf or None not in (stop.lower, stop.upper):
+                required = "an elastic stop with one end"
+                words = "a rigid one" if stop.stiffness == inf else "one with two"
+                raise ValueError(refusal(label, required, f"{quoted(pressing)}, {words}"))
+        return key
+
     def _named(
         self, given: str, kind: str, between: tuple[str, str], taken: Mapping[str, object]
     ) -> str:
         if given:
-            _check_name(given, kind, taken)
+            check_name(given, kind, taken)
             return given
         usual = "-".join(between)
         names = (usual, *(f"{usual} {n}" for n in range(2, len(taken) + 2)))
         return next(name for name in names if name not in taken)
-
-
-_TABLES: Final = {"body": "bodies", "spring": "springs", "contact": "contacts", "stop": "stops"}
-
-
-def _values(entry: Entry) -> list[str]:
-    """Names of the values of a part that are given."""
-    own = [f.name for f in fields(entry) if f.name not in ("name", "between")]
-    return [name for name in own if getattr(entry, name) is not None]
 
 
 def _split(key: str) -> list[str]:
@@ -578,65 +521,9 @@ def _input(kind: str, name: str, part: str, value: Any, *, continuous: bool = Fa
     return input_of(PARTS[kind], part, value, f"{kind}.{name}.{part}", continuous=continuous)
 
 
-def _motion_of(name: str, motion: Profile | Function) -> Profile | Function:
-    label = f"spring.{name}.motion"
+def _motion_of(label: str, motion: Profile | Function) -> Profile | Function:
     if motion.unit not in ("", "m", "m/s"):
         required = f"a {type(motion).__name__} of positions in m or velocities in m/s"
         raise ValueError(refusal(label, required, f"values in {motion.unit}"))
     integrated(motion, label)
     return motion
-
-
-def _check_name(name: object, kind: str, taken: Mapping[str, object]) -> None:
-    """Refuse a name that is empty, has a dot or is taken."""
-    label = f"the name of a {kind}"
-    if not isinstance(name, str) or not name.strip() or "." in name or name == GROUND:
-        raise ValueError(refusal(label, 'text without a dot, and not "ground"', repr(name)))
-    if name in taken:
-        raise ValueError(refusal(label, f"none of {', '.join(taken)}", quoted(name)))
-
-
-def _check_spring(spring: Spring) -> None:
-    """Refuse a damper whose end jumps."""
-    if not spring.damping:
-        return
-    for part in ("length", "motion"):
-        given = getattr(spring, part)
-        position = given is not None and getattr(given, "unit", "") != "m/s"
-        if position:
-            input_of(PARTS["spring"], part, given, f"spring.{spring.name}.{part}", continuous=True)
-
-
-def _check_stop(stop: Stop) -> None:
-    """Refuse stops without an end, or with parts that contradict each other."""
-    label = f"stop.{stop.name}"
-    if stop.lower is None and stop.upper is None:
-        raise ValueError(refusal(label, "given with lower, upper or both", "neither"))
-    if stop.lower is not None and stop.upper is not None and not stop.lower < stop.upper:
-        required = f"greater than lower ({stop.lower!r} m)"
-        raise ValueError(refusal(f"{label}.upper", required, f"{stop.upper!r} m"))
-    if stop.stiffness == inf and stop.damping:
-        given = f"{stop.damping!r} N*s/m"
-        raise ValueError(refusal(f"{label}.damping", "0 of a rigid stop", given))
-    if stop.stiffness < inf and stop.restitution:
-        required = "0 of an elastic stop, which has a damping"
-        raise ValueError(refusal(f"{label}.restitution", required, repr(stop.restitution)))
-
-
-def _check_contact(contact: ContactPair) -> None:
-    """Refuse frictions and a skin that contradict each other."""
-    label = f"contact.{contact.name}"
-    if not contact.static >= contact.kinetic:
-        required = f"at least kinetic ({contact.kinetic!r} N)"
-        raise ValueError(refusal(f"{label}.static", required, f"{contact.static!r} N"))
-    if contact.stiffness == inf and (contact.damping or contact.stretch):
-        part = "damping" if contact.damping else "stretch"
-        unit = "N*s/m" if contact.damping else "m"
-        given = f"{getattr(contact, part)!r} {unit}"
-        raise ValueError(refusal(f"{label}.{part}", "0 of a rigid contact", given))
-    holds = contact.static * (
-        contact.load if isinstance(contact.load, float) else contact.load(0.0)
-    )
-    if contact.stretch and contact.stiffness * abs(contact.stretch) > holds:
-        required = f"at most what the skin holds, {holds / contact.stiffness!r} m"
-        raise ValueError(refusal(f"{label}.stretch", required, f"{contact.stretch!r} m"))

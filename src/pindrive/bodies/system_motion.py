@@ -7,14 +7,22 @@ from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
-from typing import Any, Literal, overload
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pindrive import _core, lazy
-from pindrive.bodies.inputs import integrated
-from pindrive.bodies.system import GROUND, Body, ContactPair, Spring, Stop, System
+from pindrive.bodies.core_numbers import stop_ends
+from pindrive.bodies.motion_parts import (
+    BodyMotion,
+    ContactMotion,
+    FeedbackMotion,
+    SpringMotion,
+    StopMotion,
+)
+from pindrive.bodies.parts import Body, ContactPair, Feedback, Spring, Stop
+from pindrive.bodies.system import System
 from pindrive.lazy import mpl_figure, xr
 from pindrive.quantities.names import Names
 from pindrive.quantities.quantity import counted
@@ -58,7 +66,7 @@ class SystemLedger:
     Attributes:
         before: Energy of motion and of springs at t = 0.
         after: Energy of motion and of springs at the end.
-        inputs: Work of forces, prescribed motions and moving surfaces.
+        inputs: Work of forces, feedbacks, prescribed motions and moving surfaces.
         dampers: Loss in the dampers beside springs.
         contacts: Loss in contacts, with the energy that their skin holds at the end.
         stops: Loss at impacts and in elastic stops, with the energy that these hold at the end.
@@ -171,6 +179,12 @@ class SystemMotion(lazy.NotebookHtml):
         """Return a stop under way; arguments and errors as for `contact`."""
         return StopMotion(self, _between("stop", name, other, self.system.stops))
 
+    def feedback(
+        self, name: str | Body | Feedback, other: str | Body | None = None
+    ) -> FeedbackMotion:
+        """Return a feedback under way; arguments and errors as for `contact`."""
+        return FeedbackMotion(self, _between("feedback", name, other, self.system.feedbacks))
+
     @property
     def status(self) -> Status:
         """Complete, or the reason for its end (`Status.explanation`)."""
@@ -185,7 +199,7 @@ class SystemMotion(lazy.NotebookHtml):
     def events(self) -> tuple[SystemEvent, ...]:
         """Changes at contacts, in order."""
         names = [*self.system.contacts]
-        ends = [*self.system.stop_ends()]
+        ends = [*stop_ends(self.system)]
         table = self.core.changes()
         rows = zip(*(table[column].tolist() for column in table), strict=True)
         found = []
@@ -238,7 +252,7 @@ class SystemMotion(lazy.NotebookHtml):
 
     def state_at(
         self, t: NDArray[np.float64], side: Side = "right"
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    ) -> tuple[NDArray[np.float64], ...]:
         """Return all quantities at times.
 
         Args:
@@ -247,17 +261,23 @@ class SystemMotion(lazy.NotebookHtml):
 
         Returns:
             Position, velocity and acceleration of the bodies, shape (3, bodies, n); friction force,
-            stretch, sliding speed and slip of the contacts, shape (4, contacts, n); force of the
-            stops on the first bodies, shape (stops, n).
+            stretch, sliding speed and slip of the contacts, shape (4, contacts, n); forces of the
+            stops and of the feedbacks on the first bodies, shapes (stops, n) and (feedbacks, n).
         """
         moving, touching, pushing = self.core.at(np.ascontiguousarray(t), side == "right")
         counts = len(self.system.bodies), len(self.system.contacts)
         names = [*self.system.stops]
         force = np.zeros((len(names), len(t)))
-        ends = pushing.reshape(-1, len(t))
-        for (name, _, _, way), push in zip(self.system.stop_ends(), ends, strict=True):
+        forces = pushing.reshape(-1, len(t))
+        ends = [*stop_ends(self.system)]
+        for (name, _, _, way), push in zip(ends, forces, strict=False):
             force[names.index(name)] -= way * push
-        return moving.reshape(3, counts[0], len(t)), touching.reshape(4, counts[1], len(t)), force
+        return (
+            moving.reshape(3, counts[0], len(t)),
+            touching.reshape(4, counts[1], len(t)),
+            force,
+            forces[len(ends) :],
+        )
 
     def sample_times(self, count: int = 1001) -> NDArray[np.float64]:
         """`count` even times over [0, duration] and the events among them, s, shape (n,)."""
@@ -286,7 +306,7 @@ class SystemMotion(lazy.NotebookHtml):
         places = self.core.changes()["contact"]
         for i, name in enumerate(self.system.contacts):
             found[f"contact.{name}.events"] = float(np.count_nonzero(places == i))
-        ends = [name for name, *_ in self.system.stop_ends()]
+        ends = [name for name, *_ in stop_ends(self.system)]
         for name in self.system.stops:
             own = [of_contact + i for i, end in enumerate(ends) if end == name]
             found[f"stop.{name}.events"] = float(np.count_nonzero(np.isin(places, own)))
@@ -349,188 +369,6 @@ class SystemMotion(lazy.NotebookHtml):
         from pindrive.files.system_export import to_csv
 
         return to_csv(self, path, rate)
-
-
-@dataclass(frozen=True, slots=True, repr=False)
-class _Part:
-    """A part of a motion, evaluated at times of any shape."""
-
-    _motion: SystemMotion
-    name: str
-
-    def __repr__(self) -> str:
-        """Return its name in a line."""
-        return f"<{type(self).__name__} {self.name!r}>"
-
-    def _at(
-        self, contacts: bool, quantity: int, t: ArrayLike, side: Side
-    ) -> float | NDArray[np.float64]:
-        times = self._motion.known(t, side)
-        system = self._motion.system
-        place = [*(system.contacts if contacts else system.bodies)].index(self.name)
-        found = self._motion.state_at(times.ravel(), side)[contacts][quantity, place]
-        return float(found[0]) if times.ndim == 0 else found.reshape(times.shape)
-
-
-class BodyMotion(_Part):
-    """Motion of one body."""
-
-    __slots__ = ()
-
-    @overload
-    def position(self, t: float, side: Side = ...) -> float: ...
-    @overload
-    def position(self, t: ArrayLike, side: Side = ...) -> NDArray[np.float64]: ...
-    def position(self, t: ArrayLike, side: Side = "right") -> float | NDArray[np.float64]:
-        """Position, m.
-
-        Args:
-            t: s, any shape, from 0 to the duration.
-            side: Side of an event on which the limit is taken.
-
-        Raises:
-            ValueError: A time at which the motion is not known.
-        """
-        return self._at(False, 0, t, side)
-
-    @overload
-    def velocity(self, t: float, side: Side = ...) -> float: ...
-    @overload
-    def velocity(self, t: ArrayLike, side: Side = ...) -> NDArray[np.float64]: ...
-    def velocity(self, t: ArrayLike, side: Side = "right") -> float | NDArray[np.float64]:
-        """Velocity, m/s; arguments as for `position`."""
-        return self._at(False, 1, t, side)
-
-    @overload
-    def acceleration(self, t: float, side: Side = ...) -> float: ...
-    @overload
-    def acceleration(self, t: ArrayLike, side: Side = ...) -> NDArray[np.float64]: ...
-    def acceleration(self, t: ArrayLike, side: Side = "right") -> float | NDArray[np.float64]:
-        """Acceleration, m/s²; it jumps where friction does. Arguments as for `position`."""
-        return self._at(False, 2, t, side)
-
-
-class ContactMotion(_Part):
-    """One contact under way."""
-
-    __slots__ = ()
-
-    @property
-    def events(self) -> tuple[SystemEvent, ...]:
-        """Changes at this contact, in order."""
-        kinds = ("stick", "slip", "reverse")
-        every = (event for event in self._motion.events if event.contact == self.name)
-        return tuple(event for event in every if event.kind in kinds)
-
-    @overload
-    def force(self, t: float, side: Side = ...) -> float: ...
-    @overload
-    def force(self, t: ArrayLike, side: Side = ...) -> NDArray[np.float64]: ...
-    def force(self, t: ArrayLike, side: Side = "right") -> float | NDArray[np.float64]:
-        """Friction force on the first body, N; arguments as for `BodyMotion.position`.
-
-        Of several rigid contacts that hold a body together only the sum of the forces is
-        determined; each then has a part in proportion to its static friction.
-        """
-        return self._at(True, 0, t, side)
-
-    @overload
-    def stretch(self, t: float, side: Side = ...) -> float: ...
-    @overload
-    def stretch(self, t: ArrayLike, side: Side = ...) -> NDArray[np.float64]: ...
-    def stretch(self, t: ArrayLike, side: Side = "right") -> float | NDArray[np.float64]:
-        """Stretch of the skin, m; 0 of a rigid contact."""
-        return self._at(True, 1, t, side)
-
-    @overload
-    def sliding_speed(self, t: float, side: Side = ...) -> float: ...
-    @overload
-    def sliding_speed(self, t: ArrayLike, side: Side = ...) -> NDArray[np.float64]: ...
-    def sliding_speed(self, t: ArrayLike, side: Side = "right") -> float | NDArray[np.float64]:
-        """Velocity of the first body, or of its skin, over the surface, m/s; 0 in stick."""
-        return self._at(True, 2, t, side)
-
-    @overload
-    def slip(self, t: float, side: Side = ...) -> float: ...
-    @overload
-    def slip(self, t: ArrayLike, side: Side = ...) -> NDArray[np.float64]: ...
-    def slip(self, t: ArrayLike, side: Side = "right") -> float | NDArray[np.float64]:
-        """Direction of slip: -1, 1, or 0 in stick."""
-        return self._at(True, 3, t, side)
-
-
-class StopMotion(_Part):
-    """One stop under way."""
-
-    __slots__ = ()
-
-    @property
-    def events(self) -> tuple[SystemEvent, ...]:
-        """Times at which the bodies meet the stop or leave it, in order."""
-        names = {*self._motion.system.contacts}
-        own = (event for event in self._motion.events if event.contact == self.name)
-        return (
-            tuple(own)
-            if self.name not in names
-            else tuple(event for event in own if event.kind in ("stop", "leave"))
-        )
-
-    def force(self, t: ArrayLike, side: Side = "right") -> float | NDArray[np.float64]:
-        """Force of the stop on the first body, N; arguments as for `BodyMotion.position`."""
-        times = self._motion.known(t, side)
-        place = [*self._motion.system.stops].index(self.name)
-        found = self._motion.state_at(times.ravel(), side)[2][place]
-        return float(found[0]) if times.ndim == 0 else found.reshape(times.shape)
-
-
-class SpringMotion(_Part):
-    """One spring under way."""
-
-    __slots__ = ()
-
-    def _pull(self, t: ArrayLike, side: Side) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Elongation and its rate."""
-        times = self._motion.known(t, side)
-        flat = times.ravel()
-        system, (moving, *_) = self._motion.system, self._motion.state_at(flat, side)
-        spring = system.springs[self.name]
-        names = [*system.bodies]
-        one, other = (
-            moving[:2, names.index(name)] if name != GROUND else np.zeros((2, len(flat)))
-            for name in spring.between
-        )
-        given = np.zeros((2, len(flat)))
-        for part in (spring.length, spring.motion):
-            if part is not None:
-                given += _course(part, flat, side)
-        longer, faster = one - other - given
-        return longer.reshape(times.shape), faster.reshape(times.shape)
-
-    def elongation(self, t: ArrayLike, side: Side = "right") -> float | NDArray[np.float64]:
-        """Elongation of the spring, m; arguments as for `BodyMotion.position`."""
-        longer, _ = self._pull(t, side)
-        return float(longer) if longer.ndim == 0 else longer
-
-    def force(self, t: ArrayLike, side: Side = "right") -> float | NDArray[np.float64]:
-        """Force of spring and damper on the first body, N."""
-        spring = self._motion.system.springs[self.name]
-        longer, faster = self._pull(t, side)
-        found = -(spring.stiffness * longer + spring.damping * faster)
-        return float(found) if found.ndim == 0 else found
-
-
-def _course(given: Any, t: NDArray[np.float64], side: Side) -> NDArray[np.float64]:
-    """Values of an input and their rates, shape (2, n)."""
-    if isinstance(given, float):
-        return np.array([np.full_like(t, given), np.zeros_like(t)])
-    values, rates = _core.input_at(_numbers(integrated(given)), t, side == "right")
-    return np.array([values, rates])
-
-
-def _numbers(given: Any) -> Any:
-    from pindrive.motion.release import numbers_of
-
-    return numbers_of(given)
 
 
 def _kind(before: float, after: float) -> Kind:

@@ -10,8 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pindrive import _core
+from pindrive.bodies.core_numbers import PLACES, stop_ends
 from pindrive.bodies.inputs import integrated
-from pindrive.bodies.system import Body, System
+from pindrive.bodies.parts import TABLES, Body
+from pindrive.bodies.system import System
 from pindrive.bodies.system_motion import SystemMotion
 from pindrive.motion.core_numbers import entry, mapped, replaced
 from pindrive.motion.function import rates_of
@@ -21,16 +23,6 @@ from pindrive.quantities.status import Side, Status
 
 _STEP: Final = 2.0**-26
 """Relative distance of the neighbours that show if a derivative exists."""
-_PLACES: Final = {
-    "body": ("mass", "force", "position", "velocity"),
-    "spring": ("", "", "stiffness", "damping", "length"),
-    "contact": (
-        *("", "", "kinetic", "static", "stiffness", "damping"),
-        *("load", "velocity", "stretch"),
-    ),
-    "stop": ("", "", "", "", "stiffness", "damping", "restitution"),
-}
-"""Values of each part in the order in which the core has them."""
 
 
 class SystemSensitivity:
@@ -141,15 +133,17 @@ def direction_of(system: System, numbers: Any, key: str) -> Any:
     kind, name, part, *parameter = key.split(".")
     if kind == "stop":
         return _along_stop(system, numbers, name, part)
-    table = ("body", "spring", "contact").index(kind)
-    entries: dict[str, Any] = getattr(system, ("bodies", "springs", "contacts")[table])
+    if part == "period":
+        raise ValueError(refusal("parameter", "one with a derivative, not a period", key))
+    table = [*TABLES].index(kind)
+    entries: dict[str, Any] = getattr(system, TABLES[kind])
     row = [*entries].index(name)
     along = mapped(lambda x: x if isinstance(x, int) else 0.0, numbers)
     column = "length" if part == "motion" else part
-    places = [(table, row, _PLACES[kind].index(column))]
+    places = [(table, row, PLACES[kind].index(column))]
     given = entries[name]
     if kind == "contact" and part == "kinetic" and given.kinetic == given.static:
-        places.append((table, row, _PLACES[kind].index("static")))
+        places.append((table, row, PLACES[kind].index("static")))
     for place in places:
         at = entry(numbers, place)
         if isinstance(at, float):
@@ -164,10 +158,10 @@ def direction_of(system: System, numbers: Any, key: str) -> Any:
 def _along_stop(system: System, numbers: Any, name: str, part: str) -> Any:
     """Return the derivative by a value of a stop, which each of its ends has."""
     along = mapped(lambda x: x if isinstance(x, int) else 0.0, numbers)
-    for row, (of, _, _, side) in enumerate(system.stop_ends()):
+    for row, (of, _, _, side) in enumerate(stop_ends(system)):
         end = {"lower": -1, "upper": 1}.get(part)
         if of == name and end in (None, side):
-            column = 2 if end else _PLACES["stop"].index(part)
+            column = 2 if end else PLACES["stop"].index(part)
             along = replaced(along, (3, row, column), 1.0)
     return along
 
@@ -193,6 +187,6 @@ def _along_function(given: Any, part: str, parameter: str, key: str) -> Any:
             raise ValueError(refusal("parameter", "one of a Function alone", key))
     function = getattr(given, part)
     rates, _ = rates_of(function, parameter)
-    if part == "motion" and integrated(function) is not function:
+    if part in ("motion", "reference") and integrated(function) is not function:
         return _core.function_integral_along(function.core, rates)
     return rates

@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import Any, Final
 
 from pindrive.bodies.inputs import Given
-from pindrive.bodies.system import GROUND, System
+from pindrive.bodies.parts import GROUND
+from pindrive.bodies.system import System
 from pindrive.files.device import read_tables
 from pindrive.files.overrides import ConfigError
 from pindrive.motion.function import Function, of_parameters
@@ -25,6 +26,16 @@ from pindrive.quantities.value import equal_by_value
 
 _HEAD: Final = ("name", "duration")
 """Keys of the table [system]."""
+_OWN: Final[dict[str, tuple[str, ...]]] = {
+    "body": (),
+    "spring": ("between",),
+    "contact": ("between", "pressed_by"),
+    "stop": ("between",),
+    "feedback": ("between", "measured"),
+}
+"""Keys of each part that name other parts."""
+_ORDER: Final = ("body", "spring", "stop", "contact", "feedback")
+"""Order in which parts are read: a contact may name a stop that presses it."""
 _EXAMPLE: Final = """[body.pin] with mass = "1 g\""""
 
 
@@ -135,7 +146,7 @@ class _Reader:
                 self.problems.append(f"{self.file}: {names.unknown(table)}")
         if not self.tables.get("body"):
             self.problems.append(f"{self.file}: has no body; write {_EXAMPLE}")
-        for kind in KINDS:
+        for kind in _ORDER:
             entries = self.tables.get(kind, {})
             if not isinstance(entries, dict) or not all(
                 isinstance(entry, dict) for entry in entries.values()
@@ -169,9 +180,11 @@ class _Reader:
 
     def _add(self, kind: str, name: str, entry: Mapping[str, Any]) -> None:
         rows = {quantity.name: quantity for quantity in KINDS[kind]}
-        own = ("between",) if kind != "body" else ()
+        own = _OWN[kind]
         values: dict[str, Any] = {}
         problems = []
+        if kind == "contact" and "pressed_by" in entry:
+            values["pressed_by"] = entry["pressed_by"]
         for key, value in entry.items():
             label = f"{kind}.{name}.{key}"
             if key in own:
@@ -198,15 +211,28 @@ class _Reader:
             return
         one, other = self._between(kind, name, entry.get("between"), "motion" in values)
         add: Callable[..., object] = getattr(self.system, kind)
+        if "measured" in entry:
+            values["measured"] = self._pair(kind, name, "measured", entry["measured"], alone=True)
         add(one, values.pop("motion", other), name=name, **values)
 
     def _between(self, kind: str, name: str, given: object, moved: bool) -> tuple[str, str]:
-        """Both bodies of a spring or a contact; with a prescribed motion only the first."""
+        """Both bodies of a part; with a prescribed motion only the first."""
         label = f"{kind}.{name}.between"
         if given is None:
             raise ValueError(f'{label} is missing; write between = ["pin", "ground"]')
+        one, other = self._pair(kind, name, "between", given, alone=moved)
+        if moved and other != GROUND:
+            required = 'one body beside a motion, or that and "ground"'
+            raise ValueError(refusal(label, required, quoted(given)))
+        return one, other
+
+    def _pair(
+        self, kind: str, name: str, key: str, given: object, *, alone: bool
+    ) -> tuple[str, str]:
+        """Names of two bodies; a text, or where that is allowed a list of one, is of the first."""
+        label = f"{kind}.{name}.{key}"
         names = [given] if isinstance(given, str) else given
-        counts = (1, 2) if moved or isinstance(given, str) else (2,)
+        counts = (1, 2) if alone or isinstance(given, str) else (2,)
         if not isinstance(names, list) or len(names) not in counts:
             required = 'two names, like ["pin", "ground"]'
             raise ValueError(refusal(label, required, quoted(given)))
@@ -216,9 +242,6 @@ class _Reader:
                 known = {GROUND: (), **dict.fromkeys(self.system.bodies, ())}
                 unknown = Names("body", known).unknown(str(each))
                 raise ValueError(f"{label}: {unknown}")
-        if moved and other != GROUND:
-            required = 'one body beside a motion, or that and "ground"'
-            raise ValueError(refusal(label, required, quoted(given)))
         return one, other
 
 

@@ -89,7 +89,7 @@ def _draw_bodies(
 
 def _draw_contacts(motion: SystemMotion, contacts: list[str], axes: Axes) -> None:
     """Draw a row for each contact, coloured by its slip."""
-    _, touching, _ = motion.state_at(np.zeros(1))
+    _, touching, *_ = motion.state_at(np.zeros(1))
     end, first = motion.core.end, dict(zip(motion.system.contacts, touching[3, :, 0], strict=True))
     for row, name in enumerate(contacts):
         events = motion.contact(name).events

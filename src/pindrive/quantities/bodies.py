@@ -64,6 +64,10 @@ CONTACT: Final = (
     _input(_positive("load", "λ", "1", "factor of kinetic and static friction"), absent=1.0),
     _input(_free("velocity", "w", "m/s", "velocity of the surface, as of a belt")),
     _free("stretch", "s", "m", "stretch of the skin at t = 0"),
+    replace(
+        _positive("share", "c", "1", "load per load of the contact, or newton of the stop, beside"),
+        absent=None,
+    ),
 )
 STOP: Final = (
     replace(_free("lower", "l_1", "m", "least distance between the bodies"), absent=None),
@@ -88,7 +92,20 @@ STOP: Final = (
         bounds=between(0.0, 1.0),
     ),
 )
-KINDS: Final = {"body": BODY, "spring": SPRING, "contact": CONTACT, "stop": STOP}
+FEEDBACK: Final = (
+    _free("proportional", "k_P", "N/m", "gain of the error"),
+    _free("derivative", "k_D", "N*s/m", "gain of the rate of the error"),
+    _free("integral", "k_I", "N/(m*s)", "gain of the integral of the error"),
+    _input(_free("reference", "r", "m", "intended distance between the measured bodies")),
+    _positive("period", "T", "s", "time between two samples; 0: continuous"),
+)
+KINDS: Final = {
+    "body": BODY,
+    "spring": SPRING,
+    "contact": CONTACT,
+    "stop": STOP,
+    "feedback": FEEDBACK,
+}
 """Quantities of each part of a system."""
 PARTS: Final = {kind: Part(rows) for kind, rows in KINDS.items()}
 
@@ -103,6 +120,7 @@ OF_CONTACT: Final = (
     Quantity("sliding_speed", "u", "m/s", "velocity of the first body over the surface, in slip"),
     Quantity("slip", "σ", "", "direction of slip: -1, 1, or 0 in stick"),
 )
+OF_FEEDBACK: Final = (Quantity("force", "F_c", "N", "force of the feedback on the first body"),)
 OF_STOP: Final = (Quantity("force", "N_e", "N", "force of the stop on the first body"),)
 OF_SPRING: Final = (
     Quantity("force", "F", "N", "force of spring and damper on the first body"),
