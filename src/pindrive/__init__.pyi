@@ -42,6 +42,7 @@ from .study.robustness import robustness as robustness
 from .study.sensitivity import sobol as sobol
 from .study.study import Study as Study
 from .study.spec import load_study as load_study
+from .study.system_study import SystemStudy as SystemStudy
 
 __all__: list[str]
 __version__: str

@@ -117,9 +117,8 @@ class OwnedSystem {
 };
 
 constexpr double never = std::numeric_limits<double>::infinity();
-/// Time (s) and steps within which a motion without a duration must come to rest.
+/// Time within which a motion without a duration must come to rest, s.
 constexpr double longest = 1e6;
-constexpr std::size_t most_steps = 100'000;
 constexpr double seen_at_rest =
     1.25;  ///< end of such a motion over the time at which it comes to rest
 
@@ -134,15 +133,18 @@ struct Followed {
 };
 
 template <class T>
-std::unique_ptr<Followed<T>> follow(SystemNumbers at, SystemNumbers along, double duration) {
+std::unique_ptr<Followed<T>> follow(SystemNumbers at, SystemNumbers along, double duration,
+                                    std::size_t most_steps = 0) {
   const OwnedSystem<T> owned(std::move(at), std::move(along));
   return interruptible([&](auto go_on) {
     const bodies::System<T>& system = owned.system();
     bodies::StoredMotion<T> motion(system);
     bodies::Following<T> following(system, owned.state());
+    bool interrupted = false;
     const auto keep = [&](const bodies::Step<T>& step) {
       motion.add(step);
-      return go_on();
+      interrupted = !go_on();
+      return !interrupted;
     };
     if (duration < never)
       following.advance(T(duration), keep);
@@ -154,10 +156,11 @@ std::unique_ptr<Followed<T>> follow(SystemNumbers at, SystemNumbers along, doubl
       const double rest = plain(following.state().time);
       following.advance(T(rest > 0 ? rest * seen_at_rest : 1), keep);
     }
-    return std::make_unique<Followed<T>>(Followed<T>{std::move(motion), following.changes(),
-                                                     following.status(), following.resting(),
-                                                     system.bodies.size(), system.contacts.size(),
-                                                     system.stops.size(), system.feedbacks.size()});
+    const bool whole = following.status() == pd::Status::stopped && !interrupted;
+    return std::make_unique<Followed<T>>(Followed<T>{
+        std::move(motion), following.changes(), whole ? pd::Status::ok : following.status(),
+        following.resting(), system.bodies.size(), system.contacts.size(), system.stops.size(),
+        system.feedbacks.size()});
   });
 }
 
@@ -283,12 +286,13 @@ void bind_bodies(nb::module_& m) {
   bind<Dual>(m, "SystemDerivative", "The derivatives of such a motion along a direction.");
   m.def(
       "simulate_system",
-      [](SystemNumbers numbers, double duration) {
+      [](SystemNumbers numbers, double duration, std::size_t most_steps) {
         const SystemNumbers along = numbers;
-        return follow<double>(std::move(numbers), along, duration);
+        return follow<double>(std::move(numbers), along, duration, most_steps);
       },
-      "numbers"_a, "duration"_a,
-      "Simulates several bodies. Bodies are (mass, force, position, velocity); springs (first "
+      "numbers"_a, "duration"_a, "most_steps"_a = 0,
+      "Simulates several bodies; without a duration until they rest, or for so many steps. Bodies "
+      "are (mass, force, position, velocity); springs (first "
       "body, second or -1, "
       "stiffness, damping, length); contacts (first body, second or -1, kinetic, static, "
       "stiffness, damping, load, "

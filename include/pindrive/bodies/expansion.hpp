@@ -160,7 +160,7 @@ class Expansion {
     if (mode_[c.pressed_by] != bodies::Slip::stick) return given(loads_[j], n);
     return given(loads_[j], n) + c.share * push_[stop_of(c.pressed_by)][n];
   }
-  /// Order n of its rate; that of a stop that presses is left out, as only skin without damping needs it.
+  /// Order n of the rate of a load; that of a stop that presses is left out, as only skin without damping needs it.
   N load_rate(std::size_t j, int n) const {
     const bodies::Contact<T>& c = contact(j);
     if (c.pressed_by < 0 || is_stop(c.pressed_by)) return rate_of(loads_[j], n);

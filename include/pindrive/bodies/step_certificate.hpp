@@ -346,7 +346,7 @@ class StepCertificate {
   T jump_{0}, force_{0}, speed_{0}, size_{0}, drift_{0}, exchanged_{0};
   T beyond_{0}, wrong_impact_{0}, rebound_{0}, drift_of_impacts_{0};
   bool began_{false}, struck_{false};
-  /// What a sampled feedback holds.
+  /// State of a sampled feedback.
   struct Held {
     long samples{0};
     T sum{0}, force{0};

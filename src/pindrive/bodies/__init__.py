@@ -15,6 +15,7 @@
 - `Feedback`: a controller between two bodies
 - `FeedbackMotion`: a controller under way
 - `SystemEvent`: a change at a contact
+- `SystemEnding`: how a motion ends
 - `SystemLedger`: energy over a motion
 - `SystemCertificate`: the largest violation of each law
 - `SystemSensitivity`: derivatives of a motion by its parameters

@@ -1,5 +1,6 @@
 # The module of each public name; `__init__.py` describes them.
 
+from .ending import SystemEnding as SystemEnding
 from .motion_parts import BodyMotion as BodyMotion
 from .motion_parts import ContactMotion as ContactMotion
 from .motion_parts import FeedbackMotion as FeedbackMotion

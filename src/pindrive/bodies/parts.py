@@ -75,7 +75,7 @@ class ContactPair:
         load: Factor of both frictions.
         velocity: Velocity of the surface along the second body, m/s.
         stretch: Stretch of the skin at t = 0, m.
-        pressed_by: What adds to `load`: "contact.NAME" or "stop.NAME"; None: nothing.
+        pressed_by: Contact or stop that adds to `load`: "contact.NAME", "stop.NAME"; None: none.
         share: Load per load of that contact, or per force (1/N) of that elastic stop.
     """
 

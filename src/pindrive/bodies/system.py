@@ -10,6 +10,7 @@ from typing import Any
 import pindrive
 from pindrive import _core
 from pindrive.bodies.core_numbers import numbers_of_system, stop_ends
+from pindrive.bodies.ending import STEPS
 from pindrive.bodies.inputs import Given, input_of, integrated, negative
 from pindrive.bodies.parts import (
     GROUND,
@@ -392,14 +393,15 @@ class System:
         """Follow the bodies from their initial state, exactly.
 
         Args:
-            duration: s, above 0; None: until all bodies rest, held by rigid contacts.
+            duration: s, above 0; None: until the motion's `ending` is known: rest, a motion that
+                repeats, or a drift.
 
         Returns:
             The motion, whose `status` says if it was followed to its end.
 
         Raises:
-            ValueError: There is no body; the duration is out of range, or missing of a motion that
-                does not come to rest; or a load becomes negative.
+            ValueError: There is no body; the duration is out of range, or missing of a motion whose
+                ending is not found; or a load becomes negative.
         """
         from pindrive.bodies.system_motion import SystemMotion
 
@@ -412,12 +414,16 @@ class System:
         self._check_stops()
         frozen = self.with_values({})
         numbers = numbers_of_system(frozen)
-        core = _core.simulate_system(numbers, inf if end is None else end)
-        followed = core.status in (Status.ok, Status.stopped)
-        if end is None and followed and not core.rests:
-            required = "given, as the bodies do not come to rest"
-            raise ValueError(refusal("duration", required, f"None ({core.end:g} s were followed)"))
-        return SystemMotion(frozen, numbers, core, core.end if end is None else end)
+        if end is not None:
+            return SystemMotion(frozen, numbers, _core.simulate_system(numbers, end), end)
+        for steps in STEPS:
+            core = _core.simulate_system(numbers, inf, steps)
+            motion = SystemMotion(frozen, numbers, core, core.end)
+            given_up = core.status not in (Status.ok, Status.stopped)
+            if given_up or motion.ending.kind != "unknown":
+                return motion
+        required = "given, as the motion neither rests nor repeats"
+        raise ValueError(refusal("duration", required, f"None ({core.end:g} s were followed)"))
 
     def _check_stops(self) -> None:
         """Refuse bodies that begin beyond a rigid stop."""

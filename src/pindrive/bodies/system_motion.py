@@ -7,13 +7,14 @@ from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Final, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pindrive import _core, lazy
 from pindrive.bodies.core_numbers import stop_ends
+from pindrive.bodies.ending import SystemEnding, ending_of, numbers_of_ending
 from pindrive.bodies.motion_parts import (
     BodyMotion,
     ContactMotion,
@@ -31,6 +32,12 @@ from pindrive.quantities.status import Side, Status
 from pindrive.quantities.table import default
 from pindrive.quantities.value import concise
 
+_ENDINGS: Final = {
+    "rest": "at rest",
+    "settled": "settled",
+    "periodic": "periodic",
+    "drifting": "drifting",
+}
 Kind = Literal["stick", "slip", "reverse", "stop", "leave"]
 
 
@@ -141,7 +148,8 @@ class SystemMotion(lazy.NotebookHtml):
     def __repr__(self) -> str:
         """Return bodies, events and status in a line."""
         bodies = counted(len(self.system.bodies), "body", "bodies")
-        rest = ", at rest" if self.core.rests else ""
+        kind = self.ending.kind
+        rest = "" if kind == "unknown" else f", {_ENDINGS[kind]}"
         return (
             f"<SystemMotion of {bodies} over {self.duration:.6g} s, "
             f"{counted(len(self.events), 'event')}{rest}, {self.status.name}>"
@@ -194,6 +202,11 @@ class SystemMotion(lazy.NotebookHtml):
     def rests(self) -> bool:
         """True if rigid contacts hold all bodies at the end and no input changes any more."""
         return bool(self.core.rests)
+
+    @cached_property
+    def ending(self) -> SystemEnding:
+        """How the motion ends: at rest, settled, periodic, drifting, or unknown."""
+        return ending_of(self)
 
     @cached_property
     def events(self) -> tuple[SystemEvent, ...]:
@@ -289,8 +302,8 @@ class SystemMotion(lazy.NotebookHtml):
     def numbers(self) -> dict[str, float]:
         """Numbers of the motion, SI, by name: of each body, its energy, and the events.
 
-        "body.pin.end" is the position at the end, `least` and `largest` are those in between, and
-        `end_velocity` is the velocity at the end.
+        "body.pin.end" is the position at the end, `least` and `largest` are those in between,
+        `end_velocity` is the velocity at the end, and `drift` the mean one of the ending.
         """
         found: dict[str, float] = {}
         moving, *_ = self.state_at(np.array([self.core.end]), "left")
@@ -311,7 +324,11 @@ class SystemMotion(lazy.NotebookHtml):
             own = [of_contact + i for i, end in enumerate(ends) if end == name]
             found[f"stop.{name}.events"] = float(np.count_nonzero(np.isin(places, own)))
         energy = self._certified["energy"]
-        return found | {f"energy.{name}": value for name, value in energy.items()}
+        return (
+            found
+            | numbers_of_ending(self.ending)
+            | {f"energy.{name}": value for name, value in energy.items()}
+        )
 
     def sensitivity(self, parameters: Sequence[str]) -> Any:
         """Exact derivatives of the motion by some parameters of the system.

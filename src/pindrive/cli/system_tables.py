@@ -13,6 +13,20 @@ if TYPE_CHECKING:
     from pindrive.bodies.system_motion import SystemMotion
 
 
+def _ending(motion: SystemMotion) -> str:
+    """Say how a motion ends."""
+    ending = motion.ending
+    if ending.kind == "unknown":
+        return motion.status.explanation
+    words = {
+        "rest": "at rest",
+        "settled": "settled to 1e-8 of the motion",
+        "periodic": f"repeating every {significant(ending.period)} s",
+        "drifting": "drifting",
+    }
+    return words[ending.kind]
+
+
 def system_report(motion: SystemMotion, name: str) -> RenderableType:
     """Report bodies, contacts and energy of a motion."""
     numbers, system = motion.numbers(), motion.system
@@ -35,7 +49,7 @@ def system_report(motion: SystemMotion, name: str) -> RenderableType:
     energy, worst = motion.energy, motion.certificate().worst
     parts = {"inputs": energy.inputs, "dampers": energy.dampers, "contacts": energy.contacts}
     shown = ", ".join(f"{part} {significant(1e3 * value)} mJ" for part, value in parts.items())
-    followed = "at rest" if motion.rests else motion.status.explanation
+    followed = _ending(motion)
     lines = [
         f"{name or 'System'}: {counted(len(motion.events), 'event')} in {motion.core.end:g} s, "
         f"{followed}.",

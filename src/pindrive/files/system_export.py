@@ -64,6 +64,7 @@ def write_json(motion: SystemMotion, source: Path, path: Path) -> None:
         "system": {"file": str(source)},
         "status": motion.status.name,
         "duration": motion.duration,
+        "ending": asdict(motion.ending),
         "inputs": {key: _plain(value) for key, value in motion.system.inputs().items()},
         "numbers": motion.numbers(),
         "certificate": {**asdict(certificate), "worst": certificate.worst},

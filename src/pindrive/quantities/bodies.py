@@ -7,6 +7,7 @@ from math import inf
 from typing import Final
 
 from pindrive.quantities.drive import ABOVE_ZERO, EITHER_WAY, FROM_ZERO, OR_INFINITE
+from pindrive.quantities.functions import FUNCTIONS
 from pindrive.quantities.part import Part
 from pindrive.quantities.quantity import (
     FINITE,
@@ -126,3 +127,47 @@ OF_SPRING: Final = (
     Quantity("force", "F", "N", "force of spring and damper on the first body"),
     Quantity("elongation", "e", "m", "elongation of the spring"),
 )
+
+NUMBERS: Final = {
+    "body": (
+        Quantity("end", "q_end", "m", "position at the end"),
+        Quantity("end_velocity", "q'_end", "m/s", "velocity at the end"),
+        Quantity("least", "q_min", "m", "least position"),
+        Quantity("largest", "q_max", "m", "largest position"),
+        Quantity("drift", "v_end", "m/s", "mean velocity of the ending"),
+    ),
+    "contact": (Quantity("events", "n", "", "changes of the contact"),),
+    "stop": (Quantity("events", "n", "", "times at which the stop is met or left"),),
+    "ending": (
+        Quantity("period", "T_end", "s", "time after which the motion repeats"),
+        Quantity("rounds", "n_end", "", "periods of the inputs, or rounds, in that time"),
+    ),
+    "energy": tuple(
+        Quantity(name, f"W_{name}", "J", meaning)
+        for name, meaning in (
+            ("before", "energy of motion and of springs at t = 0"),
+            ("after", "energy of motion and of springs at the end"),
+            ("inputs", "work of forces, feedbacks, prescribed motions and surfaces"),
+            ("dampers", "loss in the dampers of springs"),
+            ("contacts", "loss in contacts"),
+            ("stops", "loss at stops"),
+        )
+    ),
+}
+"""Numbers of a motion, by the kind of the part."""
+
+
+def number_of(key: str) -> Quantity:
+    """Return the quantity of a number of a motion, such as "body.pin.end"."""
+    kind, *_, name = key.split(".")
+    return next(quantity for quantity in NUMBERS[kind] if quantity.name == name)
+
+
+def quantity_of(key: str) -> Quantity:
+    """Return the quantity of a parameter of a system, such as "body.pin.mass"."""
+    kind, _, part, *parameter = key.split(".")
+    given = PARTS[kind].rows[part]
+    if not parameter:
+        return given
+    own = {q.name: q for rows in FUNCTIONS.values() for q in rows}[parameter[0]]
+    return own if own.unit else replace(own, unit=given.unit)

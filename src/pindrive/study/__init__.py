@@ -9,6 +9,7 @@ A study file, or Python, names a device and says which of its keys change and ho
 - `load_study`: a study from its file
 - `Robustness`: what `robustness` found
 - `Study`: a device, and what is varied of it
+- `SystemStudy`: a system of several bodies, and what is varied of it
 - `Sweep`: what `sweep` computed, and the file that holds it
 - `sweep`: computes every point of a study into a file
 """

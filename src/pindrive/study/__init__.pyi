@@ -7,6 +7,7 @@ from .runner import Sweep as Sweep
 from .runner import sweep as sweep
 from .sensitivity import SobolIndices as SobolIndices
 from .study import Study as Study
+from .system_study import SystemStudy as SystemStudy
 from .spec import load_study as load_study
 
 __all__: list[str]
