@@ -390,7 +390,7 @@ def test_a_system_is_pushed_against_a_rigid_stop() -> None:
             "the position of a must be within 1.0 m at t = 0",
         ),
         (lambda s: s.simulate(0), "duration must be"),
-        (lambda s: s.simulate(), "duration must be given, as the bodies do not come to rest"),
+        (lambda s: s.simulate(), "duration must be given, as the motion neither rests nor repeats"),
     ],
 )
 def test_a_value_is_refused_in_a_line(build: object, words: str) -> None:

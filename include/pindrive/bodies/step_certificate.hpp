@@ -21,9 +21,7 @@ struct Violations {
   T friction{0};    ///< friction in slip against kinetic friction, in stick against its limit
   T sliding{0};     ///< slip against its direction, and sliding in stick
   T stops{0};  ///< bodies beyond a rigid stop, a stop that pulls, and impacts against Newton's law
-  T continuity{
-      0};  ///< jumps of position, or of velocity without an impact, between two steps; the rate of the integral
-           ///< of a feedback against its error
+  T continuity{0};  ///< jumps of position, or of velocity without an impact, between two steps
   T energy{0};  ///< balance of energy, over what was stored and exchanged
 
   T worst() const {
@@ -95,7 +93,7 @@ class StepCertificate {
                                                  0.21908636251598204, 0.1494513491505806,
                                                  0.06667134430868814};
 
-  static constexpr double resolution = 1e-15;  ///< of a place, over the largest
+  static constexpr double resolution = 1e-15;  ///< resolution of a place, over the largest place
 
   static void raise(T& most, T value) {
     using std::abs;

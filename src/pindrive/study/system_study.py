@@ -30,7 +30,7 @@ class SystemStudy:
 
     Args:
         system: System of bodies.
-        axes: What varies: for each parameter of `System.parameters` ("pin.mass") a list of values,
+        axes: Values of each parameter ("pin.mass", see `System.parameters`) that varies: a list,
             or even steps: ``{"lin": ["1 g", "5 g"], "count": 9}``, or even ratios: ``"log"``.
         outputs: Names of `SystemMotion.numbers`, as "body.pin.end"; None: all.
         duration: s; None: each motion until its ending is known.
