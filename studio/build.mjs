@@ -5,7 +5,7 @@ import { deflateRawSync } from "node:zlib";
 import { build } from "esbuild";
 
 const [wasm, page] = process.argv.slice(2);
-const LARGEST = 601_000; // bytes of the whole page
+const LARGEST = 602_000; // bytes of the whole page
 /** Characters of packed bytes: printable ASCII without those that end or escape anything in HTML. */
 const DIGITS = Array.from({ length: 94 }, (_, i) => String.fromCharCode(33 + i))
   .filter((digit) => !"<&\\".includes(digit))

@@ -10,6 +10,7 @@ import type { Values } from "./friction";
 import type { Input } from "./input";
 import { axesOf, gridValues, mapTask } from "./map";
 import { expanded, SIZE } from "./mapgrid";
+import type { Arm } from "./read/arm";
 import { deviceInput } from "./read/device";
 import { type Answer, Engine, SAMPLED, type Samples, type Verdict } from "./read/engine";
 import { Hand, type HandRows, type Place, type Slowness, TIMES } from "./read/hand";
@@ -26,6 +27,8 @@ interface Read {
     readonly pixel: number;
     readonly hand: HandRows;
     readonly pictures: readonly number[];
+    /** Arm that leads the hand along its rows. */
+    readonly arm?: Arm;
   };
 }
 /** A hand that follows aims, m, one each tick. */
@@ -93,18 +96,19 @@ function corners(values: Values, x: string, y: string): unknown {
   }));
 }
 
-function ofReading(core: Core, { device, page, pixel, hand: saved, pictures }: Read["read"]): unknown {
+function ofReading(core: Core, { device, page, pixel, hand: saved, pictures, arm }: Read["read"]): unknown {
   const design = readDevice(core, device, "the device");
   const input = deviceInput(core, design);
   const grey = Uint8Array.from(Buffer.from(page.grey, "base64"));
   const hand = Hand.of(saved, 10);
   const open = { device: input, page: { ...page, grey, pixel }, start: hand.start };
   const engine = new Engine(core);
-  const problem = engine.answer({ open });
+  const problem = engine.answer({ open: { ...open, arm: arm ?? null } });
   if (problem) return problem;
   let known = 0;
   let last: Answer = null;
   const sampled: number[] = [];
+  const own = new Hand(hand.start, 10);
   for (const until of pictures) {
     let count = known;
     while (count < hand.count && (count === 0 || saved.rows[count - 1]![0] / TIMES < until)) ++count;
@@ -112,18 +116,21 @@ function ofReading(core: Core, { device, page, pixel, hand: saved, pictures }: R
     last = engine.answer({ rows, until });
     known = count;
     // Time and positions of all pins at each sample.
-    const { times, values } = last as Samples;
+    const { times, values, rows: led } = last as Samples;
+    if ("failed" in (last as object)) return last;
+    own.extend(led);
     const pins = input.spots.length;
     times.forEach((time, i) => {
       const from = i * SAMPLED.length * pins;
       sampled.push(time, ...values.subarray(from, from + pins));
     });
   }
-  const { values, times } = last as Samples;
+  const { values, times } = last as Samples; // the last picture is at the end of the hand
   const end = values.subarray((times.length - 1) * SAMPLED.length * input.spots.length);
-  const verdict = engine.answer({ judge: { ...open, rows: hand.rowsFrom(0) } }) as Verdict;
-  const { x, y } = hand.at(hand.end);
-  return { end: bits(end), place: bits([x, y]), sampled: bits(sampled), ...verdict };
+  const moved = arm ? own : hand;
+  const verdict = engine.answer({ judge: { ...open, rows: moved.rowsFrom(0) } }) as Verdict;
+  const { x, y } = moved.at(moved.end);
+  return { end: bits(end), place: bits([x, y]), sampled: bits(sampled), led: own.saved, ...verdict };
 }
 
 function answer(core: Core, asked: Question): unknown {

@@ -219,3 +219,20 @@ def test_a_hand_is_checked() -> None:
         Hand(mass=0.0, damping=1.0)
     with pytest.raises(ValueError, match="one with a hand"):
         pd.scan(pd.load_device(READER), pd.Page(grating=[0.008])).plot_hand()
+
+
+def test_the_speed_over_two_lines_is_that_of_a_hand_that_gives_way() -> None:
+    """A heavy hand has the speed of one that nothing slows; an arm with many pins has another."""
+    from pindrive.evaluation import largest_hand_speeds, largest_speeds
+
+    found = {}
+    for mass, stiffness in ((1e9, 1e9), (0.55, 135.0)):
+        given = {**ARM, "hand.mass": mass, "hand.stiffness": stiffness, "array.columns": 2}
+        file = pd.load_device(READER, {**given, "array.rows": 1})
+        (found[mass],) = largest_hand_speeds(
+            file.device, file.reading, ["3 mm"], slowest=0.05, fastest=0.5
+        )
+    (fixed,) = largest_speeds(file.device, ["3 mm"], slowest=0.05, fastest=0.5)
+    assert found[1e9].speed == pytest.approx(fixed.speed, rel=0.1)
+    assert found[0.55].speed != pytest.approx(found[1e9].speed, rel=0.02)
+    assert found[0.55].settled == ()

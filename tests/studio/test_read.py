@@ -111,7 +111,10 @@ def test_a_hand_has_the_bits_of_a_scan_at_any_rate_of_pictures(
     reading = load_reading(saved(hand, device, tmp_path / "reading.json"))
     done = pd.scan(reading.device, reading.page, reading.hand)
     pins = len(done.pins)
-    position, stretch, _, command, luminance = np.reshape(doubles(found[0]["end"]), (5, pins))
+    position, stretch, force, _, command, luminance = np.reshape(
+        doubles(found[0]["end"]), (6, pins)
+    )
+    assert_allclose(force.sum(), done.force_on_hand(end), rtol=1e-9, atol=1e-12)
     # The end is no event: a series may be evaluated there from another step.
     assert_allclose(position, [pin.state.position for pin in done.pins], rtol=0.0, atol=1e-17)
     last = [pin.motion.stretch(end) for pin in done.pins]
@@ -132,6 +135,40 @@ def test_a_hand_has_the_bits_of_a_scan_at_any_rate_of_pictures(
         # The page finds a motion under functions by series, a scan in closed form.
         lag = np.nan if line["lag"] is None else line["lag"]
         assert lag == pytest.approx(expected.begin.lag, rel=1e-12, abs=1e-17, nan_ok=True)
+
+
+ARM = {"mass": 0.55, "stiffness": 135.0, "damping": 6.5}
+UNITS = ("kg", "N/m", "N*s/m")
+
+
+@pytest.mark.parametrize(("slowness", "black"), [(40, 40), (10, 40), (10, 0), (1, 0)])
+def test_a_hand_that_gives_way_moves_as_python_has_it(
+    node: Ask, tmp_path: Path, slowness: int, black: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The page takes the force of the pins as even over 0.4 ms; `scan` follows the hand exactly.
+
+    The page has one line, or none: with several a sample may fall on the other side of an edge.
+    """
+    grey = np.full((275, 968), 255, np.uint8)
+    grey[:, 400 : 400 + black] = 0
+    monkeypatch.setitem(globals(), "page_of_lines", lambda: grey)
+    intended = followed(node, slowness, True, 7)
+    question = asked(intended, READER, [intended["rows"][-1][0] / 5000])
+    question["read"]["arm"] = ARM
+    (found,) = node([question])
+    rows = np.array(found["led"]["rows"])
+    times, speeds = rows[:, 0] / 5000, rows[:, 1] / 1e6
+    assert np.diff(rows[:, 0]).max() <= 2
+    table = "".join(f'{k} = "{v} {u}"\n' for (k, v), u in zip(ARM.items(), UNITS, strict=True))
+    reading = load_reading(saved(intended, f"{READER}\n[hand]\n{table}", tmp_path / "a.json"))
+    hand = pd.scan(reading.device, reading.page, reading.hand).hand
+    assert hand is not None
+    exact, meant = (np.asarray(path.velocity(times)[0]) for path in (hand.path, hand.intended))
+    lost = np.abs(meant - exact).max()
+    assert lost > (0.4 if black else 0.1) * meant.max()
+    assert np.abs(speeds - exact).max() < 2e-3 * lost
+    place, expected = doubles(found["place"])[0], float(hand.path.position(times[-1])[0])
+    assert abs(place - expected) < 2e-3 * hand.error
 
 
 def random_hand(node: Ask, seed: int) -> dict[str, Any]:

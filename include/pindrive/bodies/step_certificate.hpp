@@ -22,7 +22,7 @@ struct Violations {
   T sliding{0};     ///< slip against its direction, and sliding in stick
   T stops{0};  ///< bodies beyond a rigid stop, a stop that pulls, and impacts against Newton's law
   T continuity{0};  ///< jumps of position, or of velocity without an impact, between two steps
-  T energy{0};  ///< balance of energy, over what was stored and exchanged
+  T energy{0};      ///< balance of energy, over what was stored and exchanged
 
   T worst() const {
     return std::max({motion, kinematics, friction, sliding, stops, continuity, energy});

@@ -185,8 +185,16 @@ def _number(count: int, noun: str) -> str:
 # ---- speed ---------------------------------------------------------------------------------------
 
 
-def speed_report(limits: Sequence[SpeedLimit], criteria: Criteria) -> RenderableType:
-    """The largest hand speed for each pitch, and by which criterion."""
+def speed_report(
+    limits: Sequence[SpeedLimit], criteria: Criteria, *, gives_way: bool = False
+) -> RenderableType:
+    """The largest hand speed for each pitch, and by which criterion.
+
+    Args:
+        limits: Limit of each pitch.
+        criteria: Criteria of a felt line.
+        gives_way: True for a hand that the pins slow.
+    """
     length, speed = QUANTITIES["speed.pitch"], QUANTITIES["hand_speed"]
     table = new_table(
         "Largest hand speed over two lines",
@@ -215,13 +223,16 @@ def speed_report(limits: Sequence[SpeedLimit], criteria: Criteria) -> Renderable
             beyond(limit, criteria),
         )
     tried = limits[0].tried[0], max(limit.tried[1] for limit in limits)
+    settled = "Settled: the vibration after the first line also ends before the second line."
     words = [
         criterion(criteria),
-        "Settled: the vibration after the first line also ends before the second line.",
+        *([] if gives_way else [settled]),
         *bound_words(limits),
         hands_words([limit.speed for limit in limits]),
         f"Tried: {speed.text(tried[0])} to {speed.text(tried[1])}, each speed an exact simulation.",
     ]
+    if gives_way:
+        words.append("The hand gives way: speeds are intended ones, and all pins cross both lines.")
     return Group(table, *whole_lines(words))
 
 

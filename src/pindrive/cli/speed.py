@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -92,9 +91,6 @@ def speed(
                 for step in measures(lengths, "speed.pitch", "2 mm", "--pitch")
             ]
             line = None if width is None else measure(width, "speed.width", "1 mm", "--width")
-            if device.device.hand is not None:
-                note = "the speeds over two lines are those of a hand that nothing slows"
-                print(f"warning: {note}; --text follows the hand of [hand]", file=sys.stderr)
             report, targets = _over_lines(device, pitches, line, tried, files, force)
     show(report)
     say_written(targets)
@@ -125,22 +121,30 @@ def _over_lines(
     force: bool,
 ) -> tuple[RenderableType, list[Target[_Speeds]]]:
     from pindrive.cli.scan_tables import speed_report
+    from pindrive.evaluation.hand_speed import largest_hand_speeds
     from pindrive.evaluation.resolution import largest_speeds
+    from pindrive.quantities.refusal import refusal
 
+    gives_way = device.device.hand is not None
+    if gives_way and width is not None:
+        required = "left out for a hand that gives way: lines are half as wide as their pitch"
+        raise ValueError(refusal("--width", required, f"{width!r} m"))
     targets = files("speed_pitch [m]")
     with results(targets, [device.path], force=force) as write:
         with bar("Trials") as progress:
-            found = largest_speeds(
-                device.device,
-                pitches,
-                width=width,
-                slowest=tried[0],
-                fastest=tried[1],
-                criteria=device.criteria,
-                progress=progress,
-            )
+            common = {
+                "slowest": tried[0],
+                "fastest": tried[1],
+                "criteria": device.criteria,
+                "progress": progress,
+            }
+            if gives_way:
+                reading, touch = device.reading, device.touch
+                found = largest_hand_speeds(device.device, reading, pitches, touch=touch, **common)
+            else:
+                found = largest_speeds(device.device, pitches, width=width, **common)
         write(found)
-    return speed_report(found, device.criteria), targets
+    return speed_report(found, device.criteria, gives_way=gives_way), targets
 
 
 def _over_text(

@@ -5,6 +5,7 @@
 - `evaluate`: what the finger was shown, line by line
 - `Evaluation`: what the finger was shown in a scan
 - `largest_speeds`: the largest hand speed at which two lines stay distinct
+- `largest_hand_speeds`: the same where the pins slow the hand
 - `Line`: one printed line under one pin
 - `PageSpeeds`: what becomes of the lines of a page at each hand speed
 - `SpeedLimit`: how fast a hand may go over two lines

@@ -1,5 +1,6 @@
 # The module of each public name; `__init__.py` describes them.
 
+from .hand_speed import largest_hand_speeds as largest_hand_speeds
 from .page_speed import PageSpeeds as PageSpeeds
 from .page_speed import speeds_over_page as speeds_over_page
 from .perception import evaluate as evaluate

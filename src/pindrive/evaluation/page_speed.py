@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import isnan, nan, sqrt
@@ -18,7 +18,7 @@ from pindrive.device.pin_scan import Progress
 from pindrive.device.reading import Reading
 from pindrive.device.scanning import scan
 from pindrive.evaluation.perception import evaluate
-from pindrive.evaluation.resolution import check_tried
+from pindrive.evaluation.resolution import Band, check_tried
 from pindrive.lazy import mpl_figure, xr
 from pindrive.quantities.status import Status
 from pindrive.quantities.table import QUANTITIES, default
@@ -30,6 +30,7 @@ PRECISION: Final = 1e-2
 """Relative precision of a border."""
 _MOST: Final = TRIED + 14
 """Largest number of trials: the grid, and two bisections of an interval."""
+Property = Callable[[Mapping[str, int]], bool]
 COUNTED: Final = ("crossed", "shown", "unsettled", "sure", "false")
 
 
@@ -70,13 +71,8 @@ class PageSpeeds(lazy.NotebookHtml):
         """The largest up to which the pin also settles after each line, m/s; or NaN."""
         return self._largest(all_settled)
 
-    def _largest(self, holds: Callable[[Mapping[str, int]], bool]) -> float:
-        found = nan
-        for speed, counts in self.counts.items():
-            if not holds(counts):
-                break
-            found = speed
-        return found
+    def _largest(self, holds: Property) -> float:
+        return largest(self.counts, holds)
 
     def to_dataset(self) -> xr.Dataset:
         """The counts over `hand_speed`, and the two limits, with units."""
@@ -109,6 +105,16 @@ def all_settled(counts: Mapping[str, int]) -> bool:
     return all_shown(counts) and not counts["lines.unsettled"]
 
 
+def largest(counts: Mapping[float, Mapping[str, int]], holds: Property) -> float:
+    """Return the largest speed up to which a property holds at every trial, m/s; or NaN."""
+    found = nan
+    for speed, numbers in counts.items():
+        if not holds(numbers):
+            break
+        found = speed
+    return found
+
+
 def speeds_over_page(
     device: Device,
     reading: Reading,
@@ -138,28 +144,50 @@ def speeds_over_page(
     tried = check_tried(slowest, fastest)
     if page.path is not None:
         raise ValueError(f"page must be read in strokes, whose speed can vary, got {page.path}")
-    found: dict[float, Mapping[str, int]] = {}
 
     def trial(speed: float) -> Mapping[str, int]:
+        at_speed = replace(reading, hand_speed=speed)
+        scene = page.scene(at_speed, device.array)
+        hand = page.hand(at_speed, scene, device.array)
+        done = scan(device, scene, hand, touch=touch, max_angle=reading.max_angle)
+        return evaluate(done, criteria or Criteria()).counts
+
+    found = trials(trial, tried, (all_shown, all_settled), progress)
+    return PageSpeeds(page.words, tried, found)
+
+
+def trials(
+    trial: Callable[[float], Mapping[str, int]],
+    tried: Band,
+    properties: Sequence[Property],
+    progress: Progress | None,
+) -> dict[float, Mapping[str, int]]:
+    """Counts at a grid of speeds, and at the borders of some properties, by speed in m/s.
+
+    Args:
+        trial: Function that returns the counts at a speed, m/s.
+        tried: Slowest and fastest speed, m/s.
+        properties: Properties of the counts, each of whose first end is refined by bisection.
+        progress: Function called after each trial.
+    """
+    found: dict[float, Mapping[str, int]] = {}
+
+    def counts(speed: float) -> Mapping[str, int]:
         if speed not in found:
-            at_speed = replace(reading, hand_speed=speed)
-            scene = page.scene(at_speed, device.array)
-            hand = page.hand(at_speed, scene, device.array)
-            done = scan(device, scene, hand, touch=touch, max_angle=reading.max_angle)
-            found[speed] = evaluate(done, criteria or Criteria()).counts
+            found[speed] = trial(speed)
             if progress:
                 progress(min(len(found), _MOST - 1), _MOST)
         return found[speed]
 
     grid = np.geomspace(*tried, TRIED).tolist()
-    for holds in (all_shown, all_settled):
-        every = [holds(trial(speed)) for speed in grid]
+    for holds in properties:
+        every = [holds(counts(speed)) for speed in grid]
         for (slow, before), (fast, after) in pairwise(zip(grid, every, strict=True)):
             if before and not after:
                 while fast > (1.0 + PRECISION) * slow:
                     middle = sqrt(slow * fast)
-                    slow, fast = (middle, fast) if holds(trial(middle)) else (slow, middle)
+                    slow, fast = (middle, fast) if holds(counts(middle)) else (slow, middle)
                 break
     if progress:
         progress(_MOST, _MOST)
-    return PageSpeeds(page.words, tried, dict(sorted(found.items())))
+    return dict(sorted(found.items()))

@@ -88,6 +88,11 @@ export class Display {
     this.picture = null;
   }
 
+  /** True if the drive axis is that of a ruler. */
+  get level(): boolean {
+    return Math.abs(this.axis[1]) < 1e-6;
+  }
+
   /** The page has another print. */
   setPage(narrow: boolean): void {
     this.felt.setWidth(this.paper.width);
@@ -117,9 +122,11 @@ export class Display {
     }
     this.felt.paint(samples, hand);
     const motion = hand.at(sample.time);
+    const intended = this.session().intended?.at(sample.time) ?? null;
     this.picture = {
       sample,
       hand: motion,
+      intended,
       spots: input.spots,
       axis: this.axis,
       hold: this.hold ?? Math.max(...sample.values.pull, 1e-9),
@@ -134,6 +141,7 @@ export class Display {
     this.draw(true);
     this.tell();
     this.readouts.showSpeed(this.speed, hand.slowness, this.limits);
+    this.readouts.showLag(this.picture);
   }
 
   /** Says what happens now. */

@@ -87,11 +87,16 @@ export class Hand {
     );
   }
 
-  /** True if the hand has rested at an aim for long enough that nothing changes any more. */
-  rests(aim: Place, straight: boolean): boolean {
+  /** True if the hand has rested at an aim for long enough, s, that nothing changes any more. */
+  rests(aim: Place, straight: boolean, lasts = RESTS): boolean {
     const { x, y } = this.last;
     const arrived = Math.abs(aim.x - x) < ARRIVED && (straight || Math.abs(aim.y - y) < ARRIVED);
-    return arrived && this.ticks - this.moved > RESTS * TIMES;
+    return arrived && this.ticks - this.moved > lasts * TIMES;
+  }
+
+  /** Goes on by rows in whole units. */
+  extend(rows: Float64Array): void {
+    for (let i = 0; i < rows.length; i += 3) this.add(rows[i]!, rows[i + 1]!, rows[i + 2]!);
   }
 
   /** A tick towards an aim; `straight`: along a ruler, at an even height. */

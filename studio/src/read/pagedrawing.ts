@@ -42,7 +42,29 @@ export function drawPage(
   const height = (width * paper.canvas.height) / paper.canvas.width;
   pen.drawImage(tinted.at(paper, sheet), 0, 0, width, height);
   drawOutcomes(pen, scale, lines);
-  if (picture) drawDevice(pen, scale, picture);
+  if (!picture) return;
+  drawDevice(pen, scale, picture);
+  if (picture.intended) drawRuler(pen, scale, height, picture.hand.x, picture.intended.x);
+}
+
+/** The mark of a ruler where the hand is meant to be, and how far the mouse is from it. */
+function drawRuler(pen: Pen, scale: number, height: number, hand: number, intended: number): void {
+  const [from, to, y] = [hand * scale, intended * scale, height - 9];
+  [pen.strokeStyle, pen.fillStyle, pen.lineWidth, pen.lineCap] = ["#a0306a", "#a0306a", 2, "butt"];
+  pen.beginPath();
+  for (const [x0, y0, x1, y1] of [
+    [to, 0, to, height],
+    [from, y, to, y],
+    [from, y - 4, from, y + 4],
+  ] as const) {
+    pen.moveTo(x0, y0);
+    pen.lineTo(x1, y1);
+  }
+  pen.stroke();
+  const apart = 1e3 * (intended - hand);
+  if (Math.abs(apart) < 0.05) return;
+  pen.textAlign = apart > 0 ? "right" : "left";
+  pen.fillText(`${Math.abs(apart).toFixed(1)} mm`, to + (apart > 0 ? -5 : 5), y - 6);
 }
 
 function drawDevice(pen: Pen, scale: number, picture: Picture): void {

@@ -38,6 +38,8 @@ export function colorsOf(look: Look): Colors {
 export interface Picture {
   readonly sample: Sample;
   readonly hand: Motion;
+  /** Intended motion of a hand that gives way. */
+  readonly intended: Motion | null;
   readonly spots: readonly Row[];
   /** Direction of the drive axis. */
   readonly axis: Row;

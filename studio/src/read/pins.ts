@@ -17,7 +17,8 @@ export class Pins {
   /** Opens a device at rest; each thread has its share of the pins. */
   open({ device, ...opening }: Opened["open"]): Promise<Failure | null> {
     const { spots } = device;
-    const used = Math.min(this.threads.length, spots.length);
+    // Pins that slow their hand move it together.
+    const used = opening.arm ? 1 : Math.min(this.threads.length, spots.length);
     const ends = Array.from({ length: used + 1 }, (_, i) => Math.round((i * spots.length) / used));
     this.shares = ends.slice(1).map((end, i) => end - ends[i]!);
     return this.all((i) => ({
@@ -44,7 +45,7 @@ function failed(answer: Answer): answer is Failure {
 
 /** Joins the samples of the shares; they took as long as the slowest share. */
 function together(parts: readonly Samples[], shares: readonly number[]): Samples {
-  const { until, times } = parts[0]!;
+  const { until, times, rows } = parts[0]!;
   const pins = shares.reduce((sum, share) => sum + share, 0);
   const values = new Float64Array(times.length * SAMPLED.length * pins);
   let first = 0;
@@ -55,5 +56,5 @@ function together(parts: readonly Samples[], shares: readonly number[]): Samples
     }
     first += share;
   });
-  return { until, times, values, took: Math.max(...parts.map(({ took }) => took)) };
+  return { until, times, values, rows, took: Math.max(...parts.map(({ took }) => took)) };
 }

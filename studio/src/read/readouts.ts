@@ -2,7 +2,7 @@
 import { card, h } from "../dom";
 import { type Limit, mergingPitch } from "./dial";
 import type { Slowness } from "./hand";
-import type { Picture } from "./picture";
+import { type Picture, pullOf } from "./picture";
 import type { Line } from "./scan";
 import { happening } from "./sentence";
 
@@ -19,9 +19,11 @@ export class Readouts {
   private readonly yours = h("span", { class: "note yours" });
   private readonly merging = h("p", { class: "note merging" });
   private readonly finest = h("p", { class: "note" });
+  private readonly lag = h("p", { class: "note lag", hidden: true });
   private readonly counts: Readonly<Record<Count, HTMLElement>>;
   private spokenAt = 0;
   private readAt = 0;
+  private lagAt = 0;
 
   constructor() {
     const cells = COUNTS.map((name) => [name, h("b", {}, "0")]);
@@ -38,6 +40,7 @@ export class Readouts {
       "speed-card",
       "Speed of the hand",
       h("div", { class: "speeds" }, speed, dial),
+      this.lag,
       this.merging,
       this.finest,
       h("dl", { class: "counts" }, ...cells),
@@ -71,6 +74,23 @@ export class Readouts {
         ? `closer than ${pitch.toFixed(1)} mm`
         : widest && `closer than ${widest.pitch} mm, and some wider ones,`;
     this.merging.textContent = speed < STANDS || !merged ? "" : `now lines ${merged} become one`;
+  }
+
+  /** Says how far a hand that gives way is behind its ruler, and what its pins pull. */
+  showLag(picture: Picture): void {
+    const { intended, hand, sample } = picture;
+    this.lag.hidden = !intended;
+    const time = performance.now();
+    if (!intended || time - this.lagAt < READ) return;
+    this.lagAt = time;
+    const lag = 1e3 * (intended.x - hand.x) * (intended.vx < 0 ? -1 : 1);
+    const { force } = sample.values;
+    const pull = Math.abs(force.reduce((sum, one) => sum + one, 0));
+    const held = [...force].filter((_, pin) => pullOf(picture, pin) > 0.5).length;
+    const where =
+      lag < -0.05 ? `${(-lag).toFixed(1)} mm ahead of` : `${Math.max(0, lag).toFixed(1)} mm behind`;
+    const pins = held === 1 ? "1 magnet holds" : `${held} magnets hold`;
+    this.lag.textContent = `The mouse is ${where} the ruler. ${pins}, the pins pull with ${pull.toFixed(2)} N.`;
   }
 
   /** Speeds up to which the closest lines stay distinct, with this device and with the one before. */

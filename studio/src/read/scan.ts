@@ -26,7 +26,7 @@ export interface Start {
 }
 
 /** Quantities of the pins that a picture shows, by their numbers in pindrive.h. */
-export const SHOWN = { position: 0, stretch: 5, pull: 9, command: 12, luminance: 13 } as const;
+export const SHOWN = { position: 0, stretch: 5, force: 7, pull: 9, command: 12, luminance: 13 } as const;
 export type Shown = keyof typeof SHOWN;
 
 const OUTCOMES = ["shown", "unseen", "merged", "faint", "false"] as const;

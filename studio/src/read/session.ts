@@ -1,6 +1,7 @@
 // One reading: a hand over a page, advanced with the pictures, and repeated at any speed.
 
 import type { Thread } from "../thread";
+import type { Arm } from "./arm";
 import { type Answer, type Load, SAMPLED, type Samples, type Verdict } from "./engine";
 import { Hand, type HandRows, type Motion, type Slowness, TICK } from "./hand";
 import type { Pins } from "./pins";
@@ -11,6 +12,7 @@ const KEPT = 0.3; // s of the device for which samples are kept
 const LONGEST = 30_000; // rows of a reading
 const LATE = 25; // ms of the wall clock between two pictures beyond which time stands still
 const JUDGED = 300; // ms between two evaluations of the lines at least
+const GIVES = 1.5; // s of the device after which a hand that gives way has settled behind a ruler at rest
 const REST = 3; // times that the evaluation rests as long as it took, for the threads of the pins
 
 /** Quantities of all pins at a time, s of the device. */
@@ -30,6 +32,9 @@ export interface Listener {
 
 export class Session {
   hand = new Hand({ x: 4 * MM, y: 6.25 * MM }, 10);
+  /** Intended motion of a hand that gives way, along the ruler. */
+  intended: Hand | null = null;
+  private arm: Arm | null = null;
   samples: Sample[] = [];
   /** Times that the pictures took in the threads of the pins, ms, for tests. */
   readonly took: number[] = [];
@@ -61,6 +66,10 @@ export class Session {
   get pins(): number {
     return this.device.spots.length;
   }
+  /** The motion that follows the aim. */
+  private get lead(): Hand {
+    return this.intended ?? this.hand;
+  }
   /** Device, page and hand so far, for the thread. */
   private get opening(): { device: DeviceInput; page: Raster; start: { x: number; y: number } } {
     return { device: this.device, page: this.page, start: this.hand.start };
@@ -73,9 +82,11 @@ export class Session {
     this.page = page;
   }
 
-  /** Begins a reading at a place, m, with pins at rest. */
-  begin(x: number, y: number, slowness: Slowness): void {
+  /** Begins a reading at a place, m, with pins at rest; an arm leads a hand that gives way. */
+  begin(x: number, y: number, slowness: Slowness, arm: Arm | null): void {
     this.hand = new Hand({ x, y }, slowness);
+    this.intended = arm && new Hand({ x, y }, slowness);
+    this.arm = arm;
     [this.replayed, this.judgedRows] = [false, 0];
     this.open();
   }
@@ -83,6 +94,7 @@ export class Session {
   /** Begins to repeat a reading. */
   repeat(saved: HandRows, slowness: Slowness): void {
     this.hand = Hand.of(saved, slowness);
+    [this.intended, this.arm] = [null, null];
     [this.replayed, this.judgedRows] = [true, 0];
     this.open();
     this.evaluate(0);
@@ -94,6 +106,7 @@ export class Session {
   /** Repeats from now on the reading that was just made, at whose end it stands. */
   keep(): void {
     this.replayed = true;
+    [this.intended, this.arm] = [null, null];
     this.judgeFrom = 0;
     this.evaluate(0);
   }
@@ -112,7 +125,7 @@ export class Session {
     [this.shown, this.sent, this.wall, this.pending] = [0, 0, 0, false];
     this.samples = [];
     this.listener.began();
-    void this.live.open(this.opening).then((answer) => this.checked(answer));
+    void this.live.open({ ...this.opening, arm: this.arm }).then((answer) => this.checked(answer));
   }
 
   /** The hand follows an aim, m, until now (ms), and the pins follow the hand; false if the hand rests at its aim. */
@@ -121,16 +134,18 @@ export class Session {
     if (!this.wall) this.wall = now - TICK;
     this.wall = Math.max(this.wall, now - LATE);
     let moves = false;
+    const { lead, intended } = this;
+    const level = straight() || intended !== null;
     while (this.wall < now) {
       const at = aim(this.wall);
-      moves = !this.hand.rests(at, straight()) && !this.full;
-      if (moves) this.hand.follow(at, straight());
+      moves = !lead.rests(at, level, intended ? GIVES : undefined) && !this.full;
+      if (moves) lead.follow(at, level);
       this.wall += TICK;
     }
-    const ahead = moves ? ((this.wall - now) * 1e-3) / this.hand.slowness : 0;
-    this.advance(Math.max(this.shown, this.hand.end - ahead));
+    const ahead = moves && !intended ? ((this.wall - now) * 1e-3) / lead.slowness : 0;
+    this.advance(Math.max(this.shown, lead.end - ahead));
     this.evaluate(now);
-    return moves || this.shown < this.hand.end || this.hand.count !== this.judgedRows;
+    return moves || this.shown < lead.end || this.hand.count !== this.judgedRows;
   }
 
   /** Shows another time of a reading that is repeated, s of the device. */
@@ -142,9 +157,9 @@ export class Session {
 
   private advance(until: number): void {
     if (this.pending || !(until > this.shown)) return;
-    const { hand, epoch } = this;
-    const rows = hand.rowsFrom(this.sent);
-    [this.sent, this.pending] = [hand.count, true];
+    const { lead, epoch } = this;
+    const rows = lead.rowsFrom(this.sent);
+    [this.sent, this.pending] = [lead.count, true];
     void this.live.advance({ rows, until }).then((answer) => {
       if (epoch !== this.epoch) return;
       this.pending = false;
@@ -160,8 +175,9 @@ export class Session {
     return false;
   }
 
-  private take({ until, times, values, took }: Samples): void {
+  private take({ until, times, values, rows, took }: Samples): void {
     const { pins } = this;
+    this.hand.extend(rows);
     const found = Array.from(times, (time, i): Sample => {
       const of = (q: number): Float64Array => {
         const from = (i * SAMPLED.length + q) * pins;

@@ -9,6 +9,7 @@ export interface ToolbarActions {
   readonly pen: (on: boolean) => void;
   readonly clear: () => void;
   readonly ruler: (on: boolean) => void;
+  readonly gives: (on: boolean) => void;
   readonly slowness: (slowness: Slowness) => void;
   readonly feedback: Feedback;
 }
@@ -18,6 +19,7 @@ export class Toolbar {
   private readonly text = textField({ maxlength: 12, "aria-label": "text on the page" });
   private readonly times: HTMLSelectElement;
   private readonly clear: HTMLButtonElement;
+  private readonly gives: HTMLButtonElement;
 
   constructor(actions: ToolbarActions) {
     this.text.addEventListener("input", () => actions.text(this.text.value));
@@ -28,6 +30,11 @@ export class Toolbar {
     );
     this.times.addEventListener("change", () => actions.slowness(Number(this.times.value) as Slowness));
     this.clear = button("Clear", "A blank page", actions.clear);
+    this.gives = toggle(
+      "Hand gives way",
+      "The ruler moves; an arm pulls the mouse along it, and the pins slow the mouse",
+      actions.gives,
+    );
     const { feedback } = actions;
     const sound = toggle("Sound", "A short tone, on its side, for each pin that moves the skin", (on) => {
       feedback.sound = on;
@@ -43,10 +50,16 @@ export class Toolbar {
       toggle("Draw", "Draw on the page", actions.pen),
       this.clear,
       toggle("Along a ruler", "The hand keeps its height", actions.ruler),
+      this.gives,
       this.times,
       sound,
       vibration,
     );
+  }
+
+  /** A hand gives way along the drive axis alone, which must be that of the ruler. */
+  allowGives(on: boolean): void {
+    this.gives.disabled = !on;
   }
 
   update({ print, slowness }: ReadState): void {

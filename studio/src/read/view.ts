@@ -5,6 +5,7 @@ import { card, download, fileName, h, pause } from "../dom";
 import type { Store } from "../store";
 import { type Program, Thread } from "../thread";
 import { deviceFile } from "../write";
+import { ARM, type Arm } from "./arm";
 import { Controls } from "./controls";
 import { deviceInput } from "./device";
 import { Display, type Shown } from "./display";
@@ -51,6 +52,8 @@ export class ReadView {
   private readonly hand: HandControl;
   private input: DeviceInput;
   private lines: readonly Line[] = [];
+  /** True of a hand that gives way, along a ruler. */
+  private gives = false;
   private limitsAsked = 0;
   private limitsTimer = 0;
   private frame = 0;
@@ -88,6 +91,10 @@ export class ReadView {
       clear: () => this.change({ print: blank(), hand: null }),
       ruler: (on) => {
         this.hand.ruler = on;
+      },
+      gives: (on) => {
+        this.gives = on;
+        if (this.phase === "waiting" || this.phase === "demonstration") this.restart();
       },
       slowness: (slowness) => this.change({ slowness, hand: null }),
       feedback: this.display.feedback,
@@ -161,7 +168,12 @@ export class ReadView {
     this.input = deviceInput(this.core, device);
     this.session.setDevice(this.input);
     this.display.setDevice(device, this.input);
+    this.toolbar.allowGives(this.display.level);
     this.askLimits();
+  }
+
+  private get arm(): Arm | null {
+    return this.gives && this.display.level ? ARM : null;
   }
 
   /** Begins anew: with a demonstration, until there was a first reading, or with a hand that waits. */
@@ -169,7 +181,7 @@ export class ReadView {
     this.playback.close();
     this.kept = null;
     const { x, y } = Demonstration.start;
-    this.session.begin(1e-3 * x, 1e-3 * y, this.state.slowness);
+    this.session.begin(1e-3 * x, 1e-3 * y, this.state.slowness, this.arm);
     const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
     const shows = !still && !this.store.canUndo && this.phase !== "reading";
     if (shows) this.hand.demonstrate(this.state.slowness);
@@ -234,7 +246,7 @@ export class ReadView {
     this.playback.close();
     this.say("");
     this.kept = null;
-    this.session.begin(1e-3 * x, 1e-3 * y, this.state.slowness);
+    this.session.begin(1e-3 * x, 1e-3 * y, this.state.slowness, this.arm);
     this.tasks.began();
     this.setPhase("reading");
   }
