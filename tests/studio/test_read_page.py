@@ -359,3 +359,29 @@ def test_a_hand_at_rest_needs_no_rows(read: Any) -> None:
     read.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
     read.wait_for_timeout(300)
     assert read.evaluate(f"{HAND}.count") > rests
+
+
+def test_a_hand_that_gives_way_lags_its_ruler_while_magnets_hold_it(read: Any) -> None:
+    """The mark of the ruler is ahead of the mouse, words say by how much; the reading is kept."""
+    read.get_by_role("button", name="Hand gives way").click()
+    press(read)
+    box = read.locator("canvas.sheet").bounding_box()
+    lags, held, said = [], [], set()
+    for i in range(120):
+        read.mouse.move(box["x"] + box["width"] * (0.03 + 0.0075 * i), box["y"] + 0.5 * box["height"])
+        read.wait_for_timeout(16)
+        found = read.evaluate(
+            """() => {
+              const { intended, hand, sample } = pindrive.read.display.picture;
+              return [intended.x - hand.x, sample.values.pull.reduce((n, p) => n + (p > 0.5), 0)];
+            }"""
+        )
+        lags.append(found[0])
+        held.append(found[1])
+        said.add(read.locator(".lag").inner_text())
+    assert max(held) >= 4
+    assert 2e-4 < max(lags) < 0.03
+    assert any(re.search(r"[1-9] magnets hold, the pins pull with \d\.\d\d N", one) for one in said)
+    leave(read)
+    assert read.evaluate("pindrive.read.session.intended") is None
+    assert read.locator(".lag").is_hidden() or read.evaluate("pindrive.read.phase") == "kept"

@@ -462,10 +462,10 @@ class Following {
       }
       if (next < 0) break;
       const std::size_t s = series_.stop_of(next);
-      const bool bounces =
-          std::find(hit.begin(), hit.end(), next) != hit.end() || !comes_to_rest(s, fastest);
-      push_apart(s, bounces && 2 * n < most_impacts ? system_->stops[s].restitution : T(0),
-                 fastest);
+      push_apart(
+          s,
+          !comes_to_rest(s, fastest) && 2 * n < most_impacts ? system_->stops[s].restitution : T(0),
+          fastest);
       if (std::find(hit.begin(), hit.end(), next) == hit.end()) hit.push_back(next);
     }
     for (const int j : hit) struck_[series_.stop_of(j)] = plain(state_.time);

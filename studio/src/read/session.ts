@@ -12,7 +12,7 @@ const KEPT = 0.3; // s of the device for which samples are kept
 const LONGEST = 30_000; // rows of a reading
 const LATE = 25; // ms of the wall clock between two pictures beyond which time stands still
 const JUDGED = 300; // ms between two evaluations of the lines at least
-const GIVES = 1.5; // s of the device after which a hand that gives way has settled behind a ruler at rest
+const GIVES = 0.5; // s of the device that a hand which gives way is followed behind a ruler at rest
 const REST = 3; // times that the evaluation rests as long as it took, for the threads of the pins
 
 /** Quantities of all pins at a time, s of the device. */
