@@ -84,11 +84,13 @@ class Expansion {
     order_count_ = order;
     for (int n = 0; n <= order; ++n) {
       const T next = T(step) / T(n + 1);
-      for (std::size_t i = 0; i < position_.size(); ++i) order_.force[i] = given(pushes_[i], n);
+      for (std::size_t i = 0; i < position_.size(); ++i)
+        order_.force[i] = n <= pushes_[i].degree() ? given(pushes_[i], n) : N(T(0));
       for (std::size_t l = 0; l < system_->links.size(); ++l) pull(l, n);
       for (std::size_t f = 0; f < control_.size(); ++f) control(f, n, next);
       for (std::size_t s = 0; s < depth_.size(); ++s) press(s, n);
-      for (std::size_t j = 0; j < contacts(); ++j) rub(j, n, next);
+      for (const Acting& acting : acting_)
+        if (n <= acting.degree) rub(acting.contact, n, next);
       for (const int j : joined_.stuck())
         order_.surface[j] = is_stop(j) ? N(T(0)) : rate_of(surfaces_[j], n);
       joined_.solve(order_);
@@ -103,6 +105,7 @@ class Expansion {
         velocity_[i][n + 1] = next * order_.acceleration[i];
       }
     }
+    for (std::size_t j = 0; j < contacts(); ++j) slide(j, step);
   }
 
   int order() const { return order_count_; }
@@ -193,6 +196,27 @@ class Expansion {
       integral_[f][0] = known(state.integral[f], error(state.errors.integral, f));
       control_[f][0] = known(state.held[f]);
     }
+    find_acting();
+  }
+  /// Contact whose friction acts on bodies as a force, up to an order.
+  struct Acting {
+    std::size_t contact;
+    int degree;
+  };
+  /// Contacts whose friction is no unknown: of those that slip no order beyond that of their load.
+  void find_acting() {
+    acting_.clear();
+    for (std::size_t j = 0; j < contacts(); ++j) {
+      const bodies::Contact<T>& c = contact(j);
+      const bool sticks = mode_[j] == bodies::Slip::stick;
+      std::fill(friction_[j].begin(), friction_[j].end(), N(T(0)));
+      if (sticks && c.rigid()) continue;
+      int degree = loads_[j].degree();
+      if (c.pressed_by >= 0)
+        degree =
+            is_stop(c.pressed_by) ? series_order : std::max(degree, loads_[c.pressed_by].degree());
+      acting_.push_back({j, sticks ? series_order : degree});
+    }
   }
   static Real error(const std::vector<Real>& of, std::size_t i) {
     return of.empty() ? Real(0) : of[i];
@@ -240,34 +264,43 @@ class Expansion {
     }
     apply(c.one, c.other, control_[f][n]);
   }
-  /// Order n of the friction of a contact, and of the sliding speed; of skin also the next order of the stretch.
+  /// Order n of the friction of a contact that slips, or of skin that sticks, with the next order of its stretch.
   void rub(std::size_t j, int n, T next) {
     const bodies::Contact<T>& c = contact(j);
-    const bodies::Slip slip = mode_[j];
-    const N speed = apart(velocity_, c.one, c.other, n) - given(surfaces_[j], n);
-    const T side = T(static_cast<int>(slip));
-    const N kinetic = side * c.kinetic * load(j, n);
-    sliding_[j][n] = speed;
-    if (c.rigid()) {
-      friction_[j][n] = -kinetic;  // none in stick, to which the joined bodies add theirs
-      if (slip == bodies::Slip::stick) return;
-    } else if (slip == bodies::Slip::stick) {
+    if (mode_[j] != bodies::Slip::stick) {
+      friction_[j][n] = T(-static_cast<int>(mode_[j])) * (c.kinetic * load(j, n));
+    } else {
+      const N speed = speed_of(j, n);
       friction_[j][n] = -(c.stiffness * stretch_[j][n] + c.damping * speed);
       stretch_[j][n + 1] = next * speed;
-      sliding_[j][n] = N(T(0));
-    } else {
-      friction_[j][n] = -kinetic;
+    }
+    apply(c.one, c.other, friction_[j][n]);
+  }
+  /// Order n of the speed of `one` over the surface.
+  N speed_of(std::size_t j, int n) const {
+    const bodies::Contact<T>& c = contact(j);
+    const N speed = apart(velocity_, c.one, c.other, n);
+    return n <= surfaces_[j].degree() ? speed - given(surfaces_[j], n) : speed;
+  }
+  /// Sliding speed of a contact, and the stretch of skin that slips, which no body feels.
+  void slide(std::size_t j, Real step) {
+    const bodies::Contact<T>& c = contact(j);
+    const bool sticks = mode_[j] == bodies::Slip::stick;
+    for (int n = 0; n <= order_count_; ++n)
+      sliding_[j][n] = sticks && !c.rigid() ? N(T(0)) : speed_of(j, n);
+    if (sticks || c.rigid()) return;
+    for (int n = 0; n <= order_count_; ++n) {
+      const N kinetic = -friction_[j][n];
       N rate;
       if (c.damping != 0) {
         rate = (kinetic - c.stiffness * stretch_[j][n]) / c.damping;
-        stretch_[j][n + 1] = next * rate;
+        stretch_[j][n + 1] = (T(step) / T(n + 1)) * rate;
       } else {
-        rate = side * c.kinetic * load_rate(j, n) / c.stiffness;
+        rate = T(static_cast<int>(mode_[j])) * (c.kinetic / c.stiffness * load_rate(j, n));
         stretch_[j][n] = kinetic / c.stiffness;
       }
-      sliding_[j][n] = speed - rate;
+      sliding_[j][n] -= rate;
     }
-    apply(c.one, c.other, friction_[j][n]);
   }
 
   /// Order n of the depth of a stop, and of the force of an elastic one.
@@ -290,6 +323,7 @@ class Expansion {
   typename JoinedBodies<T>::template Order<N> order_;
   std::vector<Series> position_, velocity_, stretch_, sliding_, friction_, depth_, approach_, push_,
       control_, integral_;
+  std::vector<Acting> acting_;
   int order_count_{0};
   Real late_{0};  ///< resolution of the time over the step
   std::vector<InputSeries<T>> pushes_, lengths_, loads_, surfaces_, references_;

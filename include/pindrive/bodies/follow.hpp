@@ -232,7 +232,8 @@ class Following {
         }
     Real fastest = skin;
     for (std::size_t i = 0; i < count; ++i)
-      fastest = std::max(fastest, Real(sqrt(stiff[i])) + damped[i] + Real(cbrt(summed[i])));
+      fastest = std::max(fastest, Real(sqrt(stiff[i] + damped[i] * damped[i] / 4)) + damped[i] / 2 +
+                                      Real(cbrt(summed[i])));
     return fastest;
   }
 
@@ -524,6 +525,7 @@ class Following {
     Real place = abs(plain(stop.position)) + abs(plain(state_.position[stop.one]));
     if (stop.other != ground) place += abs(plain(state_.position[stop.other]));
     const Real height = e * e * lasted * plain(speed) / 4;
+    if (lasted == 0) return false;  // a third body struck it
     return lasted * e < (1 - e) * known || height < 16 * detail::rounding<Real> * place;
   }
   /// Ends the approach of both bodies of a stop; they part with a part of its speed.

@@ -53,11 +53,29 @@ class JoinedBodies {
   template <class N>
   void solve(Order<N>& order) const {
     const auto& bodies = system_->bodies;
-    if (stuck_.empty()) {
-      for (std::size_t i = 0; i < bodies.size(); ++i)
-        order.acceleration[i] = order.force[i] / bodies[i].mass;
-      return;
-    }
+    if (!stuck_.empty()) return solve_together(order);
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+      order.acceleration[i] = order.force[i] / bodies[i].mass;
+  }
+  bool all_grounded() const {
+    return std::all_of(root_.begin(), root_.end(), [](int root) { return root == bodies::ground; });
+  }
+  const std::vector<int>& stuck() const { return stuck_; }
+  /// True of a contact that joins two bodies which no other contact joins.
+  bool joins(int contact) const {
+    return std::any_of(tree_.begin(), tree_.end(),
+                       [&](const Edge& edge) { return edge.contact == contact; });
+  }
+
+ private:
+  struct Edge {
+    int from, to, contact, side;  ///< side: 1 if `to` is the first body of the contact
+  };
+
+  /// The same where rigid contacts stick.
+  template <class N>
+  void solve_together(Order<N>& order) const {
+    const auto& bodies = system_->bodies;
     std::fill(order.offset.begin(), order.offset.end(), N(T(0)));
     std::fill(order.sum.begin(), order.sum.end(), N(T(0)));
     for (const Edge& edge : tree_) {
@@ -82,28 +100,33 @@ class JoinedBodies {
           limits_[k] * (level_of(order.level, c.one) - level_of(order.level, c.other));
     }
   }
-  bool all_grounded() const {
-    return std::all_of(root_.begin(), root_.end(), [](int root) { return root == bodies::ground; });
-  }
-  const std::vector<int>& stuck() const { return stuck_; }
-  /// True of a contact that joins two bodies which no other contact joins.
-  bool joins(int contact) const {
-    return std::any_of(tree_.begin(), tree_.end(),
-                       [&](const Edge& edge) { return edge.contact == contact; });
-  }
 
- private:
-  struct Edge {
-    int from, to, contact, side;  ///< side: 1 if `to` is the first body of the contact
-  };
-
-  /// Grows a tree of contacts through each group, from the ground where the group contains it.
+  /// Contacts that join two bodies which no earlier one joins.
+  std::vector<int> joining() const {
+    std::vector<int> group(root_.size() + 1), found;  // the ground is the last
+    for (std::size_t i = 0; i < group.size(); ++i) group[i] = static_cast<int>(i);
+    const auto group_of = [&](int body) {
+      int i = body == bodies::ground ? static_cast<int>(root_.size()) : body;
+      while (group[i] != i) i = group[i];
+      return i;
+    };
+    for (const int contact : stuck_) {
+      const bodies::Pair c = system_->pair(contact);
+      const int one = group_of(c.one), other = group_of(c.other);
+      if (one == other) continue;
+      group[one] = other;
+      found.push_back(contact);
+    }
+    return found;
+  }
+  /// Grows a tree of these contacts through each group, from the ground where the group contains it.
   void walk() {
+    const std::vector<int> joining = this->joining();
     std::vector<bool> seen(root_.size(), false);
     const auto grow = [&](int start) {
       std::vector<int> reached{start};
       for (std::size_t k = 0; k < reached.size(); ++k)
-        for (const int contact : stuck_) {
+        for (const int contact : joining) {
           const bodies::Pair c = system_->pair(contact);
           for (const bool first : {true, false}) {
             const int from = first ? c.other : c.one, to = first ? c.one : c.other;

@@ -93,7 +93,7 @@ class StepCertificate {
                                                  0.21908636251598204, 0.1494513491505806,
                                                  0.06667134430868814};
 
-  static constexpr double resolution = 1e-15;  ///< resolution of a place, over the largest place
+  static constexpr double resolution = 1e-13;  ///< resolution of a place, over the largest place
 
   static void raise(T& most, T value) {
     using std::abs;
@@ -125,7 +125,8 @@ class StepCertificate {
     int touching = 0;
     for (std::size_t s = 0; s < system_->stops.size(); ++s) {
       const Stop<T>& stop = system_->stops[s];
-      if (!stop.rigid() || abs(step.depth(static_cast<int>(s), T(0))) > 1e-14 * size_) continue;
+      if (!stop.rigid() || abs(step.depth(static_cast<int>(s), T(0))) > resolution * size_)
+        continue;
       const auto was = [&](int body) { return body == ground ? T(0) : last_[2 * body + 1]; };
       const T approached = T(stop.side) * (was(stop.one) - was(stop.other));
       const T approaches = T(stop.side) * between(step, stop.one, stop.other, T(0), true);
