@@ -33,6 +33,7 @@ class Expansion {
         velocity_(system.bodies.size()),
         stretch_(system.contacts.size()),
         sliding_(system.contacts.size()),
+        settled_(system.contacts.size()),
         friction_(system.contacts.size()),
         depth_(system.stops.size()),
         approach_(system.stops.size()),
@@ -73,6 +74,25 @@ class Expansion {
   bool may_part(int j) const {
     const bool rigid = is_stop(j) ? system_->stops[stop_of(j)].rigid() : contact(j).rigid();
     return rigid && !joined_.joins(j);
+  }
+
+  /// True of skin that slips under a constant load and whose stretch, at rest to rounding, follows no more.
+  bool is_settled(std::size_t j, const bodies::State<T>& state) const {
+    using std::abs;
+    const bodies::Contact<T>& c = contact(j);
+    if (mode_[j] == bodies::Slip::stick || c.rigid() || c.damping == 0) return false;
+    if (c.pressed_by >= 0 && is_stop(c.pressed_by)) return false;
+    const auto constant = [&](const Profile<T>& load) {
+      const Curve<T> now = load.from(state.time);
+      return now.straight() && now.rate == 0;
+    };
+    if (!constant(c.load) || (c.pressed_by >= 0 && !constant(contact(c.pressed_by).load)))
+      return false;
+    T load = c.load.from(state.time).value;
+    if (c.pressed_by >= 0) load += c.share * contact(c.pressed_by).load.from(state.time).value;
+    const T kinetic = T(static_cast<int>(mode_[j])) * c.kinetic * load;
+    return abs(plain(kinetic - c.stiffness * state.stretch[j])) <=
+           2 * rounding<Real> * abs(plain(kinetic));
   }
 
   /// True if rigid contacts hold each body to the ground.
@@ -197,6 +217,7 @@ class Expansion {
       control_[f][0] = known(state.held[f]);
     }
     find_acting();
+    for (std::size_t j = 0; j < contacts(); ++j) settled_[j] = is_settled(j, state);
   }
   /// Contact whose friction acts on bodies as a force, up to an order.
   struct Acting {
@@ -291,8 +312,10 @@ class Expansion {
     if (sticks || c.rigid()) return;
     for (int n = 0; n <= order_count_; ++n) {
       const N kinetic = -friction_[j][n];
-      N rate;
-      if (c.damping != 0) {
+      N rate{};
+      if (settled_[j]) {
+        stretch_[j][n] = kinetic / c.stiffness;
+      } else if (c.damping != 0) {
         rate = (kinetic - c.stiffness * stretch_[j][n]) / c.damping;
         stretch_[j][n + 1] = (T(step) / T(n + 1)) * rate;
       } else {
@@ -321,8 +344,9 @@ class Expansion {
   Mode mode_;
   JoinedBodies<T> joined_;
   typename JoinedBodies<T>::template Order<N> order_;
-  std::vector<Series> position_, velocity_, stretch_, sliding_, friction_, depth_, approach_, push_,
-      control_, integral_;
+  std::vector<Series> position_, velocity_, stretch_, sliding_;
+  std::vector<char> settled_;  ///< skin that slips and keeps its stretch, contact by contact
+  std::vector<Series> friction_, depth_, approach_, push_, control_, integral_;
   std::vector<Acting> acting_;
   int order_count_{0};
   Real late_{0};  ///< resolution of the time over the step

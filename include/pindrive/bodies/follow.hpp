@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "pindrive/bodies/expansion.hpp"
+#include "pindrive/bodies/free_rates.hpp"
 #include "pindrive/bodies/mode_selection.hpp"
 #include "pindrive/bodies/system.hpp"
 #include "pindrive/flow/polynomial.hpp"
@@ -105,7 +106,8 @@ class Following {
         state_(std::move(state)),
         series_(system),
         selection_(system),
-        fastest_(fastest_of(system)) {
+        rates_(system),
+        fastest_(rates_.largest()) {
     std::vector<int> active;
     for (std::size_t j = 0; j < system.contacts.size(); ++j) {
       const T speed = speed_of(static_cast<int>(j));
@@ -194,49 +196,6 @@ class Following {
     return n;
   }
 
-  /// Bound of the rates of all free motions, 1/s: of the springs by the largest row sum, and so of the dampers.
-  static Real fastest_of(const System<T>& system) {
-    using std::sqrt;
-    const std::size_t count = system.bodies.size();
-    std::vector<Real> stiff(count), damped(count), summed(count);
-    Real skin{0};
-    const auto add = [&](int one, int other, Real stiffness, Real damping) {
-      for (const bool first : {true, false}) {
-        const int i = first ? one : other, j = first ? other : one;
-        if (i == ground) continue;
-        const Real m = plain(system.bodies[i].mass);
-        const Real both = j == ground ? m : sqrt(m * plain(system.bodies[j].mass));
-        const Real part = 1 / m + (j == ground ? Real(0) : 1 / both);
-        stiff[i] += stiffness * part;
-        damped[i] += damping * part;
-      }
-    };
-    for (const Link<T>& link : system.links)
-      add(link.one, link.other, plain(link.stiffness), plain(link.damping));
-    for (const Contact<T>& c : system.contacts) {
-      if (c.rigid()) continue;
-      add(c.one, c.other, plain(c.stiffness), plain(c.damping));
-      if (c.damping != 0) skin = std::max(skin, plain(c.stiffness / c.damping));
-    }
-    for (const Stop<T>& stop : system.stops)
-      if (!stop.rigid()) add(stop.one, stop.other, plain(stop.stiffness), plain(stop.damping));
-    using std::abs, std::cbrt;
-    for (const Feedback<T>& c : system.feedbacks)
-      for (const int i : {c.one, c.other})
-        for (const int j : {c.measured, c.against}) {
-          if (c.sampled() || i == ground || j == ground) continue;
-          const Real part = 1 / sqrt(plain(system.bodies[i].mass * system.bodies[j].mass));
-          stiff[i] += part * abs(plain(c.proportional));
-          damped[i] += part * abs(plain(c.derivative));
-          summed[i] += part * abs(plain(c.integral));
-        }
-    Real fastest = skin;
-    for (std::size_t i = 0; i < count; ++i)
-      fastest = std::max(fastest, Real(sqrt(stiff[i] + damped[i] * damped[i] / 4)) + damped[i] / 2 +
-                                      Real(cbrt(summed[i])));
-    return fastest;
-  }
-
   /// True of a body that a rigid contact or stop holds.
   bool is_held(int body) const {
     for (std::size_t j = 0; j < mode_.size(); ++j) {
@@ -263,7 +222,8 @@ class Following {
     for (const T& due : due_) breakpoint = std::min(breakpoint, due);
     const Real rest = plain(breakpoint - state_.time);
     const Real rate =
-        std::max(fastest_, Real(detail::longest_input) / series_.input_reach(state_.time));
+        std::max(rates_.in(mode_, [&](std::size_t j) { return series_.is_settled(j, state_); }),
+                 Real(detail::longest_input) / series_.input_reach(state_.time));
     const Real span = std::min(rest, longest / rate);
     series_.expand(state_, span, order_over(rate * span));
     if (++steps_ > event_limit) status_ = Status::too_many_events;
@@ -559,7 +519,8 @@ class Following {
   Mode mode_;
   detail::Expansion<T> series_;
   detail::ModeSelection<T> selection_;
-  Real fastest_;
+  detail::FreeRates<T> rates_;
+  Real fastest_;  ///< in any mode, 1/s
   std::vector<Change<T>> changes_;
   std::vector<Real> struck_;  ///< time of the last impact at each stop, s
   std::vector<T> due_;        ///< time of the next sample of each feedback, s; infinite: none

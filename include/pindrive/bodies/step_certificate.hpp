@@ -93,7 +93,8 @@ class StepCertificate {
                                                  0.21908636251598204, 0.1494513491505806,
                                                  0.06667134430868814};
 
-  static constexpr double resolution = 1e-13;  ///< resolution of a place, over the largest place
+  /// Distances over the largest place: bodies touch, or may have touched within the resolution of the time.
+  static constexpr double touching = 1e-14, near = 1e-13;
 
   static void raise(T& most, T value) {
     using std::abs;
@@ -122,20 +123,20 @@ class StepCertificate {
       raise(size, was);
     }
     if (!(jump > 1e-12 * std::max(size, speed_))) return;
-    int touching = 0;
+    int met = 0;
     for (std::size_t s = 0; s < system_->stops.size(); ++s) {
       const Stop<T>& stop = system_->stops[s];
-      if (!stop.rigid() || abs(step.depth(static_cast<int>(s), T(0))) > resolution * size_)
-        continue;
+      const T apart = abs(step.depth(static_cast<int>(s), T(0)));
+      if (!stop.rigid() || apart > near * size_) continue;
       const auto was = [&](int body) { return body == ground ? T(0) : last_[2 * body + 1]; };
       const T approached = T(stop.side) * (was(stop.one) - was(stop.other));
       const T approaches = T(stop.side) * between(step, stop.one, stop.other, T(0), true);
-      raise(wrong_impact_, std::max(T(0), approaches));
-      if (++touching == 1 && approached > 0)
+      if (apart <= touching * size_) raise(wrong_impact_, std::max(T(0), approaches));
+      if (++met == 1 && approached > 0)
         rebound_ = std::min(abs(approaches), abs(approaches + stop.restitution * approached));
     }
-    struck_ = touching > 0;
-    if (touching == 1) raise(wrong_impact_, rebound_);
+    struck_ = met > 0;
+    if (met == 1) raise(wrong_impact_, rebound_);
     if (!struck_) return;
     raise(drift_of_impacts_, std::max(T(0), after - before));
     ledger_.stops += before - after;
@@ -244,7 +245,7 @@ class StepCertificate {
   }
   /// Force of an elastic stop, N. A damper begins with a force where the bodies meet, within the rounding of their places.
   T pressed(const Stop<T>& stop, T beyond, T approach) const {
-    return beyond > -resolution * size_
+    return beyond > -touching * size_
                ? std::max(T(0), stop.stiffness * beyond + stop.damping * approach)
                : T(0);
   }
