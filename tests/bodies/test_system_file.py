@@ -183,3 +183,18 @@ period = "10 ms"
         path = written(tmp_path, text.replace(wrong, f'{key} = "nothing"'))
         with pytest.raises(ConfigError, match=words):
             pd.load_system(path)
+
+
+def test_an_input_may_be_the_rows_of_a_csv_beside_the_file(tmp_path: Path) -> None:
+    rows = tmp_path / "force.csv"
+    rows.write_text("time [ms]; force [mN]\n0; 0\n100; 500\n", "utf-8")
+    text = SMALL.replace('velocity = "2 m/s"', 'force = "force.csv"')
+    file = pd.load_system(written(tmp_path, text))
+    assert file.system.bodies["a"].force == pd.Profile([0.0, 0.1], [0.0, 0.5])
+    assert file.inputs == (file.path, rows)
+    rows.write_text("time [ms]; pull [mN]\n0; 0\n", "utf-8")
+    with pytest.raises(ConfigError, match=r"force\.csv.*force \[N\]"):
+        pd.load_system(file.path)
+    rows.unlink()
+    with pytest.raises(ConfigError, match=r"force\.csv: cannot be read"):
+        pd.load_system(file.path)

@@ -368,7 +368,9 @@ def test_a_hand_that_gives_way_lags_its_ruler_while_magnets_hold_it(read: Any) -
     box = read.locator("canvas.sheet").bounding_box()
     lags, held, said = [], [], set()
     for i in range(120):
-        read.mouse.move(box["x"] + box["width"] * (0.03 + 0.0075 * i), box["y"] + 0.5 * box["height"])
+        read.mouse.move(
+            box["x"] + box["width"] * (0.03 + 0.0075 * i), box["y"] + 0.5 * box["height"]
+        )
         read.wait_for_timeout(16)
         found = read.evaluate(
             """() => {

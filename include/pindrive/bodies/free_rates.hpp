@@ -1,4 +1,4 @@
-/// How fast a system can move by itself in a mode: the length of a step follows from it.
+/// Bounds of the rates of free motions of a system in a mode, from which the length of a step follows.
 #pragma once
 
 #include <algorithm>

@@ -13,14 +13,17 @@ from pindrive.bodies.inputs import Given
 from pindrive.bodies.parts import GROUND
 from pindrive.bodies.system import System
 from pindrive.files.device import read_tables
+from pindrive.files.keys import SUFFIX
 from pindrive.files.overrides import ConfigError
 from pindrive.motion.function import Function, of_parameters
 from pindrive.motion.profile import Profile
 from pindrive.quantities.bodies import KINDS
+from pindrive.quantities.csv_table import CsvTable
 from pindrive.quantities.functions import FUNCTIONS
 from pindrive.quantities.names import Names
 from pindrive.quantities.quantity import Quantity
 from pindrive.quantities.refusal import quoted, refusal
+from pindrive.quantities.results import SERIES
 from pindrive.quantities.table import check
 from pindrive.quantities.value import equal_by_value
 
@@ -48,18 +51,20 @@ class SystemFile:
         path: The file.
         name: Name of the system, empty without one.
         system: Bodies, springs and contacts.
-        duration: s; None: until all bodies rest.
+        duration: s; None: until the ending of the motion is known.
+        rows: CSV files of inputs that were read.
     """
 
     path: Path
     name: str
     system: System
     duration: float | None
+    rows: tuple[Path, ...] = ()
 
     @property
     def inputs(self) -> tuple[Path, ...]:
         """Files that were read."""
-        return (self.path,)
+        return (self.path, *self.rows)
 
     def __repr__(self) -> str:
         """Return file and system in a line."""
@@ -85,7 +90,8 @@ def load_system(
     The file has a table for each part, [body.NAME], [spring.NAME] and [contact.NAME], with the
     arguments of `System.body`, `System.spring` and `System.contact`; `between` names both bodies of
     a spring or a contact, and a spring may have a `motion` in place of the second. An input is text
-    with a unit, rows of times and values, or the parameters of a function. [system] may have a
+    with a unit, rows of times and values, the name of a CSV with such rows beside the file, or the
+    parameters of a function. [system] may have a
     `name` and the `duration`.
 
     Args:
@@ -118,7 +124,7 @@ def load_system(
             problems.append(f"{place}: {error}")
     if problems:
         raise ConfigError(problems)
-    return SystemFile(file, reader.name, system, duration)
+    return SystemFile(file, reader.name, system, duration, tuple(reader.read_files))
 
 
 def _split(override: str) -> tuple[str, str]:
@@ -135,6 +141,7 @@ class _Reader:
         self.file, self.tables = file, tables
         self.system, self.name = System(), ""
         self.duration: float | None = None
+        self.read_files: list[Path] = []
         self.problems: list[str] = []
 
     def read(self) -> None:
@@ -194,7 +201,7 @@ class _Reader:
                 problems.append(f"{self.file}: {names.unknown(key)}")
                 continue
             try:
-                values[key] = _value(value, rows[key], label)
+                values[key] = self._value(value, rows[key], label)
             except ValueError as error:
                 problems.append(f"{self.file}: {error}")
         needed = {"body": ("mass",), "contact": ("kinetic",)}.get(kind, ())
@@ -214,6 +221,15 @@ class _Reader:
         if "measured" in entry:
             values["measured"] = self._pair(kind, name, "measured", entry["measured"], alone=True)
         add(one, values.pop("motion", other), name=name, **values)
+
+    def _value(self, value: Any, quantity: Quantity, label: str) -> Given | str:
+        """Return a value of the file; a text that names a CSV is a profile of its rows."""
+        csv = isinstance(value, str) and value.strip().lower().endswith(SUFFIX)
+        if not csv or quantity.rows_of != "profile":
+            return _value(value, quantity, label)
+        file = self.file.parent / value.strip()
+        self.read_files.append(file)
+        return _rows_of_csv(file, quantity)
 
     def _between(self, kind: str, name: str, given: object, moved: bool) -> tuple[str, str]:
         """Both bodies of a part; with a prescribed motion only the first."""
@@ -277,6 +293,19 @@ def _rows(value: list[Any], quantity: Quantity, label: str) -> Profile:
         return Profile([row[0] for row in value], [row[1] for row in value])
     except ValueError as error:
         raise ValueError(f"{label}: {error}") from None
+
+
+def _rows_of_csv(file: Path, quantity: Quantity) -> Profile:
+    """Return the rows of a CSV with the columns `time` and that of a quantity."""
+    header = f"{SERIES['time'].heading}, {quantity.heading}"
+    table = CsvTable.read(file, f"a CSV of {quantity.name}", header)
+    table.check_header({"time", quantity.name} <= {*table.names}, f"like {quoted(header)}")
+    table.check_rows(f"a CSV of {quantity.name}", 1)
+    times, values = table.column("time", SERIES["time"]), table.column(quantity.name, quantity)
+    try:
+        return Profile(times, values)
+    except ValueError as error:
+        raise ValueError(f"{file}: {error}") from None
 
 
 def _function(table: Mapping[str, Any], quantity: Quantity, label: str) -> Function:

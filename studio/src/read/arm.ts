@@ -30,8 +30,8 @@ export class LedHand {
     return this.units / TIMES;
   }
 
-  /** Follows the intended motion to a row of it, s and m/s, in stretches that `move` carries out: each takes the
-   * force at its begin, N, continued to its middle. */
+  /** Follows the intended motion to a row, s and m/s, in stretches that `move` carries out. The force at the begin of
+   * each, N, is continued to its middle. */
   follow(time: number, velocity: number, force: () => number, move: (time: number, v: number) => void): void {
     const { mass, stiffness, damping } = this.arm;
     const [begin, from, end] = [this.units, this.intended, Math.round(time * TIMES)];
