@@ -72,7 +72,7 @@ class JoinedBodies {
     int from, to, contact, side;  ///< side: 1 if `to` is the first body of the contact
   };
 
-  /// The same where rigid contacts stick.
+  /// Computes accelerations and friction where rigid contacts stick.
   template <class N>
   void solve_together(Order<N>& order) const {
     const auto& bodies = system_->bodies;
@@ -119,7 +119,7 @@ class JoinedBodies {
     }
     return found;
   }
-  /// Grows a tree of these contacts through each group, from the ground where the group contains it.
+  /// Grows a tree of joining contacts through each group, from the ground if that is in the group.
   void walk() {
     const std::vector<int> joining = this->joining();
     std::vector<bool> seen(root_.size(), false);
