@@ -26,6 +26,13 @@ if TYPE_CHECKING:
     from pindrive.bodies.system_motion import SystemMotion
 
 SystemEndKind = Literal["rest", "settled", "periodic", "drifting", "unknown"]
+ENDINGS: Final = {
+    "rest": "at rest",
+    "settled": "settled",
+    "periodic": "periodic",
+    "drifting": "drifting",
+}
+"""Words for each kind that is known."""
 SAME: Final = 1e-8
 """Largest change of a state that repeats, over the amplitude of the motion."""
 STEPS: Final = (1000, 4000, 16_000, 64_000)

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
-from typing import Any, Final, Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pindrive import _core, lazy
 from pindrive.bodies.core_numbers import stop_ends
-from pindrive.bodies.ending import SystemEnding, ending_of, numbers_of_ending
+from pindrive.bodies.ending import ENDINGS, SystemEnding, ending_of, numbers_of_ending
 from pindrive.bodies.motion_parts import (
     BodyMotion,
     ContactMotion,
@@ -32,12 +32,6 @@ from pindrive.quantities.status import Side, Status
 from pindrive.quantities.table import default
 from pindrive.quantities.value import concise
 
-_ENDINGS: Final = {
-    "rest": "at rest",
-    "settled": "settled",
-    "periodic": "periodic",
-    "drifting": "drifting",
-}
 Kind = Literal["stick", "slip", "reverse", "stop", "leave"]
 
 
@@ -149,7 +143,7 @@ class SystemMotion(lazy.NotebookHtml):
         """Return bodies, events and status in a line."""
         bodies = counted(len(self.system.bodies), "body", "bodies")
         kind = self.ending.kind
-        rest = "" if kind == "unknown" else f", {_ENDINGS[kind]}"
+        rest = "" if kind == "unknown" else f", {ENDINGS[kind]}"
         return (
             f"<SystemMotion of {bodies} over {self.duration:.6g} s, "
             f"{counted(len(self.events), 'event')}{rest}, {self.status.name}>"

@@ -8,6 +8,7 @@ import matplotlib.style
 import numpy as np
 from matplotlib.patches import Patch
 
+from pindrive.bodies.ending import ENDINGS
 from pindrive.plot.style import CURVES, GREY, MM, PALETTE, SMALL, STYLE, new_figure, plain
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.table import digits
@@ -112,5 +113,6 @@ def _draw_contacts(motion: SystemMotion, contacts: list[str], axes: Axes) -> Non
 def _words(motion: SystemMotion) -> str:
     """Return what was simulated, and its events."""
     system = repr(motion.system)[1:-1].removeprefix("System of ")
-    rest = ", at rest at the end" if motion.rests else ""
+    kind = motion.ending.kind
+    rest = "" if kind == "unknown" else f", {ENDINGS[kind]} at the end"
     return f"{system}: {counted(len(motion.events), 'event')} in {digits(motion.core.end)} s{rest}"
