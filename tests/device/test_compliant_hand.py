@@ -230,9 +230,9 @@ def test_the_speed_over_two_lines_is_that_of_a_hand_that_gives_way() -> None:
         given = {**ARM, "hand.mass": mass, "hand.stiffness": stiffness, "array.columns": 2}
         file = pd.load_device(READER, {**given, "array.rows": 1})
         (found[mass],) = largest_hand_speeds(
-            file.device, file.reading, ["3 mm"], slowest=0.05, fastest=0.5
+            file.device, file.reading, [0.003], slowest=0.05, fastest=0.5
         )
-    (fixed,) = largest_speeds(file.device, ["3 mm"], slowest=0.05, fastest=0.5)
+    (fixed,) = largest_speeds(file.device, [0.003], slowest=0.05, fastest=0.5)
     assert found[1e9].speed == pytest.approx(fixed.speed, rel=0.1)
     assert found[0.55].speed != pytest.approx(found[1e9].speed, rel=0.02)
     assert found[0.55].settled == ()

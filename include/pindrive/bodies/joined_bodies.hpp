@@ -107,7 +107,7 @@ class JoinedBodies {
     level.resize(free_.size());
     for (std::size_t k = 0; k < free_.size(); ++k)
       level[k] = bodies[free_[k]].mass * order.acceleration[free_[k]] - order.force[free_[k]];
-    // What the changes of the shares add to friction, by the levels of lower orders.
+    // Changes of the shares add to friction by the levels of lower orders.
     for (const int contact : stuck_) {
       N& known = order.friction[contact] = N(T(0));
       const bodies::Pair c = system_->pair(contact);

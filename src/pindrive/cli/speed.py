@@ -132,17 +132,16 @@ def _over_lines(
     targets = files("speed_pitch [m]")
     with results(targets, [device.path], force=force) as write:
         with bar("Trials") as progress:
-            common = {
-                "slowest": tried[0],
-                "fastest": tried[1],
-                "criteria": device.criteria,
-                "progress": progress,
-            }
+            search = partial(largest_speeds, device.device, pitches, width=width)
             if gives_way:
                 reading, touch = device.reading, device.touch
-                found = largest_hand_speeds(device.device, reading, pitches, touch=touch, **common)
-            else:
-                found = largest_speeds(device.device, pitches, width=width, **common)
+                search = partial(largest_hand_speeds, device.device, reading, pitches, touch=touch)
+            found = search(
+                slowest=tried[0],
+                fastest=tried[1],
+                criteria=device.criteria,
+                progress=progress,
+            )
         write(found)
     return speed_report(found, device.criteria, gives_way=gives_way), targets
 
