@@ -196,7 +196,7 @@ def grid_that_meets(problem: DesignProblem, levels: int) -> tuple[int, list[dict
 def climb_of(problem: DesignProblem, at: dict[str, float], pitch: float) -> line_speed.Climb:
     """The way to the hand speed of a device."""
     file = problem.study.device_at(at)
-    return line_speed.Climb(file.device, pitch, file.criteria)
+    return line_speed.Climb(file, pitch)
 
 
 def main() -> None:

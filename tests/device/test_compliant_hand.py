@@ -224,6 +224,7 @@ def test_a_hand_is_checked() -> None:
 def test_the_speed_over_two_lines_is_that_of_a_hand_that_gives_way() -> None:
     """A heavy hand has the speed of one that nothing slows; an arm with many pins has another."""
     from pindrive.evaluation import largest_hand_speeds, largest_speeds
+    from pindrive.optimisation.line_speed import Climb
 
     found = {}
     for mass, stiffness in ((1e9, 1e9), (0.55, 135.0)):
@@ -236,3 +237,5 @@ def test_the_speed_over_two_lines_is_that_of_a_hand_that_gives_way() -> None:
     assert found[1e9].speed == pytest.approx(fixed.speed, rel=0.1)
     assert found[0.55].speed != pytest.approx(found[1e9].speed, rel=0.02)
     assert found[0.55].settled == ()
+    designed = Climb(file, 0.003).bracket(found[0.55].speed, 0.0, 0.5)
+    assert designed == pytest.approx(found[0.55].speed, rel=0.03)

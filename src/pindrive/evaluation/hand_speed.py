@@ -57,12 +57,9 @@ def largest_hand_speeds(
 
     for i, given in enumerate(pitches):
         pitch = check("speed.pitch", given, label="pitch")
-        scene = _two_lines(device, pitch)
 
-        def trial(speed: float, scene: Scene = scene) -> Mapping[str, int]:
-            hand = replace(reading, hand_speed=speed).strokes(scene, device.array)
-            done = scan(device, scene, hand, touch=touch, max_angle=reading.max_angle)
-            return evaluate(done, limits).counts
+        def trial(speed: float, pitch: float = pitch) -> Mapping[str, int]:
+            return _counts(device, reading, pitch, speed, touch, limits)
 
         def report(done: int, total: int, i: int = i) -> None:
             if progress:
@@ -80,6 +77,42 @@ def largest_hand_speeds(
             )
         )
     return SpeedLimits(tuple(found), limits)
+
+
+def two_lines_under_hand(
+    device: Device,
+    reading: Reading,
+    pitch: float,
+    speed: float,
+    touch: float | pindrive.Profile | None,
+    criteria: Criteria,
+) -> bool:
+    """Return True if two lines are distinct under a hand that gives way.
+
+    Args:
+        device: Device with a hand.
+        reading: Reading hand.
+        pitch: Distance between the lines, m.
+        speed: Intended speed, m/s.
+        touch: Touch of the finger; None: constant touch.
+        criteria: Criteria of a felt line.
+    """
+    return _distinct(_counts(device, reading, pitch, speed, touch, criteria))
+
+
+def _counts(
+    device: Device,
+    reading: Reading,
+    pitch: float,
+    speed: float,
+    touch: float | pindrive.Profile | None,
+    criteria: Criteria,
+) -> Mapping[str, int]:
+    """Return the counts of a scan in which all pins cross two lines."""
+    scene = _two_lines(device, pitch)
+    hand = replace(reading, hand_speed=speed).strokes(scene, device.array)
+    done = scan(device, scene, hand, touch=touch, max_angle=reading.max_angle)
+    return evaluate(done, criteria).counts
 
 
 def _two_lines(device: Device, pitch: float) -> Scene:

@@ -14,8 +14,9 @@ from typing import Final
 
 import numpy as np
 
-from pindrive.device.device import Criteria, Device
+from pindrive.evaluation.hand_speed import two_lines_under_hand
 from pindrive.evaluation.resolution import PRECISION, TRIED, check_work, two_lines
+from pindrive.files.device import DeviceFile
 from pindrive.optimisation.goals import SpeedRequest
 from pindrive.quantities.table import default
 from pindrive.study.study import Study
@@ -43,11 +44,11 @@ def _speed(study: Study, requested: SpeedRequest) -> tuple[float, int]:
     found, count = np.inf, 0
     try:
         file = study.device_at(requested.at)
-        device, criteria = file.device, file.criteria
+        device = file.device
         pitches = [group.pitch for group in study.page.page.grating or ()]
         check_work(device, pitches, [0.5 * p for p in pitches], (SLOWEST, FASTEST))
         for pitch in pitches:
-            climb = Climb(device, pitch, criteria)
+            climb = Climb(file, pitch)
             if requested.confirmed:
                 own = climb.first_interval()
             else:  # the least of several counts: no pitch is followed beyond the one before
@@ -66,18 +67,24 @@ def _speed(study: Study, requested: SpeedRequest) -> tuple[float, int]:
 class Climb:
     """The way to the speed from which on two lines merge."""
 
-    device: Device
+    file: DeviceFile
     pitch: float
-    criteria: Criteria
     trials: dict[float, bool] = field(default_factory=dict)
 
     def distinct(self, speed: float) -> bool:
         """Return True if the lines are distinct, by a new trial or an earlier one."""
         if speed not in self.trials:
-            trial = two_lines(self.device, self.pitch, 0.5 * self.pitch, speed, self.criteria)
-            distinct = trial.distinct(self.criteria.direction)
-            self.trials[speed] = distinct
+            self.trials[speed] = self._tried(speed)
         return self.trials[speed]
+
+    def _tried(self, speed: float) -> bool:
+        file, device = self.file, self.file.device
+        criteria = file.criteria
+        if device.hand is not None:
+            reading, touch = file.reading, file.touch
+            return two_lines_under_hand(device, reading, self.pitch, speed, touch, criteria)
+        trial = two_lines(device, self.pitch, 0.5 * self.pitch, speed, criteria)
+        return trial.distinct(criteria.direction)
 
     def first_interval(self) -> float:
         """The upper end of the first interval of the grid, as `SpeedLimit.speed` is."""
