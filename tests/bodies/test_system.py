@@ -410,26 +410,3 @@ def test_a_load_that_becomes_negative_is_refused() -> None:
     system.contact("a", kinetic=1.0, load=pd.harmonic(1.0, 2.0, 1.0))
     with pytest.raises(ValueError, match=r"contact\.a-ground\.load must be >= 0"):
         system.simulate(2.0)
-
-
-def test_contacts_that_share_a_force_follow_their_loads_and_slip_together() -> None:
-    """A body between two surfaces: one is pressed less and less, the other swings."""
-    system = pd.System()
-    system.body("a", 1.0)
-    system.force("a", 1.0)
-    falls = pd.Profile([0.0, 2.0], [1.0, 0.2])
-    swings = pd.harmonic(1.0, 0.5, "0.3 Hz")
-    system.contact("a", kinetic=1.0, load=falls, name="one")
-    system.contact("a", kinetic=0.5, load=swings, name="other")
-    motion = system.simulate(2.0)
-    slips = [event for event in motion.events if event.kind == "slip"]
-    assert {event.contact for event in slips} == {"one", "other"}
-    assert slips[0].time == slips[1].time
-    t = np.linspace(0.0, slips[0].time * (1 - 1e-9), 50)
-    limits = np.array([1.0 - 0.4 * t, 0.5 * np.asarray(swings(t))])
-    for limit, name in zip(limits, ("one", "other"), strict=True):
-        share = -limit / limits.sum(axis=0)
-        assert np.asarray(motion.contact(name).force(t)) == pytest.approx(share, rel=1e-12)
-    assert limits.sum(axis=0)[-1] == pytest.approx(1.0, rel=1e-8)
-    assert np.all(limits.sum(axis=0)[:-1] > 1.0)
-    assert motion.certificate().worst < 1e-12

@@ -12,9 +12,6 @@ using Joined = pindrive::detail::JoinedBodies<double>;
 
 namespace {
 
-/// Order of shares that do not change.
-const auto constant = [](int, int) { return 0.0; };
-
 bool near(double one, double other) { return check::near(one, other, 1e-14); }
 
 /// A hand of 2 kg with two pins of 1 and 3 kg.
@@ -34,7 +31,7 @@ void a_free_group() {
   Joined::Order<double> order(3, 4);
   order.force = {12, 0, 0};
   order.surface = {0, 0, 0.5, 0};
-  joined.solve(order, 0, constant);
+  joined.solve(order);
   // Pin 2 gains 0.5 on the others: 2 a + a + 3 (a + 0.5) = 12.
   expect(near(order.acceleration[0], 1.75) && near(order.acceleration[1], 1.75) &&
              near(order.acceleration[2], 2.25),
@@ -48,7 +45,7 @@ void a_group_on_the_ground() {
   const Joined joined(system, {0, 1}, {1, 3});
   Joined::Order<double> order(3, 4);
   order.force = {6, 2, 9};
-  joined.solve(order, 0, constant);
+  joined.solve(order);
   expect(near(order.acceleration[0], 0) && near(order.acceleration[1], 0) &&
              near(order.acceleration[2], 3),
          "a group with the ground rests, another body is free");
@@ -62,7 +59,7 @@ void friction_that_is_not_unique() {
   const Joined joined(system, {0, 1}, {1, 3});
   Joined::Order<double> order(1, 2);
   order.force = {-2};
-  joined.solve(order, 0, constant);
+  joined.solve(order);
   expect(near(order.friction[0], 0.5) && near(order.friction[1], 1.5),
          "two contacts share it in proportion to static friction");
 }

@@ -68,7 +68,6 @@ class Expansion {
       limits.insert(limits.begin(), share);
     }
     joined_ = JoinedBodies<T>(*system_, std::move(stuck), std::move(limits));
-    stop_share_ = share;
   }
 
   /// True of a contact in stick whose surfaces may move apart.
@@ -96,25 +95,6 @@ class Expansion {
            2 * rounding<Real> * abs(plain(kinetic));
   }
 
-  /// Rate of the shares in friction that is not unique, 1/s: quotients of loads, whose series end where a load does.
-  Real share_rate(const T& time) const {
-    using std::abs;
-    Real rate{0};
-    if (joined_.unique()) return rate;
-    const auto look = [&](const Profile<T>& input) {
-      const Curve<T> load = input.from(time);
-      if (load.value > 0) rate = std::max(rate, Real(abs(plain(load.rate / load.value))));
-      if (!load.straight())
-        rate = std::max(rate, 1 / load.reach(T(0), series_order, Real(longest_input)));
-    };
-    for (const int j : joined_.stuck()) {
-      if (is_stop(j)) continue;
-      look(contact(j).load);
-      if (const int by = contact(j).pressed_by; by >= 0 && !is_stop(by)) look(contact(by).load);
-    }
-    return shares_per_step * rate;
-  }
-
   /// True if rigid contacts hold each body to the ground.
   bool all_held() const { return joined_.all_grounded(); }
 
@@ -122,7 +102,6 @@ class Expansion {
   void expand(const bodies::State<T>& state, Real step, int order) {
     begin(state, step);
     order_count_ = order;
-    const bool shared = !joined_.unique();
     for (int n = 0; n <= order; ++n) {
       const T next = T(step) / T(n + 1);
       for (std::size_t i = 0; i < position_.size(); ++i)
@@ -134,7 +113,7 @@ class Expansion {
         if (n <= acting.degree) rub(acting.contact, n, next);
       for (const int j : joined_.stuck())
         order_.surface[j] = is_stop(j) ? N(T(0)) : rate_of(surfaces_[j], n);
-      joined_.solve(order_, n, [&](int j, int q) { return shared ? share_order(j, q) : T(0); });
+      joined_.solve(order_);
       for (const int j : joined_.stuck()) {
         if (is_stop(j))
           push_[stop_of(j)][n] = -(side(stop_of(j)) * order_.friction[j]);
@@ -183,9 +162,6 @@ class Expansion {
   }
 
  private:
-  /// A step is a part of the time in which a load would end: the rest of a series of quotients is below rounding.
-  static constexpr Real shares_per_step{15};
-
   const bodies::Contact<T>& contact(std::size_t j) const { return system_->contacts[j]; }
   std::size_t contacts() const { return system_->contacts.size(); }
   T side(std::size_t stop) const { return T(system_->stops[stop].side); }
@@ -196,23 +172,6 @@ class Expansion {
     if (c.pressed_by >= 0)
       load +=
           c.share * (is_stop(c.pressed_by) ? T(1) : contact(c.pressed_by).load.from(time).value);
-    return c.static_limit * load;
-  }
-  /// True if the static friction of a contact that sticks changes over time.
-  bool varies() const {
-    return std::any_of(joined_.stuck().begin(), joined_.stuck().end(), [&](int j) {
-      if (is_stop(j)) return false;
-      const bodies::Contact<T>& c = contact(j);
-      const bool pressed = c.pressed_by >= 0 && !is_stop(c.pressed_by);
-      return !loads_[j].is_constant() || (pressed && !loads_[c.pressed_by].is_constant());
-    });
-  }
-  /// Order q of the share of a contact in friction that is not unique: its static friction, N.
-  T share_order(int j, int q) const {
-    if (is_stop(j)) return T(0);
-    const bodies::Contact<T>& c = contact(j);
-    T load = loads_[j][q];
-    if (c.pressed_by >= 0 && !is_stop(c.pressed_by)) load += c.share * loads_[c.pressed_by][q];
     return c.static_limit * load;
   }
   /// Order n of the load of a contact.
@@ -257,8 +216,6 @@ class Expansion {
       integral_[f][0] = known(state.integral[f], error(state.errors.integral, f));
       control_[f][0] = known(state.held[f]);
     }
-    if (!joined_.unique() && varies())
-      joined_.share_by([&](int j) { return is_stop(j) ? stop_share_ : limit_of(j, time); });
     find_acting();
     for (std::size_t j = 0; j < contacts(); ++j) settled_[j] = is_settled(j, state);
   }
@@ -388,7 +345,6 @@ class Expansion {
   JoinedBodies<T> joined_;
   typename JoinedBodies<T>::template Order<N> order_;
   std::vector<Series> position_, velocity_, stretch_, sliding_;
-  T stop_share_{0};            ///< of a stop beside contacts, N
   std::vector<char> settled_;  ///< skin that slips and keeps its stretch, contact by contact
   std::vector<Series> friction_, depth_, approach_, push_, control_, integral_;
   std::vector<Acting> acting_;

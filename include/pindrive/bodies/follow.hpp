@@ -221,10 +221,9 @@ class Following {
     T breakpoint = std::min(system_->next_breakpoint(state_.time), until);
     for (const T& due : due_) breakpoint = std::min(breakpoint, due);
     const Real rest = plain(breakpoint - state_.time);
-    Real rate =
+    const Real rate =
         std::max(rates_.in(mode_, [&](std::size_t j) { return series_.is_settled(j, state_); }),
                  Real(detail::longest_input) / series_.input_reach(state_.time));
-    rate = std::max(rate, series_.share_rate(state_.time));
     const Real span = std::min(rest, longest / rate);
     series_.expand(state_, span, order_over(rate * span));
     if (++steps_ > event_limit) status_ = Status::too_many_events;

@@ -12,8 +12,7 @@ namespace pindrive::detail {
 
 /// Groups of bodies that rigid contacts in stick join. A group moves as the ground if it contains it, or else by the sum
 /// of its forces. The friction forces follow from what each body then needs. Where they are not unique, as for a body
-/// between two surfaces, the contacts share it at any time in proportion to static friction, as its load has it then:
-/// stick lasts as long as it can, and contacts that share a force begin to slip together.
+/// between two surfaces, the contacts share it in proportion to static friction: stick then lasts as long as it can.
 template <class T>
 class JoinedBodies {
  public:
@@ -39,8 +38,7 @@ class JoinedBodies {
     std::vector<N> surface;             ///< acceleration of the surface of each contact, m/s²
     std::vector<N> acceleration;        ///< m/s², body by body
     std::vector<N> friction;            ///< rigid contacts that stick, on `one`, N
-    std::vector<N> offset, sum;         ///< in between
-    std::vector<std::vector<N>> level;  ///< by order, of the friction over its limit
+    std::vector<N> offset, sum, level;  ///< in between
 
     Order(std::size_t bodies, std::size_t contacts)
         : force(bodies),
@@ -51,24 +49,14 @@ class JoinedBodies {
           sum(bodies) {}
   };
 
-  /// Computes accelerations and friction of order n from forces and surfaces. `limit` has the orders from the first on
-  /// of the share of a contact.
-  template <class N, class Limit>
-  void solve(Order<N>& order, int n, Limit&& limit) const {
+  /// Computes accelerations and friction from forces and surfaces.
+  template <class N>
+  void solve(Order<N>& order) const {
     const auto& bodies = system_->bodies;
-    if (!stuck_.empty()) return solve_together(order, n, limit);
+    if (!stuck_.empty()) return solve_together(order);
     for (std::size_t i = 0; i < bodies.size(); ++i)
       order.acceleration[i] = order.force[i] / bodies[i].mass;
   }
-  /// Takes other shares; one that vanishes stays.
-  template <class Limit>
-  void share_by(Limit&& limit) {
-    for (std::size_t k = 0; k < stuck_.size(); ++k)
-      if (const T share = limit(stuck_[k]); share > 0) limits_[k] = share;
-    factorise();
-  }
-  /// True if each friction force follows from the motion, whatever the shares.
-  bool unique() const { return tree_.size() == stuck_.size(); }
   bool all_grounded() const {
     return std::all_of(root_.begin(), root_.end(), [](int root) { return root == bodies::ground; });
   }
@@ -85,8 +73,8 @@ class JoinedBodies {
   };
 
   /// Computes accelerations and friction where rigid contacts stick.
-  template <class N, class Limit>
-  void solve_together(Order<N>& order, int n, Limit&& limit) const {
+  template <class N>
+  void solve_together(Order<N>& order) const {
     const auto& bodies = system_->bodies;
     std::fill(order.offset.begin(), order.offset.end(), N(T(0)));
     std::fill(order.sum.begin(), order.sum.end(), N(T(0)));
@@ -102,26 +90,14 @@ class JoinedBodies {
       if (root_[i] != bodies::ground)
         order.acceleration[i] += order.sum[root_[i]] / mass_[root_[i]];
     }
-    if (order.level.size() <= static_cast<std::size_t>(n)) order.level.resize(n + 1);
-    std::vector<N>& level = order.level[n];
-    level.resize(free_.size());
+    order.level.resize(free_.size());
     for (std::size_t k = 0; k < free_.size(); ++k)
-      level[k] = bodies[free_[k]].mass * order.acceleration[free_[k]] - order.force[free_[k]];
-    // Changes of the shares add to friction by the levels of lower orders.
-    for (const int contact : stuck_) {
-      N& known = order.friction[contact] = N(T(0));
-      const bodies::Pair c = system_->pair(contact);
-      for (int q = 1; q <= n; ++q)
-        if (const T share = limit(contact, q); share != 0)
-          known +=
-              share * (level_of(order.level[n - q], c.one) - level_of(order.level[n - q], c.other));
-      if (const int i = place(c.one); i >= 0) level[i] -= known;
-      if (const int i = place(c.other); i >= 0) level[i] += known;
-    }
-    substitute(level);
+      order.level[k] = bodies[free_[k]].mass * order.acceleration[free_[k]] - order.force[free_[k]];
+    substitute(order.level);
     for (std::size_t k = 0; k < stuck_.size(); ++k) {
       const bodies::Pair c = system_->pair(stuck_[k]);
-      order.friction[stuck_[k]] += limits_[k] * (level_of(level, c.one) - level_of(level, c.other));
+      order.friction[stuck_[k]] =
+          limits_[k] * (level_of(order.level, c.one) - level_of(order.level, c.other));
     }
   }
 
@@ -174,19 +150,19 @@ class JoinedBodies {
       free_.push_back(edge.to);
     }
   }
-  int place(int body) const { return body == bodies::ground ? -1 : place_[body]; }
   template <class N>
   N level_of(const std::vector<N>& level, int body) const {
-    return place(body) < 0 ? N(T(0)) : level[place(body)];
+    return body == bodies::ground || place_[body] < 0 ? N(T(0)) : level[place_[body]];
   }
 
   /// Cholesky factor of the matrix of the groups, in which a contact counts by its static friction.
   void factorise() {
     const std::size_t n = free_.size();
     factor_.assign(n * n, T(0));
+    const auto at = [&](int body) { return body == bodies::ground ? -1 : place_[body]; };
     for (std::size_t k = 0; k < stuck_.size(); ++k) {
       const bodies::Pair c = system_->pair(stuck_[k]);
-      const int i = place(c.one), j = place(c.other);
+      const int i = at(c.one), j = at(c.other);
       const T weight = limits_[k];
       if (i >= 0) factor_[i * n + i] += weight;
       if (j >= 0) factor_[j * n + j] += weight;

@@ -30,7 +30,6 @@ class InputSeries {
 
   T operator[](int n) const { return n <= degree_ ? c_[n] : T(0); }
   int degree() const { return degree_; }
-  bool is_constant() const { return degree_ <= 1 && c_[1] == 0; }
   void rescale(const Powers<Real>& part) {
     step_ *= part[1];
     for (int n = 1; n <= degree_; ++n) c_[n] *= part[n];
