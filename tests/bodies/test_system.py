@@ -410,3 +410,30 @@ def test_a_load_that_becomes_negative_is_refused() -> None:
     system.contact("a", kinetic=1.0, load=pd.harmonic(1.0, 2.0, 1.0))
     with pytest.raises(ValueError, match=r"contact\.a-ground\.load must be >= 0"):
         system.simulate(2.0)
+
+
+def test_a_motion_names_contacts_whose_friction_is_not_unique() -> None:
+    """Two surfaces hold a body; a third contact holds another one alone."""
+    system = pd.System()
+    for body in ("a", "b"):
+        system.body(body, 1.0)
+    system.spring("a", "b", stiffness=10)
+    system.contact("a", kinetic=1.0, static=1.5, name="one")
+    system.contact("a", kinetic=0.5, name="other")
+    system.contact("b", kinetic=1.0, name="alone")
+    motion = system.simulate(1.0)
+    assert motion.shared == ("one", "other")
+    assert motion.contact("one").force(0.5) == 0.0
+    pushed = system.with_values({"a.force": 1.2}).simulate(1.0)
+    parts = [pushed.contact(name).force(0.5) for name in ("one", "other")]
+    assert parts == pytest.approx([-0.9, -0.3], rel=1e-14)
+    single = pd.System()
+    single.body("a", 1.0)
+    single.contact("a", kinetic=1.0)
+    assert single.simulate(1.0).shared == ()
+    between_stops = pd.System()
+    between_stops.body("a", 1.0)
+    between_stops.force("a", 5.0)
+    between_stops.stop("a", upper=0.0)
+    between_stops.contact("a", kinetic=1.0)
+    assert between_stops.simulate(1.0).shared == ("a-ground",)

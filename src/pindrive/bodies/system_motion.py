@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from math import inf
 from os import PathLike
 from pathlib import Path
 from typing import Any, Literal
@@ -224,6 +225,40 @@ class SystemMotion(lazy.NotebookHtml):
         return tuple(found)
 
     @cached_property
+    def shared(self) -> tuple[str, ...]:
+        """Contacts whose friction is not unique at times, by name.
+
+        Rigid contacts and stops that hold, and close a loop, determine only sums of their forces;
+        each contact then has a part in proportion to its static friction.
+        """
+        system = self.system
+        ends = [f"stop {i}" for i, _ in enumerate(stop_ends(system))]
+        rigid = {name: c.between for name, c in system.contacts.items() if c.stiffness == inf}
+        rigid |= {
+            end: stop.between
+            for end, (_, stop, _, _) in zip(ends, stop_ends(system), strict=True)
+            if stop.stiffness == inf
+        }
+        names = [*system.contacts, *ends]
+        table = self.core.changes()
+        _, touching, pushing = self.core.at(np.zeros(1), True)
+        slips = dict(
+            zip(system.contacts, touching[3 * len(system.contacts) :].tolist(), strict=True)
+        )
+        slips |= {end: float(push <= 0.0) for end, push in zip(ends, pushing, strict=False)}
+        found: set[str] = set()
+        seen: set[frozenset[str]] = set()
+        places = [-1, *map(int, table["contact"])]
+        for place, after in zip(places, [0.0, *table["after"].tolist()], strict=True):
+            if place >= 0:
+                slips[names[place]] = after
+            holding = frozenset(name for name in rigid if slips[name] == 0.0)
+            if holding not in seen:
+                seen.add(holding)
+                found |= _in_loops({name: rigid[name] for name in holding})
+        return tuple(name for name in system.contacts if name in found)
+
+    @cached_property
     def _certified(self) -> dict[str, dict[str, float]]:
         found: dict[str, dict[str, float]] = _core.certify_system(self.core_numbers, self.duration)
         return found
@@ -380,6 +415,18 @@ class SystemMotion(lazy.NotebookHtml):
         from pindrive.files.system_export import to_csv
 
         return to_csv(self, path, rate)
+
+
+def _in_loops(between: dict[str, tuple[str, str]]) -> set[str]:
+    """Return the names of the pairs that others connect too."""
+    found = set()
+    for name, (one, other) in between.items():
+        reached, rest = {one}, [pair for each, pair in between.items() if each != name]
+        while more := {b for pair in rest for b in pair if reached & {*pair}} - reached:
+            reached |= more
+        if other in reached:
+            found.add(name)
+    return found
 
 
 def _kind(before: float, after: float) -> Kind:

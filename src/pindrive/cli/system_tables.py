@@ -57,4 +57,9 @@ def system_report(motion: SystemMotion, name: str) -> RenderableType:
         f"to {significant(1e3 * energy.after)} mJ.",
         f"The laws hold to {worst:.1e} of the largest quantity.",
     ]
+    if motion.shared:
+        lines.append(
+            f"The friction of {', '.join(motion.shared)} is not unique at times: "
+            "it is shared in proportion to static friction."
+        )
     return Group(*whole_lines(lines), bodies, contacts)
