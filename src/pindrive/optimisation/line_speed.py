@@ -14,7 +14,6 @@ from typing import Final
 
 import numpy as np
 
-from pindrive.evaluation.hand_speed import two_lines_under_hand
 from pindrive.evaluation.resolution import PRECISION, TRIED, check_work, two_lines
 from pindrive.files.device import DeviceFile
 from pindrive.optimisation.goals import SpeedRequest
@@ -81,6 +80,8 @@ class Climb:
         file, device = self.file, self.file.device
         criteria = file.criteria
         if device.hand is not None:
+            from pindrive.evaluation.hand_speed import two_lines_under_hand
+
             reading, touch = file.reading, file.touch
             return two_lines_under_hand(device, reading, self.pitch, speed, touch, criteria)
         trial = two_lines(device, self.pitch, 0.5 * self.pitch, speed, criteria)
