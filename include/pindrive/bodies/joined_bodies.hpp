@@ -121,22 +121,24 @@ class JoinedBodies {
   }
   /// Grows a tree of joining contacts through each group, from the ground if that is in the group.
   void walk() {
-    const std::vector<int> joining = this->joining();
+    std::vector<int> left = joining();
     std::vector<bool> seen(root_.size(), false);
     const auto grow = [&](int start) {
       std::vector<int> reached{start};
-      for (std::size_t k = 0; k < reached.size(); ++k)
-        for (const int contact : joining) {
+      for (std::size_t k = 0; k < reached.size(); ++k) {
+        const int from = reached[k];
+        const auto leads_on = [&](int contact) {
           const bodies::Pair c = system_->pair(contact);
-          for (const bool first : {true, false}) {
-            const int from = first ? c.other : c.one, to = first ? c.one : c.other;
-            if (from != reached[k] || to == bodies::ground || seen[to]) continue;
-            seen[to] = true;
-            root_[to] = start;
-            tree_.push_back({from, to, contact, first ? 1 : -1});
-            reached.push_back(to);
-          }
-        }
+          if (c.one != from && c.other != from) return false;
+          const int to = c.other == from ? c.one : c.other;
+          seen[to] = true;
+          root_[to] = start;
+          tree_.push_back({from, to, contact, c.other == from ? 1 : -1});
+          reached.push_back(to);
+          return true;
+        };
+        left.erase(std::remove_if(left.begin(), left.end(), leads_on), left.end());
+      }
     };
     grow(bodies::ground);
     for (std::size_t i = 0; i < root_.size(); ++i) {
@@ -155,10 +157,13 @@ class JoinedBodies {
     return body == bodies::ground || place_[body] < 0 ? N(T(0)) : level[place_[body]];
   }
 
-  /// Cholesky factor of the matrix of the groups, in which a contact counts by its static friction.
+  /// Cholesky factor of the matrix of the groups, in which a contact counts by its static friction. A row is zero
+  /// before its first column, and remains so.
   void factorise() {
     const std::size_t n = free_.size();
     factor_.assign(n * n, T(0));
+    begin_.resize(n);
+    for (std::size_t i = 0; i < n; ++i) begin_[i] = i;
     const auto at = [&](int body) { return body == bodies::ground ? -1 : place_[body]; };
     for (std::size_t k = 0; k < stuck_.size(); ++k) {
       const bodies::Pair c = system_->pair(stuck_[k]);
@@ -169,13 +174,16 @@ class JoinedBodies {
       if (i >= 0 && j >= 0) {
         factor_[i * n + j] -= weight;
         factor_[j * n + i] -= weight;
+        std::size_t& begin = begin_[std::max(i, j)];
+        begin = std::min(begin, static_cast<std::size_t>(std::min(i, j)));
       }
     }
     using std::sqrt;
-    for (std::size_t j = 0; j < n; ++j)
-      for (std::size_t i = j; i < n; ++i) {
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = begin_[i]; j <= i; ++j) {
         T sum = factor_[i * n + j];
-        for (std::size_t k = 0; k < j; ++k) sum -= factor_[i * n + k] * factor_[j * n + k];
+        for (std::size_t k = std::max(begin_[i], begin_[j]); k < j; ++k)
+          sum -= factor_[i * n + k] * factor_[j * n + k];
         factor_[i * n + j] = i == j ? sqrt(sum) : sum / factor_[j * n + j];
       }
   }
@@ -183,12 +191,12 @@ class JoinedBodies {
   void substitute(std::vector<N>& x) const {
     const std::size_t n = free_.size();
     for (std::size_t i = 0; i < n; ++i) {
-      for (std::size_t k = 0; k < i; ++k) x[i] -= factor_[i * n + k] * x[k];
+      for (std::size_t k = begin_[i]; k < i; ++k) x[i] -= factor_[i * n + k] * x[k];
       x[i] = x[i] / factor_[i * n + i];
     }
     for (std::size_t i = n; i-- > 0;) {
-      for (std::size_t k = i + 1; k < n; ++k) x[i] -= factor_[k * n + i] * x[k];
       x[i] = x[i] / factor_[i * n + i];
+      for (std::size_t k = begin_[i]; k < i; ++k) x[k] -= factor_[i * n + k] * x[i];
     }
   }
 
@@ -201,6 +209,7 @@ class JoinedBodies {
   std::vector<int> free_,
       place_;  ///< bodies whose level is sought, and where each stands among them
   std::vector<T> factor_;
+  std::vector<std::size_t> begin_;  ///< first column of each row of the factor
 };
 
 }  // namespace pindrive::detail
