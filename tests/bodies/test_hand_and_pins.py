@@ -66,7 +66,7 @@ def numbers_of_hand(
 def test_staggered_lines_slow_a_hand_as_in_another_program(
     pins: int, damping: float, slowest: float, lag: float
 ) -> None:
-    """The other program takes the slowest speed at the ends of its steps, about 0.01 mm/s more."""
+    """Slowest speeds at the ends of steps, as the program has them."""
     found = numbers_of_hand(pins, 1e-3, 4e-3, 0.4e-3, damping)
     assert found[0] == pytest.approx(slowest - 0.005, abs=0.011)
     assert found[1] == pytest.approx(lag, abs=0.0006)

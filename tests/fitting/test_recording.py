@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from pindrive import Profile, Recording, read_recording
+from pindrive.fitting import Noise
 
 ROWS = "".join(f"{i},{2 - 0.1 * i:g},60\n" for i in range(20))
 HEAD = "time [ms], position [mm], mouse_velocity [mm/s]\n"
@@ -32,7 +33,7 @@ def test_columns_are_read_in_si_and_a_constant_input_is_one_number(tmp_path: Pat
     np.testing.assert_allclose(found.time, 1e-3 * np.arange(20), rtol=1e-15)
     np.testing.assert_allclose(found.channels["position"], 2e-3 - 1e-4 * np.arange(20), atol=1e-18)
     assert found.mouse_velocity == pytest.approx(0.06)
-    assert found.noise == {"position": pytest.approx(5e-6)}
+    assert found.noise == {"position": Noise(5e-6)}
     assert repr(found) == "<Recording pin.csv: position, 20 samples at 1000 Hz>"
     assert found.sources == (tmp_path / "pin.csv",)
 
@@ -108,7 +109,7 @@ def test_error_is_one_line_with_the_remedy(tmp_path: Path, text: str, said: str)
     [
         ({}, "a recording must be of position or velocity or acceleration or force, got none"),
         ({"position": np.ones(5)}, r"position must be one value for each time, \(20,\)"),
-        ({"position": [np.nan] * 20}, r"position\[0\] must be finite"),
+        ({"position": [np.inf] * 20}, r"position\[0\] must be finite"),
         ({"position": np.ones(20), "noise": {"force": 1.0}}, "noise must be of position"),
         ({"position": np.ones(20), "noise": {"position": 0.0}}, "greater than 0"),
         ({"position": np.ones(20), "mouse_velocity": [1e13] * 20}, r"mouse_velocity\[0\] must be"),

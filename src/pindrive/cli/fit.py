@@ -60,8 +60,8 @@ def fit(
         list[str] | None,
         option(
             ASKED,
-            'Known noise, for example "position=5 um"; else estimated.',
-            metavar="CHANNEL=SIZE",
+            'Noise of a channel, such as "position=drift, hum 50 Hz"; else chosen.',
+            metavar="CHANNEL=NOISE",
         ),
     ] = None,
     compare: Annotated[
@@ -78,6 +78,8 @@ def fit(
     A recording has columns time and position, velocity, acceleration or force, and mouse_velocity
     and plate_load if they vary, for example "time [s], position [m]". Parameters of a fit are the
     keys of a drive and its motion, time_offset, and the offset of a channel (position_offset).
+    The noise of a channel lists, apart by commas: a size (5 um), offset, drift, quadratic drift,
+    hum 50 Hz, harmonic, correlated, outliers, step 20 um, average before, white, choose.
     """
     from pindrive.files.device import load_device
     from pindrive.files.output import DEVICE_FILE

@@ -12,6 +12,9 @@ from pindrive.cli.tables import new_table
 from pindrive.quantities.quantity import significant
 from pindrive.quantities.results import CHANNELS
 
+NEAR = 3
+"""Rejected noises that are named."""
+
 if TYPE_CHECKING:
     from rich.table import Table
 
@@ -34,37 +37,47 @@ def fit_report(found: Fit) -> RenderableType:
     table = new_table(f"Fit to {names}", *heads)
     for row in found.table():
         table.add_row(*row)
-    words = [*_correlations(found), f"AICc {found.aicc:.1f}"]
+    words = [*_choices(found), *_correlations(found), f"AICc {found.aicc:.1f}"]
     words += [f"warning: {line}" for line in found.warnings]
     lines = [Text(line, no_wrap=True, overflow="ignore") for line in words]
     return Group(table, _noise(found), *lines)
 
 
 def _noise(found: Fit) -> Table:
-    heads = (
-        "recording",
-        "channel",
-        ">samples",
-        ">noise",
-        "unit",
-        ">runs p",
-        ">Ljung-Box p",
-        "rest",
-    )
-    table = new_table("Residuals", *heads)
+    several = len(found.recordings) > 1
+    heads = ("channel", ">samples", ">size", "noise", ">runs p", ">Ljung-Box p", "rest")
+    table = new_table("Noise", *(["recording", *heads] if several else heads))
     for left in found.residuals:
         channel = CHANNELS[left.channel]
-        table.add_row(
-            found.recordings[left.recording].name,
+        size = f"{significant(left.noise * channel.display_scale, 3)} {channel.display_unit}"
+        row = (
             left.channel,
             str(left.count),
-            significant(left.noise * channel.display_scale, 3) + (" given" if left.known else ""),
-            channel.display_unit,
+            f"{size} given" if left.known else size,
+            left.description,
             f"{left.runs:.2g}",
             f"{left.ljung_box:.2g}",
             "structure" if left.structured else "noise",
         )
+        name = found.recordings[left.recording].name
+        table.add_row(*([name, *row] if several else row))
     return table
+
+
+def _choices(found: Fit) -> list[str]:
+    """The noise that was chosen for each channel, and others that come near, or are plainer."""
+    lines = []
+    for left in found.residuals:
+        if left.rejected:
+            others = [*left.rejected.items()][:NEAR]
+            if "white" in left.rejected and "white" not in dict(others):
+                others.append(("white", left.rejected["white"]))
+            rest = "; ".join(f"{words} {excess:+.1f}" for words, excess in others)
+            name = found.recordings[left.recording].name
+            lines.append(
+                f"Noise of the {left.channel} of {name} by BIC: {left.model}; rejected: {rest}"
+            )
+    return lines
 
 
 def _correlations(found: Fit) -> list[str]:

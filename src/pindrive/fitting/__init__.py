@@ -9,6 +9,7 @@
 - `FittedLaw`: a friction law that was fitted
 - `Identifiability`: whether recordings tell a parameter
 - `ModelComparison`: fits of several laws of friction to the same recordings
+- `Noise`: noise of a recorded channel: size, drift, hum, correlation, outliers, steps, averages
 - `read_recording`: a recording from a CSV file whose header names columns with their units
 - `Recording`: samples of one release, and what is known of it
 """

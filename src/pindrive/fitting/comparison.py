@@ -38,7 +38,7 @@ def compare_models(found: Fit, seed: int = 1) -> ModelComparison:
     """
     model = found.model
     bounds = {p.key: (p.lower, p.upper) for p in model.parameters}
-    others = [p.key for p in model.parameters if not _of_friction(p.key)]
+    others = [p.key for p in model.parameters if not _of_friction(p.key) and not p.of_noise]
     friction = [p.key for p in model.parameters if p.key.endswith(".kinetic")]
     contacts = [
         name
@@ -55,7 +55,7 @@ def compare_models(found: Fit, seed: int = 1) -> ModelComparison:
         kept = {key: ends for key, ends in bounds.items() if key in free}
         try:
             fits[law] = fit(
-                model.recordings,
+                found.given,
                 drive,
                 found.releases,
                 free=free,

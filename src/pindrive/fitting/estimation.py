@@ -11,13 +11,16 @@ from numpy.typing import NDArray
 
 from pindrive.fitting.identifiability import Identifiability, rank, untouched
 from pindrive.fitting.least_squares import Optimum, Problem
-from pindrive.fitting.model import Model
-from pindrive.fitting.parameters import parameters
+from pindrive.fitting.model import Block, Model
+from pindrive.fitting.noise import Noise
+from pindrive.fitting.noise_choice import Linearised, chosen
+from pindrive.fitting.parameters import of_noise, parameters
 from pindrive.fitting.profiles import BetterOptimum, ProfileLikelihood, profile
 from pindrive.fitting.recording import Recording
 from pindrive.fitting.residuals import first_noise, tested
 from pindrive.fitting.results import Estimate, Fit
 from pindrive.fitting.search import polished, search
+from pindrive.fitting.whitening import Whitening, estimated
 from pindrive.lazy import stats
 from pindrive.motion.drive import Drive
 from pindrive.motion.release import Release, check_fits
@@ -34,6 +37,10 @@ RESTARTS: Final = 20
 """Largest number of restarts from a better optimum found by a profile."""
 SWING: Final = 0.25
 """The least part of a period that a recording must last."""
+CHOICES: Final = 4
+"""Largest number of choices of the noise, each at the optimum with the one before."""
+ALIKE: Final = 1e-3
+"""Change of the noise, a part of it, with which a refinement is the last."""
 LEAST_NOISE: Final = 1e-9
 """Part of a channel's extent below which rounding is its noise."""
 
@@ -55,6 +62,10 @@ def fit(
     The sum of squares over the noise is minimised: `simulate_batch` compares thousands of
     candidates over the bounds, trust regions with exact derivatives refine the best of them, and
     profiles that meet a better fit start it again. The same seed gives the same result.
+
+    Noise is part of the model. A channel of a recording without a given `noise` gets the one with
+    the least Bayesian information criterion: white noise, and where they help an offset or a drift,
+    hum of the mains, a correlation of neighbours, outliers, and the steps of a converter.
 
     Args:
         recordings: Measurements; each may have its own mouse velocity and plate load.
@@ -99,20 +110,16 @@ def fit(
     if len(model.data) <= len(found):
         required = f"more samples than free parameters ({len(found)})"
         raise ValueError(refusal("recordings", required, len(model.data)))
-    noise = np.array(
-        [
-            given[block.recording].noise.get(block.channel) or first_noise(model.data[block.place])
-            for block in model.blocks
-        ]
-    )
-    weights = _weights(model, noise)
+    first = np.array([_first_noise(model, block) for block in model.blocks])
+    weights = _weights(model, first)
     best, tried = search(model, weights, seed)
     _check_touched(model, weights, tried)
-    solved = _Solved(model, noise, best, tried, confidence)
+    solved = _Solved(model, first, best, tried, confidence)
     solved.settle_noise()
+    solved.choose_noise()
     solved.polish(seed)
     if not profiles:
-        return solved.result([None] * len(found))
+        return solved.result([None] * len(solved.theta))
     with crew(cluster) as workers:
         return solved.result(solved.profiled(seed, workers))
 
@@ -130,46 +137,120 @@ class _Solved:
     """A fit while its noise and its profiles are found."""
 
     def __init__(
-        self, model: Model, noise: Array, best: Optimum, tried: Array, confidence: float
+        self, model: Model, first: Array, best: Optimum, tried: Array, confidence: float
     ) -> None:
-        self._model, self._noise, self._best, self._tried = model, noise, best, tried
+        self._model, self._best, self._tried = model, best, tried
+        self._given = model.recordings
         self._confidence = confidence
-        self._known = [
-            block.channel in model.recordings[block.recording].noise for block in model.blocks
-        ]
-        self._problem = Problem(model, _weights(model, noise))
+        self._noise = [Whitening(float(size)) for size in first]
+        self._problem = Problem(model, self._noise)
+        self._rejected: list[dict[str, float]] = [{} for _ in model.blocks]
+
+    @property
+    def theta(self) -> Array:
+        """Values of all parameters, SI, shape (k,)."""
+        return self._best.theta
 
     def settle_noise(self) -> None:
         """Refine with the noise that is left, until both agree."""
         for _ in range(ROUNDS):
-            off = self._problem.residuals(self._best.theta) / self._problem.weights
-            left = self._noise.copy()
-            spare = 1.0 - len(self._best.theta) / len(off)
-            for i, block in enumerate(self._model.blocks):
-                if not self._known[i]:
-                    size = float(np.sqrt(np.mean(off[block.place] ** 2) / spare))
-                    left[i] = max(size, LEAST_NOISE * self._model.range[i])
-            changed = np.abs(left / self._noise - 1.0).max()
-            alike = np.ptp(left / self._noise) < 1e-3 * changed or len(left) == 1
-            self._noise = left
-            self._problem = Problem(self._model, _weights(self._model, left))
-            again = self._problem.refined(self._best.theta)
-            self._best = again
-            if changed < 1e-3 or alike:
+            before, self._noise = self._noise, self._left()
+            changes = [_change(*pair) for pair in zip(before, self._noise, strict=True)]
+            self._problem = Problem(self._model, self._noise)
+            self._best = self._problem.refined(self._best.theta)
+            alone = len(changes) == 1 and self._noise[0].is_white
+            if max(changes) < ALIKE or alone:
                 break
-        cost = self._problem.cost(self._best.theta)
-        self._best = replace(self._best, cost=cost)
+        self._best = replace(self._best, cost=self._problem.cost(self._best.theta))
+
+    def _left(self) -> list[Whitening]:
+        """Return the noise of the residuals."""
+        off, slopes = self._problem.linearised(self._best.theta)
+        spare = 1.0 - len(self._best.theta) / len(off)
+        found = []
+        for i, block in enumerate(self._model.blocks):
+            made = estimated(
+                _noise_of(self._model, block),
+                *(off[block.place], slopes[block.place], block.times),
+                *(self._model.recordings[block.recording].interval, spare),
+            )
+            least = LEAST_NOISE * self._model.range[i]
+            found.append(made if made.size > least else replace(made, size=least))
+        return found
+
+    def choose_noise(self) -> None:
+        """Choose the noise of each channel that has none given, and refine with it."""
+        free = [_is_to_be_chosen(self._model, block) for block in self._model.blocks]
+        if not any(free):
+            return
+        for _ in range(CHOICES):
+            before = [_noise_of(self._model, block) for block in self._model.blocks]
+            found = [self._chosen(i) if free[i] else noise for i, noise in enumerate(before)]
+            if found == before:
+                return
+            self._take(found)
+            self.settle_noise()
+
+    def _chosen(self, i: int) -> Noise:
+        """Return the noise that a channel has by the criterion."""
+        model, block = self._model, self._model.blocks[i]
+        asked = self._given[block.recording]
+        off, slopes = self._problem.linearised(self._best.theta)
+        own = [j for j, p in enumerate(model.parameters) if not p.of_noise]
+        added = [j for j, p in enumerate(model.parameters) if p.of_noise]
+        here = np.zeros(len(off), bool)
+        here[block.place] = True
+        apart = self._problem.residuals(self._best.theta)[~here]
+        mine = [j for j in added if slopes[block.place, j].any()]
+        at = Linearised(
+            # without what the noise has added so far
+            off[block.place] - slopes[block.place][:, mine] @ self._best.theta[mine],
+            slopes[block.place][:, own],
+            block.times,
+            (float(asked.time[0]), float(asked.time[-1])),
+            asked.interval,
+            apart,
+            self._problem.slopes(self._best.theta)[~here][:, own],
+        )
+        start = asked.noise.get(block.channel, Noise())
+        found, self._rejected[i] = chosen(at, start, model.data[block.place])
+        return found
+
+    def _take(self, noises: Sequence[Noise]) -> None:
+        """Take noises for the channels: with other parameters of the sensors."""
+        before = self._model
+        listed = [dict(recording.noise) for recording in before.recordings]
+        for block, noise in zip(before.blocks, noises, strict=True):
+            listed[block.recording][block.channel] = noise
+        recordings = [
+            recording.with_changes(noise=noise)
+            for recording, noise in zip(before.recordings, listed, strict=True)
+        ]
+        free = [p for p in before.parameters if not p.of_noise]
+        found = (*free, *of_noise(free, recordings))
+        self._model = Model(found, before.drive, before.releases, recordings)
+        known = {p.name: float(x) for p, x in zip(before.parameters, self.theta, strict=True)}
+        theta = np.array([known.get(p.name, p.start) for p in found])
+        columns = {p.name: i for i, p in enumerate(before.parameters)}
+        self._tried = np.column_stack(
+            [
+                self._tried[:, columns[p.name]] if p.name in columns else np.zeros(len(self._tried))
+                for p in found
+            ]
+        )
+        self._problem = Problem(self._model, self._noise)
+        self._best = Optimum(theta, self._problem.cost(theta), self._best.converged)
 
     @property
     def _threshold(self) -> float:
         """The excess of the cost at the end of an interval."""
         spare = len(self._model.data) - len(self._best.theta)
-        if all(self._known):
+        if all(_noise_of(self._model, block).size is not None for block in self._model.blocks):
             return float(stats.chi2.ppf(self._confidence, 1))
         return float(stats.f.ppf(self._confidence, 1, spare))
 
     def _rank(self) -> None:
-        coarse = _coarse(self._model, self._problem.weights)
+        coarse = _coarse(self._model, _weights(self._model, [n.size for n in self._noise]))
         self.rank = rank(self._problem, self._best.theta, self._tried, coarse)
 
     def polish(self, seed: int) -> None:
@@ -185,7 +266,11 @@ class _Solved:
         """The profile of each parameter; a better fit that one meets is taken instead."""
         for turn in range(RESTARTS):
             hidden = {i for group in self.rank.groups for i in group}
-            shown = [i for i in range(len(self._best.theta)) if i not in hidden]
+            shown = [
+                i
+                for i, p in enumerate(self._model.parameters)
+                if i not in hidden and not p.of_noise
+            ]
             shared = (self._problem, self._best, self.rank.covariance, self._threshold)
             traced: list[ProfileLikelihood | None] = [None] * len(self._best.theta)
             for i, found in zip(shown, workers.spread(_profiled, shared, shown), strict=True):
@@ -208,7 +293,7 @@ class _Solved:
         errors = np.sqrt(np.diag(covariance))
         groups = {i: group for group in self.rank.groups for i in group}
         estimates = []
-        for i, p in enumerate(model.parameters):
+        for i, p in enumerate(p for p in model.parameters if not p.of_noise):
             half = np.sqrt(self._threshold) * errors[i]
             found = traced[i]
             interval = found.interval if found else (theta[i] - half, theta[i] + half)
@@ -232,13 +317,26 @@ class _Solved:
             )
         with np.errstate(invalid="ignore", divide="ignore"):
             correlation = covariance / np.outer(errors, errors)
-        off = -self._problem.residuals(theta) / self._problem.weights
+        off, _ = self._problem.linearised(theta)
         residuals = tuple(
-            tested(off[b.place], b.recording, b.channel, float(s), known, len(theta))
-            for b, s, known in zip(model.blocks, self._noise, self._known, strict=True)
+            tested(
+                -off[b.place],
+                -self._noise[i].scores(off[b.place]),
+                self._noise[i],
+                block=b,
+                noise=_noise_of(model, b),
+                rejected=self._rejected[i],
+                parameters=len(theta),
+                added={
+                    model.parameters[j].key.removeprefix(f"{b.channel}_"): float(theta[j])
+                    for j in model.added(i)[0]
+                },
+            )
+            for i, b in enumerate(model.blocks)
         )
         return Fit(
             model=model,
+            given=self._given,
             theta=theta,
             estimates=tuple(estimates),
             covariance=covariance,
@@ -250,7 +348,32 @@ class _Solved:
         )
 
 
-def _weights(model: Model, noise: Array) -> Array:
+def _noise_of(model: Model, block: Block) -> Noise:
+    return model.recordings[block.recording].noise.get(block.channel, Noise())
+
+
+def _is_to_be_chosen(model: Model, block: Block) -> bool:
+    """Return True of a channel without a given noise, or whose noise says so."""
+    given = model.recordings[block.recording].noise.get(block.channel)
+    return given is None or given.choose
+
+
+def _first_noise(model: Model, block: Block) -> float:
+    """Return the noise of a channel before it is fitted, SI."""
+    noise = _noise_of(model, block)
+    size = first_noise(model.data[block.place]) if noise.size is None else float(noise.size)
+    return max(size, 0.3 * float(noise.step or 0.0))  # a rounded sample is off by its step / √12
+
+
+def _change(before: Whitening, after: Whitening) -> float:
+    """Return the change of a noise, a part of it."""
+    changed = abs(after.size / before.size - 1.0) + abs(after.correlation - before.correlation)
+    if before.weights is not None and after.weights is not None:
+        return changed + float(np.abs(after.weights / before.weights - 1.0).mean())
+    return changed + (0.0 if before.weights is after.weights else 1.0)
+
+
+def _weights(model: Model, noise: Sequence[float] | Array) -> Array:
     return np.concatenate(
         [np.full(block.size, 1.0 / size) for block, size in zip(model.blocks, noise, strict=True)]
     )

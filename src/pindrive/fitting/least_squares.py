@@ -9,6 +9,7 @@ from typing import Any, Final, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from pindrive.fitting.whitening import Whitening
 from pindrive.lazy import optimize
 
 Array = NDArray[np.float64]
@@ -39,7 +40,7 @@ class FittedModel(Protocol):
     parameters: tuple[Any, ...]
     """Each with a `start` between `lower` and `upper`."""
     blocks: list[Any]
-    """Blocks of samples, each with its `size`."""
+    """Blocks of samples, each with its `size` and its `place` among all."""
     data: Array
 
     @property
@@ -54,10 +55,15 @@ class FittedModel(Protocol):
 
 
 class Problem:
-    """A model with the weights of its samples, one over the noise of each."""
+    """A model with the noise of its samples.
 
-    def __init__(self, model: FittedModel, weights: Array) -> None:
-        self.model, self.weights = model, weights
+    Args:
+        model: Fitted model.
+        noise: Whitening of each block, or the weight of each sample, one over its noise.
+    """
+
+    def __init__(self, model: FittedModel, noise: Array | Sequence[Whitening]) -> None:
+        self.model, self.noise = model, noise
         self.lower = np.array([p.lower for p in model.parameters])
         self.upper = np.array([p.upper for p in model.parameters])
         self._extent = np.concatenate(
@@ -69,7 +75,7 @@ class Problem:
         self._last: tuple[bytes, Array, Array] | None = None
 
     def residuals(self, theta: Array) -> Array:
-        """Computed less recorded over the noise, shape (n,)."""
+        """Computed less recorded as independent residuals of variance one, shape (n,)."""
         return self._whole(theta)[0]
 
     def cost(self, theta: Array) -> float:
@@ -84,20 +90,39 @@ class Problem:
     def _whole(self, theta: Array) -> tuple[Array, Array]:
         key = np.asarray(theta, float).tobytes()
         if self._last is None or self._last[0] != key:
-            values, slopes = self.model.linearise(theta)
-            slopes = np.where(np.isfinite(slopes), slopes, 0.0)
-            self._last = key, self._off(values), slopes * self.weights[:, None]
+            off, slopes = self.linearised(theta)
+            self._last = key, self._independent(off), self._independent_slopes(off, slopes)
         return self._last[1:]
+
+    def linearised(self, theta: Array) -> tuple[Array, Array]:
+        """Computed less recorded, SI, shape (n,), and the derivatives, shape (n, k)."""
+        values, slopes = self.model.linearise(theta)
+        return self._off(values), np.where(np.isfinite(slopes), slopes, 0.0)
 
     def plain_cost(self, theta: Array) -> float:
         """The sum of their squares, without the derivatives."""
-        off = self._off(self.model.predict(theta))
+        off = self._independent(self._off(self.model.predict(theta)))
         return float(off @ off)
 
     def _off(self, values: Array) -> Array:
-        off = np.where(np.isfinite(values), values - self.model.data, _FAR * self._extent)
-        weighted: Array = off * self.weights
-        return weighted
+        off: Array = np.where(np.isfinite(values), values - self.model.data, _FAR * self._extent)
+        return off
+
+    def _independent(self, off: Array) -> Array:
+        if isinstance(self.noise, np.ndarray):
+            weighted: Array = off * self.noise
+            return weighted
+        each = zip(self.noise, self.model.blocks, strict=True)
+        return np.concatenate([noise.residuals(off[block.place]) for noise, block in each])
+
+    def _independent_slopes(self, off: Array, slopes: Array) -> Array:
+        if isinstance(self.noise, np.ndarray):
+            weighted: Array = slopes * self.noise[:, None]
+            return weighted
+        each = zip(self.noise, self.model.blocks, strict=True)
+        return np.concatenate(
+            [noise.slopes(off[block.place], slopes[block.place]) for noise, block in each]
+        )
 
     def refined(
         self, theta: Array, free: Sequence[int] | None = None, most: int = MANY, tol: float = 1e-8

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pindrive import _core
+from pindrive.fitting.noise import Noise, column
 from pindrive.fitting.parameters import Assembly, Parameter
 from pindrive.fitting.recording import Recording
 from pindrive.motion.drive import Drive
@@ -23,13 +24,15 @@ from pindrive.motion.release import Release
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Block:
     """Samples of one channel of one recording, within the vector of all samples."""
 
     recording: int
     channel: str
     place: slice
+    times: Array
+    """Sample times, s, shape (n,), without those of missing samples."""
 
     @property
     def size(self) -> int:
@@ -59,26 +62,40 @@ class Model:
         self.parameters, self.drive, self.releases = tuple(found), drive, tuple(releases)
         self.recordings = tuple(recordings)
         strides = strides or [1] * len(recordings)
-        self._times = [
-            np.ascontiguousarray(recording.time[::stride])
-            for recording, stride in zip(recordings, strides, strict=True)
-        ]
         self._half = [0.5 * recording.interval for recording in recordings]
         self.blocks: list[Block] = []
         data, at = [], 0
         for r, (recording, stride) in enumerate(zip(recordings, strides, strict=True)):
             for channel, values in recording.channels.items():
-                part = values[::stride]
-                self.blocks.append(Block(r, channel, slice(at, at + len(part))))
-                data.append(part)
-                at += len(part)
+                rows = np.flatnonzero(np.isfinite(values))[::stride]
+                times = np.ascontiguousarray(recording.time[rows])
+                self.blocks.append(Block(r, channel, slice(at, at + len(rows)), times))
+                data.append(values[rows])
+                at += len(rows)
         self.data: Array = np.concatenate(data)
         latest = [self._latest(r) for r in range(len(recordings))]
         self.assembly = Assembly(found, drive, releases, latest)
-        self._sensor = [
-            {p.key: i for i, p in enumerate(found) if p.recording == r and "_offset" in p.key}
+        self._times_offset = [
+            next(
+                (i for i, p in enumerate(found) if (p.key, p.recording) == ("time_offset", r)), None
+            )
             for r in range(len(recordings))
         ]
+        self._added = [self._sensor(block) for block in self.blocks]
+
+    def _sensor(self, block: Block) -> tuple[list[int], Array]:
+        """Return the parameters of a sensor by their places, and their columns, shape (n, k)."""
+        recording = self.recordings[block.recording]
+        noise = recording.noise.get(block.channel, Noise())
+        span = float(recording.time[0]), float(recording.time[-1])
+        places, columns = [], np.empty((block.size, 0))
+        for i, p in enumerate(self.parameters):
+            if p.recording == block.recording and p.key.startswith(f"{block.channel}_"):
+                key = p.key.removeprefix(f"{block.channel}_")
+                places.append(i)
+                own = column(key, block.times, span, float(noise.hum or 0.0))
+                columns = np.column_stack([columns, own])
+        return places, columns
 
     def thinned(self, samples: int) -> Model:
         """Return the model at evenly spaced samples of each recording, at least so many or all."""
@@ -88,7 +105,7 @@ class Model:
     def _latest(self, r: int) -> float:
         """Until when a recording is simulated, s."""
         own = [p.lower for p in self.parameters if p.key == "time_offset" and p.recording == r]
-        end = float(self._times[r][-1]) - min([0.0, *own])
+        end = float(self.recordings[r].time[-1]) - min([0.0, *own])
         return max(end, 0.0) + 4.0 * self._half[r]
 
     @cached_property
@@ -96,17 +113,13 @@ class Model:
         """The extent of the data of each block."""
         return np.array([np.ptp(self.data[block.place]) or 1.0 for block in self.blocks])
 
-    def times(self, r: int) -> Array:
-        """The recorded times of a recording, s."""
-        return self._times[r]
+    def added(self, i: int) -> tuple[list[int], Array]:
+        """Return what a sensor adds to a block: parameters by place, and columns, shape (n, k)."""
+        return self._added[i]
 
-    def place(self, key: str, r: int) -> int | None:
-        """Return the place of a sensor parameter of a recording; None if it is not free."""
-        return self._sensor[r].get(key)
-
-    def offset(self, theta: Any, r: int, key: str = "time_offset") -> Any:
-        """Return the offset of the sensors of a recording: of the time, or of a channel."""
-        i = self.place(key, r)
+    def offset(self, theta: Any, r: int) -> Any:
+        """Return the recorded time of a release, s."""
+        i = self._times_offset[r]
         return 0.0 if i is None else theta[i]
 
     def predict(self, theta: Array) -> Array:
@@ -123,31 +136,70 @@ class Model:
         slopes = np.zeros((len(self.data) if derivatives else 0, len(theta)))
         for r in range(len(self.recordings)):
             numbers = self.assembly.numbers(theta, r)
-            trace = _Trace(numbers, self._times[r] - self.offset(theta, r), self._half[r])
-            own = [block for block in self.blocks if block.recording == r]
-            for block in own:
-                added = self.offset(theta, r, f"{block.channel}_offset")
-                values[block.place] = trace.channel(block.channel) + added
+            trace = _Trace(numbers)
+            begin = self.offset(theta, r)
+            own = [
+                (block, _Sampling(block.times - begin, self._half[r], self._average(block)), *added)
+                for block, added in zip(self.blocks, self._added, strict=True)
+                if block.recording == r
+            ]
+            for block, sampling, places, columns in own:
+                computed = trace.channel(block.channel, sampling)
+                values[block.place] = computed + columns @ theta[places]
             if not derivatives:
                 continue
             for i in self.assembly.places(r):
                 tangent = trace.along(self.assembly.along(theta.tolist(), i, r))
-                for block in own:
-                    slopes[block.place, i] = tangent.channel(block.channel)
-            for key, i in self._sensor[r].items():
-                for block in own:
-                    if key == "time_offset":
-                        slopes[block.place, i] = -trace.rate(block.channel)
-                    elif key == f"{block.channel}_offset":
-                        slopes[block.place, i] = 1.0
+                for block, sampling, _, _ in own:
+                    slopes[block.place, i] = tangent.channel(block.channel, sampling)
+            for block, sampling, places, columns in own:
+                slopes[block.place, places] = columns
+                late = self._times_offset[r]
+                if late is not None:
+                    slopes[block.place, late] = -trace.rate(block.channel, sampling)
         return values, slopes
+
+    def _average(self, block: Block) -> str:
+        noise = self.recordings[block.recording].noise.get(block.channel, Noise())
+        filtered = block.channel in ("acceleration", "force") and noise.average == "instant"
+        return "centred" if filtered else noise.average
+
+
+@dataclass(frozen=True, slots=True)
+class _Sampling:
+    """Times of samples, and the interval over which each is a mean; none of an instant."""
+
+    times: Array
+    half: float
+    average: str
+
+    @property
+    def middle(self) -> Array:
+        shift = {"before": -self.half, "after": self.half}.get(self.average, 0.0)
+        return self.times + shift
+
+    def slope(self, of: Any) -> Array:
+        """The mean rate of a function of time over each interval."""
+        middle, half = self.middle, self.half
+        found: Array = (of(middle + half) - of(middle - half)) / (2.0 * half)
+        return found
+
+    def mean(self, of: Any) -> Array:
+        """The mean over each interval, by Simpson's rule."""
+        middle, half = self.middle, self.half
+        found: Array = (of(middle - half) + 4.0 * of(middle) + of(middle + half)) / 6.0
+        return found
+
+    def value(self, of: Any, rate: Any) -> Array:
+        """A function at the samples, or the mean of its rate over each interval."""
+        return of(self.times) if self.average == "instant" else self.slope(rate)
 
 
 class _Trace:
-    """One motion at the sample times, extended before its release."""
+    """One motion, extended before its release."""
 
-    def __init__(self, numbers: Any, times: Array, half: float) -> None:
-        self.numbers, self.times, self.half = numbers, times, half
+    def __init__(self, numbers: Any) -> None:
+        self.numbers = numbers
         self.core = _core.simulate(*numbers)
 
     def along(self, direction: Any) -> _Tangent:
@@ -169,49 +221,35 @@ class _Trace:
         found: Array = np.interp(t, times, values)
         return found
 
-    @cached_property
-    def edges(self) -> tuple[Array, Array]:
-        return self.times - self.half, self.times + self.half
-
-    def mean_slope(self, of: Any) -> Array:
-        """The mean rate of a function of time over each sample interval."""
-        before, after = self.edges
-        found: Array = (of(after) - of(before)) / (2.0 * self.half)
-        return found
-
-    def mean(self, of: Any) -> Array:
-        """The mean over each sample interval, by Simpson's rule."""
-        before, after = self.edges
-        found: Array = (of(before) + 4.0 * of(self.times) + of(after)) / 6.0
-        return found
-
-    def channel(self, name: str) -> Array:
+    def channel(self, name: str, sampling: _Sampling) -> Array:
         match name:
+            case "position" if sampling.average == "instant":
+                return self.position(sampling.times)
             case "position":
-                return self.position(self.times)
+                return sampling.mean(self.position)
             case "velocity":
-                return self.velocity(self.times)
+                return sampling.value(self.velocity, self.position)
             case "acceleration":
-                return self.mean_slope(self.velocity)
+                return sampling.slope(self.velocity)
         mass, stiffness, damping = self.numbers[:3]
-        inertia = self.mean_slope(self.velocity) - self.mean_slope(self.plate_velocity)
-        spring = stiffness * self.mean(self.position)
-        force: Array = mass * inertia + damping * self.mean_slope(self.position) + spring
+        inertia = sampling.slope(self.velocity) - sampling.slope(self.plate_velocity)
+        spring = stiffness * sampling.mean(self.position)
+        force: Array = mass * inertia + damping * sampling.slope(self.position) + spring
         return force
 
-    def rate(self, name: str) -> Array:
+    def rate(self, name: str, sampling: _Sampling) -> Array:
         """The rate of a channel."""
         match name:
             case "position":
-                return self.velocity(self.times)
+                return sampling.value(self.velocity, self.position)
             case "velocity":
-                return self.acceleration(self.times)
+                return sampling.value(self.acceleration, self.velocity)
             case "acceleration":
-                return self.mean_slope(self.acceleration)
+                return sampling.slope(self.acceleration)
         mass, stiffness, damping = self.numbers[:3]
-        inertia = self.mean_slope(self.acceleration) - self.mean_slope(self.plate_acceleration)
-        spring = stiffness * self.mean(self.velocity)
-        rate: Array = mass * inertia + damping * self.mean_slope(self.velocity) + spring
+        inertia = sampling.slope(self.acceleration) - sampling.slope(self.plate_acceleration)
+        spring = stiffness * sampling.mean(self.velocity)
+        rate: Array = mass * inertia + damping * sampling.slope(self.velocity) + spring
         return rate
 
     def plate_acceleration(self, t: Array) -> Array:
@@ -245,26 +283,26 @@ class _Tangent:
         found: Array = np.interp(t, at, values) - moved
         return found
 
-    def channel(self, name: str) -> Array:
+    def channel(self, name: str, sampling: _Sampling) -> Array:
         trace = self._trace
         match name:
+            case "position" if sampling.average == "instant":
+                return self.position(sampling.times)
             case "position":
-                return self.position(trace.times)
+                return sampling.mean(self.position)
             case "velocity":
-                return self.velocity(trace.times)
+                return sampling.value(self.velocity, self.position)
             case "acceleration":
-                return trace.mean_slope(self.velocity)
+                return sampling.slope(self.velocity)
         mass, stiffness, damping = trace.numbers[:3]
         d_mass, d_stiffness, d_damping = self._direction[:3]
-        found: Array = mass * (
-            trace.mean_slope(self.velocity) - trace.mean_slope(self.plate_velocity)
-        )
-        found += damping * trace.mean_slope(self.position) + stiffness * trace.mean(self.position)
+        found: Array = mass * (sampling.slope(self.velocity) - sampling.slope(self.plate_velocity))
+        found += damping * sampling.slope(self.position) + stiffness * sampling.mean(self.position)
         if d_mass:
-            inertia = trace.mean_slope(trace.velocity) - trace.mean_slope(trace.plate_velocity)
+            inertia = sampling.slope(trace.velocity) - sampling.slope(trace.plate_velocity)
             found += d_mass * inertia
         if d_damping:
-            found += d_damping * trace.mean_slope(trace.position)
+            found += d_damping * sampling.slope(trace.position)
         if d_stiffness:
-            found += d_stiffness * trace.mean(trace.position)
+            found += d_stiffness * sampling.mean(trace.position)
         return found

@@ -15,6 +15,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from pindrive.fitting.noise import DRIFT_KEYS, HUM_KEYS, Noise
 from pindrive.fitting.recording import Recording
 from pindrive.motion.core_numbers import PLACES, ROWS, CoreNumbers, entry, mapped
 from pindrive.motion.drive import Contact, Drive
@@ -45,8 +46,13 @@ OF_FUNCTIONS: Final = tuple(
     q.name for q in FUNCTION_PARAMETERS if q.name.partition(".")[0] in START
 )
 """Parameters of the functions of time in a release."""
-SENSOR: Final = ("time_offset", *(f"{channel}_offset" for channel in CHANNELS))
+SENSOR: Final = (
+    "time_offset",
+    *(f"{channel}_{key}" for channel in CHANNELS for key in DRIFT_KEYS),
+)
 """Parameters of each recording: its time of the release, and what its sensors add."""
+HUM: Final = tuple(f"{channel}_{key}" for channel in CHANNELS for keys in HUM_KEYS for key in keys)
+"""Parameters of hum, which a noise brings along."""
 _NAMES: Final = Names(
     "parameter",
     {
@@ -89,6 +95,8 @@ class Parameter:
     lower: float
     upper: float
     """From where to where it is searched."""
+    of_noise: bool = False
+    """True if the noise of a channel brings it along; it is not named in `free`."""
 
     @property
     def logarithmic(self) -> bool:
@@ -138,6 +146,23 @@ def parameters(
             found += _parameter(key, r, given.get(key), drive, releases, recordings)
     if not found:
         raise ValueError(refusal("free", "parameters that the recordings have", ", ".join(free)))
+    return (*found, *of_noise(found, recordings))
+
+
+def of_noise(free: Sequence[Parameter], recordings: Sequence[Recording]) -> tuple[Parameter, ...]:
+    """Return the parameters that the noise of the recordings brings along, without those given."""
+    given = {(p.key, p.recording) for p in free}
+    found = []
+    for r, recording in enumerate(recordings):
+        for channel, values in recording.channels.items():
+            size = 2.0 * float(np.nanmax(values) - np.nanmin(values))
+            for part in recording.noise.get(channel, Noise()).keys:
+                key = f"{channel}_{part}"
+                if (key, r) in given:
+                    continue
+                name = key if len(recordings) == 1 else f"{key}@{r}"
+                unit = CHANNELS[channel].unit
+                found.append(Parameter(name, key, r, unit, 0.0, -size, size, of_noise=True))
     return tuple(found)
 
 
@@ -177,7 +202,7 @@ def _parameter(
     release, recording = releases[r or 0], recordings[r or 0]
     quantity = _quantity(key)
     if key in SENSOR:
-        channel = key.removesuffix("_offset")
+        channel = key.rpartition("_")[0]
         if channel != "time" and channel not in recording.channels:
             if any(channel in other.channels for other in recordings):
                 return []  # belongs to another recording
@@ -188,7 +213,8 @@ def _parameter(
             first, last = float(recording.time[0]), float(recording.time[-1])
             ends = first - 0.25 * (last - first), 0.5 * (first + last)
         else:
-            half = float(np.ptp(recording.channels[channel]))
+            values = recording.channels[channel]
+            half = float(np.nanmax(values) - np.nanmin(values))
             ends = -half, half
     else:
         assert quantity
@@ -286,7 +312,7 @@ def _size(unit: str, drive: Drive, recordings: Sequence[Recording]) -> float:
         "force": drive.stiffness,
     }
     length = max(
-        float(np.abs(values).max()) / per_length[channel]
+        float(np.nanmax(np.abs(values))) / per_length[channel]
         for recording in recordings
         for channel, values in recording.channels.items()
     )
@@ -318,7 +344,7 @@ class Assembly:
             {
                 p.key: i
                 for i, p in enumerate(found)
-                if p.recording in (None, r) and p.key not in SENSOR
+                if p.recording in (None, r) and p.key not in (*SENSOR, *HUM)
             }
             for r in range(len(releases))
         ]

@@ -11,13 +11,13 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pindrive.fitting.noise import Noise, noise_of
 from pindrive.motion.profile import Profile
 from pindrive.quantities.csv_table import CsvTable
 from pindrive.quantities.quantity import brief, counted
 from pindrive.quantities.refusal import quoted, refusal
 from pindrive.quantities.results import CHANNELS, SERIES
 from pindrive.quantities.table import QUANTITIES, check
-from pindrive.quantities.units import to_si
 from pindrive.quantities.value import equal_by_value
 
 __all__ = ["Recording", "read_recording"]
@@ -42,26 +42,27 @@ class Recording:
 
     Args:
         time: s, shape (n,), n >= 8, increasing; 0 is the release unless `time_offset` is free.
-        position: m, shape (n,).
+        position: m, shape (n,); NaN where a sample is missing, of any channel.
         velocity: m/s, shape (n,).
         acceleration: m/s², shape (n,).
         force: N, shape (n,).
         mouse_velocity: Mouse velocity of this recording in place of the release's: m/s, a
             `Profile`, or one value for each time, shape (n,).
         plate_load: Factor on the friction of the plate, in the same notations.
-        noise: The known standard deviation of the noise by channel, SI; estimated where left out.
+        noise: Noise by channel: a `Noise`, its text, or its known standard deviation, SI; a channel
+            that is left out has white noise, or what a fit chooses.
         name: Name in messages and figures, such as the file.
 
     Raises:
-        ValueError: There is no channel, lengths differ, times do not increase, a value is not
-            finite, there are fewer than 8 samples, or a channel is zero throughout.
+        ValueError: There is no channel, lengths differ, times do not increase, a value is
+            infinite, a channel has fewer than 8 samples, or is zero throughout.
     """
 
     time: NDArray[np.float64]
     channels: Mapping[str, NDArray[np.float64]]
     mouse_velocity: float | Profile | None
     plate_load: float | Profile | None
-    noise: Mapping[str, float]
+    noise: Mapping[str, Noise]
     name: str
     sources: tuple[Path, ...] = field(default=())
     """The files that it was read from."""
@@ -76,7 +77,7 @@ class Recording:
         force: ArrayLike | None = None,
         mouse_velocity: ArrayLike | str | Profile | None = None,
         plate_load: ArrayLike | str | Profile | None = None,
-        noise: Mapping[str, float | str] | None = None,
+        noise: Mapping[str, float | str | Noise] | None = None,
         name: str = "recording",
     ) -> None:
         """Validate, and keep arrays of floats."""
@@ -90,14 +91,18 @@ class Recording:
         times = _column(time, "time", name)
         _check_times(times, name)
         channels = {
-            channel: _column(values, channel, name, len(times))
+            channel: _column(values, channel, name, len(times), missing=True)
             for channel, values in given.items()
             if values is not None
         }
         if not channels:
             raise ValueError(refusal("a recording", f"of {' or '.join(CHANNELS)}", "none", name))
         for channel, values in channels.items():
-            if not values.any():
+            count = int(np.count_nonzero(np.isfinite(values)))
+            if count < FEWEST:
+                required = f"of at least {FEWEST} samples that are not missing"
+                raise ValueError(refusal(channel, required, count, name))
+            if not np.nan_to_num(values).any():
                 needed = "other than zero somewhere; check the sensor and the heading"
                 raise ValueError(refusal(channel, needed, "0 throughout", name))
         put(self, "time", times)
@@ -147,19 +152,19 @@ def read_recording(
     path: str | PathLike[str],
     *,
     mouse_velocity: float | str | Profile | None = None,
-    noise: Mapping[str, float | str] | None = None,
+    noise: Mapping[str, float | str | Noise] | None = None,
 ) -> Recording:
     """A recording from a CSV file whose header names columns with their units.
 
     Columns are `time`, at least one of `position`, `velocity`, `acceleration`, `force`, and where
     the inputs changed `mouse_velocity` and `plate_load`, apart by comma, semicolon or tab: "time
-    [s], position [mm]". Lines that begin with # are skipped; other columns are ignored, so that
-    what `Motion.to_csv` writes can be read.
+    [s], position [mm]". An empty entry, or "nan", is a sample that is missing. Lines that begin
+    with # are skipped; other columns are ignored, so that what `Motion.to_csv` writes can be read.
 
     Args:
         path: The file, UTF-8.
         mouse_velocity: Mouse velocity of a recording without such a column, m/s.
-        noise: The known standard deviation of the noise by channel, SI or text with a unit.
+        noise: Noise by channel, as for `Recording`.
 
     Returns:
         The recording, named as its file.
@@ -181,7 +186,7 @@ def read_recording(
         raise ValueError(refusal(f"row {row}: time", required, f"{time[back[0] + 1]:g} s", file))
 
     channels = {
-        name: np.array(table.column(name, quantity))
+        name: np.array(table.column(name, quantity, missing=True))
         for name, quantity in CHANNELS.items()
         if name in table
     }
@@ -203,7 +208,7 @@ def read_recording(
 
 
 def _column(
-    values: ArrayLike, label: str, where: str, count: int | None = None
+    values: ArrayLike, label: str, where: str, count: int | None = None, *, missing: bool = False
 ) -> NDArray[np.float64]:
     try:
         column = np.array(values, dtype=np.float64)
@@ -212,8 +217,9 @@ def _column(
     if column.ndim != 1 or (count is not None and len(column) != count):
         shape = "of one dimension" if count is None else f"one value for each time, ({count},)"
         raise ValueError(refusal(label, shape, f"shape {column.shape}", where))
-    if not np.isfinite(column).all():
-        at = int(np.flatnonzero(~np.isfinite(column))[0])
+    refused = np.isinf(column) if missing else ~np.isfinite(column)
+    if refused.any():
+        at = int(np.flatnonzero(refused)[0])
         raise ValueError(refusal(f"{label}[{at}]", "finite", f"{column[at]}", where))
     return column
 
@@ -229,25 +235,15 @@ def _check_times(times: NDArray[np.float64], where: str) -> None:
 
 
 def _noise(
-    given: Mapping[str, float | str], channels: Mapping[str, object], where: str
-) -> dict[str, float]:
-    found = {}
-    for channel, value in given.items():
+    given: Mapping[str, float | str | Noise], channels: Mapping[str, object], where: str
+) -> dict[str, Noise]:
+    for channel in given:
         if channel not in channels:
             raise ValueError(refusal("noise", f"of {' or '.join(channels)}", channel, where))
-        unit = CHANNELS[channel].unit
-        try:
-            size = to_si(value, unit, f"1 {unit}") if isinstance(value, str) else float(value)
-        except (TypeError, ValueError) as error:
-            raise ValueError(
-                f"{where}: noise of {channel} must be {error}, got {value!r}"
-            ) from None
-        if not 0.0 < size < np.inf:
-            raise ValueError(
-                refusal(f"noise of {channel}", "finite and greater than 0", value, where)
-            )
-        found[channel] = size
-    return found
+    return {
+        channel: noise_of(noise, CHANNELS[channel].unit, f"{where}: noise of {channel}")
+        for channel, noise in given.items()
+    }
 
 
 # ---- inputs --------------------------------------------------------------------------------------

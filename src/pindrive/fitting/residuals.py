@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import nan, sqrt
+from math import hypot, nan, sqrt
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pindrive.fitting.model import Block
+from pindrive.fitting.noise import Noise
+from pindrive.fitting.whitening import Whitening
 from pindrive.lazy import stats
+from pindrive.quantities.quantity import significant
+from pindrive.quantities.results import CHANNELS
 
 Array = NDArray[np.float64]
 
@@ -27,71 +32,121 @@ class Residuals:
         recording: Index of the recording.
         channel: "position", "velocity", "acceleration" or "force".
         count: Number of samples.
-        noise: The standard deviation, SI: the known one, or that of the residuals.
-        known: True for a given noise.
+        model: Noise that was given or chosen.
+        noise: The standard deviation, SI: the known one, or that of the residuals; of rounded
+            samples that before the converter.
+        correlation: Correlation of neighbours of correlated noise; 0 of other noise.
+        degrees: Degrees of freedom of outliers; infinite of other noise.
+        added: Values that the sensor adds, by their key, SI: the offset; the drift, from the first
+            time to the last; the bend, the middle less the ends; hum.
+        rejected: Excess of the information criterion of other noises, by their words; empty where
+            the noise was given.
         reduced: Mean square of the residuals over the square of the noise; 1 where it is estimated.
-        ljung_box: P-value of the Ljung-Box test for autocorrelation (Biometrika 65:297, 1978).
-        runs: P-value of the Wald-Wolfowitz test for the number of runs of one sign.
-        correlation: Correlation of neighbouring residuals.
+        deviance: −2 times the log-likelihood of the residuals.
+        ljung_box: P-value of the Ljung-Box test for autocorrelation (Biometrika 65:297, 1978), of
+            the residuals as independent ones.
+        runs: P-value of the Wald-Wolfowitz test for the number of runs of one sign; NaN of rounded
+            samples, whose signs are not even.
+        neighbours: Correlation of neighbouring residuals as independent ones.
     """
 
     recording: int
     channel: str
     count: int
+    model: Noise
     noise: float
-    known: bool
+    correlation: float
+    degrees: float
+    added: dict[str, float]
+    rejected: dict[str, float]
     reduced: float
+    deviance: float
     ljung_box: float
     runs: float
-    correlation: float
+    neighbours: float
+
+    @property
+    def known(self) -> bool:
+        """True for a noise of given size."""
+        return self.model.size is not None
+
+    @property
+    def description(self) -> str:
+        """Noise in words, with its numbers."""
+        channel = CHANNELS[self.channel]
+
+        def shown(value: float) -> str:
+            return f"{significant(abs(value) * channel.display_scale, 3)} {channel.display_unit}"
+
+        parts = [f"{key} {shown(value)}" for key, value in self.added.items() if "_" not in key]
+        for key, words in (("hum", "hum"), ("hum2", "its harmonic")):
+            if f"{key}_sine" in self.added:
+                size = hypot(self.added[f"{key}_sine"], self.added[f"{key}_cosine"])
+                parts.append(f"{words} {shown(size)}")
+        if self.model.correlated:
+            parts.append(f"correlation {self.correlation:.2f}")
+        if self.model.outliers:
+            parts.append(f"outliers, t of {self.degrees:.1f} degrees")
+        if self.model.step is not None:
+            parts.append(f"steps of {shown(float(self.model.step))}")
+        return ", ".join(parts) or "white"
 
     @property
     def structured(self) -> bool:
-        """True if the residuals are not white noise: the drive does more than the model."""
-        return min(self.ljung_box, self.runs) < UNLIKELY or self.excessive
+        """True if the residuals are no noise: the drive does more than the model."""
+        return any(p < UNLIKELY for p in (self.ljung_box, self.runs)) or self.excessive
 
     @property
     def excessive(self) -> bool:
         """True if the residuals exceed the given noise."""
         return self.known and bool(stats.chi2.sf(self.reduced * self.count, self.count) < UNLIKELY)
 
-    @property
-    def widening(self) -> float:
-        """Factor by which correlated residuals widen the intervals, for a first-order process."""
-        near = min(max(self.correlation, 0.0), 0.999)
-        return sqrt((1.0 + near) / (1.0 - near))
-
 
 def tested(
-    off: Array, recording: int, channel: str, noise: float, known: bool, parameters: int
+    off: Array,
+    independent: Array,
+    made: Whitening,
+    *,
+    block: Block,
+    noise: Noise,
+    added: dict[str, float],
+    rejected: dict[str, float],
+    parameters: int,
 ) -> Residuals:
-    """The residuals of a block, SI, with their tests.
+    """The residuals of a block with their tests.
 
     Args:
-        off: Recorded less computed, shape (n,).
-        recording: Index of the recording.
-        channel: Channel of the recording.
-        noise: Standard deviation.
-        known: True for a given noise.
-        parameters: Number of parameters fitted to the channel.
+        off: Recorded less computed, SI, shape (n,).
+        independent: Independent residuals of variance one, shape (n,).
+        made: Whitening that makes them so.
+        block: Samples of one channel of one recording.
+        noise: Noise that was given or chosen.
+        added: Values that the sensor adds, by their key.
+        rejected: Excess of the criterion of other noises.
+        parameters: Number of fitted parameters.
     """
     n = len(off)
-    centred = off - off.mean()
+    centred = independent - independent.mean()
     power = float(centred @ centred)
     lags = min(LAGS, max(1, n // 5))
     rho = np.array([float(centred[k:] @ centred[:-k]) for k in range(1, lags + 1)]) / (power or 1.0)
     statistic = n * (n + 2) * float(np.sum(rho**2 / (n - np.arange(1, lags + 1))))
     degrees = max(1, lags - parameters) if n < 200 else lags
     return Residuals(
-        recording=recording,
-        channel=channel,
+        recording=block.recording,
+        channel=block.channel,
         count=n,
-        noise=noise,
-        known=known,
-        reduced=float(off @ off) / (n * noise**2) if known else 1.0,
+        model=noise,
+        noise=made.size,
+        correlation=made.correlation,
+        degrees=made.degrees,
+        added=added,
+        rejected=rejected,
+        reduced=float(independent @ independent) / n if noise.size is not None else 1.0,
+        deviance=made.deviance(-off),
         ljung_box=float(stats.chi2.sf(statistic, degrees)) if power else nan,
-        runs=_runs(off),
-        correlation=float(rho[0]),
+        runs=nan if made.half else _runs(independent),
+        neighbours=float(rho[0]),
     )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from math import exp, isfinite, log, pi
+from math import exp, isfinite, log
 from typing import Any
 
 import numpy as np
@@ -92,11 +92,13 @@ class Fit(lazy.NotebookHtml):
     """Result of `fit`.
 
     Attributes:
-        model: The recordings as functions of the parameters.
-        theta: The values of all parameters, SI, shape (k,).
+        model: The recordings, with their noise, as functions of the parameters.
+        given: Recordings as they were given.
+        theta: The values of all parameters, SI, shape (k,): of the estimates, and after them of
+            what the noise adds.
         estimates: Estimates with interval and identifiability.
-        covariance: Covariance of the estimates, from the derivatives at the optimum, shape (k, k).
-        correlation: Correlation of the estimates; NaN for an undetermined estimate.
+        covariance: Covariance of all values, from the derivatives at the optimum, shape (k, k).
+        correlation: Correlation of all values; NaN for an undetermined one.
         residuals: Residuals of each channel of each recording.
         confidence: Confidence of the intervals.
         threshold: The increase of the cost at the end of an interval.
@@ -104,6 +106,7 @@ class Fit(lazy.NotebookHtml):
     """
 
     model: Model = field(compare=False)
+    given: tuple[Recording, ...] = field(compare=False)
     theta: Array
     estimates: tuple[Estimate, ...]
     covariance: Array
@@ -150,12 +153,11 @@ class Fit(lazy.NotebookHtml):
                 why = (
                     f"are {left.reduced**0.5:.3g} times the given noise"
                     if left.excessive
-                    else f"have structure (neighbours correlate by {left.correlation:.2f})"
+                    else f"have structure (neighbours correlate by {left.neighbours:.2f})"
                 )
                 found.append(
                     f"{name}: the residuals of the {left.channel} {why}: the drive does what this "
-                    f"model does not, and the intervals are too narrow, by about "
-                    f"{max(left.widening, left.reduced**0.5):.2g} times"
+                    "model does not, and the intervals do not hold"
                 )
         return tuple(found)
 
@@ -207,18 +209,21 @@ class Fit(lazy.NotebookHtml):
         """Log-likelihood of all samples, with normal noise."""
         total = 0.0
         for left in self.residuals:
-            square = left.noise**2
-            if not left.known:  # the noise of greatest likelihood
-                square *= 1.0 - len(self.theta) / len(self.model.data)
-            power = left.reduced if left.known else 1.0
-            total -= 0.5 * left.count * (log(2.0 * pi * square) + power)
+            spare = 1.0 - len(self.theta) / len(self.model.data)
+            total -= 0.5 * left.deviance
+            # the noise of greatest likelihood
+            if not left.known and not left.model.step and not left.model.outliers:
+                total -= 0.5 * left.count * (log(spare) + 1.0 - spare)
         return total
 
     @property
     def aicc(self) -> float:
         """Akaike's information criterion, corrected for few samples (Hurvich and Tsai, 1989)."""
         n = len(self.model.data)
-        k = len(self.theta) + sum(not left.known for left in self.residuals)
+        k = len(self.theta) + sum(
+            (not left.known) + left.model.correlated + left.model.outliers
+            for left in self.residuals
+        )
         return 2.0 * k - 2.0 * self.log_likelihood + 2.0 * k * (k + 1) / max(n - k - 1, 1)
 
     # ---- for other programs ----------------------------------------------------------------------
@@ -250,7 +255,9 @@ class Fit(lazy.NotebookHtml):
             name: ("parameter", np.array(column)) for name, column in numbers.items()
         }
         data["identifiability"] = ("parameter", [str(e.identifiability) for e in self.estimates])
-        data["correlation"] = (("parameter", "other"), self.correlation, {"units": "1"})
+        count = len(names)
+        shown = self.correlation[:count, :count]
+        data["correlation"] = (("parameter", "other"), shown, {"units": "1"})
         data["noise"] = ("block", [left.noise for left in self.residuals])
         data["ljung_box"] = ("block", [left.ljung_box for left in self.residuals], {"units": "1"})
         data["runs"] = ("block", [left.runs for left in self.residuals], {"units": "1"})
@@ -258,7 +265,7 @@ class Fit(lazy.NotebookHtml):
         data["computed"] = ("sample", values)
         data["aicc"] = ((), self.aicc, {"units": "1", "long_name": "corrected Akaike criterion"})
         blocks = self.model.blocks
-        times = np.concatenate([self.model.times(b.recording) for b in blocks])
+        times = np.concatenate([b.times for b in blocks])
         data["time"] = ("sample", times, {"units": "s"})
         which = np.concatenate([np.full(b.size, i) for i, b in enumerate(blocks)])
         data["block_of"] = ("sample", which)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from pindrive.fitting.least_squares import BETTER, Optimum, Problem
 from pindrive.fitting.model import Model
+from pindrive.fitting.parameters import HUM, SENSOR
 from pindrive.lazy import qmc
 from pindrive.motion.batch import simulate_batch
 from pindrive.motion.core_numbers import LAW_PLACE, PLACES, ROWS, entry
@@ -159,9 +160,8 @@ def _beginning(model: Model) -> Array:
     """Return one for samples in the first part of their recording, zero elsewhere."""
     parts = []
     for block in model.blocks:
-        times = model.times(block.recording)
-        end = times[0] + BEGINNING * (times[-1] - times[0])
-        parts.append(np.where(times <= end, 1.0, 0.0))
+        end = block.times[0] + BEGINNING * (block.times[-1] - block.times[0])
+        parts.append(np.where(block.times <= end, 1.0, 0.0))
     return np.concatenate(parts)
 
 
@@ -203,8 +203,8 @@ def _candidates(model: Model, weights: Array, seed: int) -> Array:
     """Parameters spread over their bounds, the best first, shape (n, k).
 
     They are a scrambled Sobol' sequence, over the decades of what is positive and ranges over more
-    than three times its least value, and the values of the drive itself. Sensor offsets, which are
-    linear, are those that fit each best.
+    than three times its least value, and the values of the drive itself. Parameters that a sensor
+    adds, which are linear, are those that fit each best.
 
     Args:
         model: Model of every n-th sample of the recordings.
@@ -235,7 +235,7 @@ def _plain(model: Model) -> bool:
     ]
     channels = {block.channel for block in model.blocks}
     rigid = all(np.isinf(n[4][2]) for n in numbers)
-    free = all(p.key in _PLAIN or p.key.endswith("_offset") for p in model.parameters)
+    free = all(p.key in (*_PLAIN, *SENSOR, *HUM) for p in model.parameters)
     unbounded = all(np.isinf(n[13][0]) for n in numbers)
     constant = all(len(n[5]) == 1 and len(n[6]) == 1 for n in numbers)
     coulomb = all(
@@ -251,68 +251,75 @@ def _plain(model: Model) -> bool:
         for release in model.releases
         for given in (release.mouse_velocity, release.plate_load)
     )
-    measured = channels <= {"position", "velocity"}
+    instant = all(
+        noise.average == "instant"
+        for recording in model.recordings
+        for noise in recording.noise.values()
+    )
+    measured = channels <= {"position", "velocity"} and instant
     return measured and rigid and unbounded and free and constant and coulomb and left_alone
 
 
 def _batched_costs(model: Model, weights: Array, theta: Array) -> Array:
     costs = np.zeros(len(theta))
     columns = theta.T[..., None]
-    for r in range(len(model.releases)):
-        times = model.times(r) - model.offset(columns, r)
-        late = np.maximum(times, 1e-9)
-        numbers = model.assembly.numbers(columns, r)
-        varied = {}
-        for name in _PLAIN:
-            value = entry(numbers, PLACES[name])
-            varied[name.replace(".", "_")] = value[0][1] if name in ROWS else value
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", ImplausibleValueWarning)
-            state = simulate_batch(
-                model.drive,
-                model.releases[r],
-                outputs=["final_position", "final_velocity"],
-                **{**varied, "duration": late},
-            )
-        shape = np.broadcast_shapes(late.shape, (len(theta), 1))
-        v = np.broadcast_to(state.final_velocity.values, shape)
-        x = state.final_position.values + np.minimum(times, 0.0) * varied["velocity"]
-        for block in model.blocks:
-            if block.recording == r:
-                computed = np.broadcast_to(x if block.channel == "position" else v, shape)
-                costs += _cost(
-                    model, block.place, weights, computed, f"{block.channel}_offset", r, theta
-                )
+    of_times: Array | None = None
+    before = -1
+    for i, block in enumerate(model.blocks):
+        r = block.recording
+        if of_times is None or before != r or not np.array_equal(of_times, block.times):
+            x, v = _followed(model, r, block.times - model.offset(columns, r), columns)
+            of_times, before = block.times, r
+        costs += _cost(model, i, weights, x if block.channel == "position" else v, theta)
     return costs
 
 
-def _cost(
-    model: Model, place: slice, weights: Array, computed: Array, key: str, r: int, theta: Array
-) -> Array:
-    """Return the weighted squares of a block for each candidate, at its optimal free offset."""
+def _followed(model: Model, r: int, times: Array, columns: Array) -> tuple[Array, Array]:
+    """Return position and velocity of a recording at times, for each candidate, shape (n, m)."""
+    late = np.maximum(times, 1e-9)
+    numbers = model.assembly.numbers(columns, r)
+    varied = {}
+    for name in _PLAIN:
+        value = entry(numbers, PLACES[name])
+        varied[name.replace(".", "_")] = value[0][1] if name in ROWS else value
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ImplausibleValueWarning)
+        state = simulate_batch(
+            model.drive,
+            model.releases[r],
+            outputs=["final_position", "final_velocity"],
+            **{**varied, "duration": late},
+        )
+    shape = np.broadcast_shapes(late.shape, (columns.shape[1], 1))
+    x = state.final_position.values + np.minimum(times, 0.0) * varied["velocity"]
+    v = np.broadcast_to(state.final_velocity.values, shape)
+    return np.broadcast_to(x, shape), v
+
+
+def _cost(model: Model, i: int, weights: Array, computed: Array, theta: Array) -> Array:
+    """Return the weighted squares of a block for each candidate, at its best sensor."""
+    place = model.blocks[i].place
     off = model.data[place] - computed
-    i = model.place(key, r)
-    if i is not None:
-        p = model.parameters[i]
-        theta[:, i] = np.clip(np.nan_to_num(off.mean(axis=-1)), p.lower, p.upper)
-        off = off - theta[:, i, None]
+    places, columns = model.added(i)
+    if places:
+        least = np.array([model.parameters[j].lower for j in places])
+        most = np.array([model.parameters[j].upper for j in places])
+        best = np.clip(np.nan_to_num(off) @ np.linalg.pinv(columns).T, least, most)
+        theta[:, places] = best
+        off = off - best @ columns.T
     costs: Array = np.sum((off * weights[place]) ** 2, axis=-1)
     return costs
 
 
 def _single_costs(model: Model, weights: Array, theta: Array) -> Array:
     costs = np.full(len(theta), np.inf)
-    for row, values in enumerate(theta):
-        computed = model.predict(values)
+    for row in range(len(theta)):
+        values = theta[row : row + 1]
+        computed = model.predict(values[0])
         cost = 0.0
-        for block in model.blocks:
-            key = f"{block.channel}_offset"
-            i = model.place(key, block.recording)
-            off = model.data[block.place] - computed[block.place]
-            if i is not None:
-                p = model.parameters[i]
-                best = np.clip(values[i] + off.mean(), p.lower, p.upper)
-                off, theta[row, i] = off + values[i] - best, best
-            cost += float(np.sum((off * weights[block.place]) ** 2))
+        for i, block in enumerate(model.blocks):
+            places, columns = model.added(i)
+            moved = computed[block.place] - columns @ values[0, places]
+            cost += float(_cost(model, i, weights, moved[None], values)[0])
         costs[row] = cost if np.isfinite(cost) else np.inf
     return costs

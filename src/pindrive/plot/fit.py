@@ -82,7 +82,7 @@ def _draw_blocks(left: Any, found: Fit) -> None:
         axes.tick_params(labelbottom=False)
         recording = found.recordings[block.recording]
         unit, scale = DISPLAY.get(UNITS[block.channel], (UNITS[block.channel], 1.0))
-        times = 1e3 * found.model.times(block.recording)
+        times = 1e3 * block.times
         data = scale * found.model.data[block.place]
         values, spread = (scale * part for part in found.predicted(block.recording, block.channel))
         step = max(1, len(times) // DOTS)
@@ -93,7 +93,7 @@ def _draw_blocks(left: Any, found: Fit) -> None:
         low, high = values - ACROSS * spread, values + ACROSS * spread
         axes.fill_between(times, low, high, **band, label="95 % band of the fit", gid="band")
         if block.channel in ("position", "velocity"):
-            _events(axes, found, block.recording, block.channel, scale)
+            _events(axes, found, i, scale)
         several = len(found.recordings) > 1
         axes.set_ylabel(f"${SYMBOLS[block.channel]}$ ({unit})")
         if several:
@@ -116,14 +116,17 @@ def _draw_blocks(left: Any, found: Fit) -> None:
     panels[-1].set_xlabel("$t$ (ms)")
 
 
-def _events(axes: Axes, found: Fit, r: int, channel: str, scale: float) -> None:
-    """The events of the fitted motion within the recording."""
-    motion = found.motions[r]
-    shift = found.model.offset(found.theta, r)
-    added = found.model.offset(found.theta, r, f"{channel}_offset")
+def _events(axes: Axes, found: Fit, i: int, scale: float) -> None:
+    """The events of the fitted motion within a recording, as its sensor has them."""
+    block = found.model.blocks[i]
+    motion = found.motions[block.recording]
+    shift = found.model.offset(found.theta, block.recording)
+    places, columns = found.model.added(i)
+    times, sensor = block.times, columns @ found.theta[places]
     marked = set()
     for event in motion.events_between(0.0, motion.duration):
-        value = event.position if channel == "position" else event.velocity
+        value = event.position if block.channel == "position" else event.velocity
+        added = np.interp(event.time + shift, times, sensor)
         kind = event.kind, event.contact
         label = None if kind in marked else event_name(*kind)
         marked.add(kind)
@@ -188,7 +191,7 @@ def plot_comparison(compared: ModelComparison) -> Figure:
             unit, scale = DISPLAY.get(UNITS[block.channel], (UNITS[block.channel], 1.0))
             values, _ = found.predicted(block.recording, block.channel)
             off = scale * (found.model.data[block.place] - values)
-            times = 1e3 * found.model.times(block.recording)
+            times = 1e3 * block.times
             axes.axhline(0.0, color=GREY, lw=0.6)
             axes.plot(times, off, ".", ms=1.5, color=CURVE, rasterized=True, gid="residuals")
             words = f"{law}: AICc {compared.excess[law]:+.1f}, {len(found.theta)} parameters"

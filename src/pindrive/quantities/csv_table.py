@@ -6,6 +6,7 @@ import csv
 import re
 from dataclasses import dataclass
 from functools import cached_property
+from math import nan
 from os import PathLike
 from pathlib import Path
 from typing import Final
@@ -108,13 +109,16 @@ class CsvTable:
             required = f"at least {least} row{'s' if least > 1 else ''}"
             raise ValueError(refusal(what, required, len(self.cells), self.file))
 
-    def column(self, name: str, quantity: Quantity, scale: float | None = None) -> list[float]:
+    def column(
+        self, name: str, quantity: Quantity, scale: float | None = None, *, missing: bool = False
+    ) -> list[float]:
         """The numbers of a column, SI.
 
         Args:
             name: Name of an existing column, in small letters.
             quantity: Quantity with unit and bounds.
             scale: SI units of one of the column's numbers; None: by its heading.
+            missing: True if a cell may be empty, or "nan", which is NaN.
 
         Raises:
             ValueError: The column is there twice, or has no unit or another one; or a cell is no
@@ -128,6 +132,9 @@ class CsvTable:
         for number, row in zip(self.numbers, self.cells, strict=True):
             cell = row[index].strip() if index < len(row) else ""
             label = f"row {number}: {name}"
+            if missing and cell.lower() in ("", "nan"):
+                found.append(nan)
+                continue
             try:
                 value = float(cell) * factor
             except ValueError:
