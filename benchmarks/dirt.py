@@ -290,7 +290,7 @@ def outcome(kind: str, seed: int, i: int) -> Outcome:
     return Outcome(
         tuple(held),
         tuple(names),
-        any(left.structured for left in found.residuals),
+        found.structured,
         found.converged,
         str(found.residuals[0].model),
         found.warnings,

@@ -27,8 +27,9 @@ def test_misfit_of_a_smooth_friction_law_of_sundials_is_reported() -> None:
     (left,) = found.residuals
     assert left.structured and left.ljung_box < 1e-6
     assert left.noise > 5.0 * 2e-6  # it is not taken for noise of the sensor
-    (warning,) = [line for line in found.warnings if "residuals" in line]
-    assert "have structure" in warning and "intervals do not hold" in warning
+    warning, cause = found.warnings
+    assert "keep a structure" in warning
+    assert "the intervals do not hold" in cause
     assert found.status is Status.incomplete
     assert abs(found["stiffness"].value / STIFFNESS - 1.0) < 0.05  # the best that Coulomb can do
     assert "structured" in "".join(axes.get_title("left") for axes in found.plot().axes)

@@ -20,6 +20,7 @@ from pindrive.fitting.recording import Recording
 from pindrive.fitting.residuals import first_noise, tested
 from pindrive.fitting.results import Estimate, Fit
 from pindrive.fitting.search import polished, search
+from pindrive.fitting.structure import Misfit, explained, laws, moved, oscillations
 from pindrive.fitting.whitening import Whitening, estimated
 from pindrive.lazy import stats
 from pindrive.motion.drive import Drive
@@ -153,14 +154,14 @@ class _Solved:
 
     def settle_noise(self) -> None:
         """Refine with the noise that is left, until both agree."""
-        for _ in range(ROUNDS):
+        for turn in range(ROUNDS):
             before, self._noise = self._noise, self._left()
             changes = [_change(*pair) for pair in zip(before, self._noise, strict=True)]
             self._problem = Problem(self._model, self._noise)
-            self._best = self._problem.refined(self._best.theta)
             alone = len(changes) == 1 and self._noise[0].is_white
-            if max(changes) < ALIKE or alone:
-                break
+            if max(changes) < ALIKE or (alone and turn > 0):
+                break  # the size alone moves no optimum
+            self._best = self._problem.refined(self._best.theta)
         self._best = replace(self._best, cost=self._problem.cost(self._best.theta))
 
     def _left(self) -> list[Whitening]:
@@ -193,6 +194,16 @@ class _Solved:
 
     def _chosen(self, i: int) -> Noise:
         """Return the noise that a channel has by the criterion."""
+        block = self._model.blocks[i]
+        start, data = self._asked(block), self._model.data[block.place]
+        found, self._rejected[i] = chosen(self._linearised(i), start, data)
+        return found
+
+    def _asked(self, block: Block) -> Noise:
+        return self._given[block.recording].noise.get(block.channel, Noise())
+
+    def _linearised(self, i: int) -> Linearised:
+        """Return the residuals of a channel without what its noise adds."""
         model, block = self._model, self._model.blocks[i]
         asked = self._given[block.recording]
         off, slopes = self._problem.linearised(self._best.theta)
@@ -202,7 +213,7 @@ class _Solved:
         here[block.place] = True
         apart = self._problem.residuals(self._best.theta)[~here]
         mine = [j for j in added if slopes[block.place, j].any()]
-        at = Linearised(
+        return Linearised(
             # without what the noise has added so far
             off[block.place] - slopes[block.place][:, mine] @ self._best.theta[mine],
             slopes[block.place][:, own],
@@ -212,9 +223,49 @@ class _Solved:
             apart,
             self._problem.slopes(self._best.theta)[~here][:, own],
         )
-        start = asked.noise.get(block.channel, Noise())
-        found, self._rejected[i] = chosen(at, start, model.data[block.place])
-        return found
+
+    def _over(self, block: Block) -> dict[str, Array]:
+        """Return the quantities over which residuals are tested."""
+        x, v = self._model.motion(self.theta, block)
+        return {"time": block.times, "speed": v, "position": x}
+
+    def _misfit(self) -> Misfit:
+        """Look for laws that explain what the noise does not, and for parameters that move."""
+        model, theta = self._model, self.theta
+        off, _ = self._problem.linearised(theta)
+        tried = [*laws(model, theta)]
+        found: dict[str, float] = {}
+        for i, block in enumerate(model.blocks):
+            others = [(n, b) for n, b in zip(self._noise, model.blocks, strict=True) if b != block]
+            rows = [
+                (
+                    words,
+                    columns[block.place],
+                    np.concatenate(
+                        [np.empty((0, columns.shape[1]))]
+                        + [n.slopes(off[b.place], columns[b.place]) for n, b in others]
+                    ),
+                    count,
+                )
+                for words, columns, count in tried
+            ]
+            m = len(off) - block.size
+            recording = model.recordings[block.recording]
+            times = block.times - float(model.offset(theta, block.recording))
+            rows += [
+                (words, columns, np.zeros((m, columns.shape[1])), count)
+                for words, columns, count in oscillations(times, recording.interval)
+            ]
+            noise = _noise_of(model, block)
+            start = replace(self._asked(block), step=noise.step)
+            gains = explained(self._linearised(i), start, noise, rows)
+            found = {key: max(found.get(key, 0.0), gains.get(key, 0.0)) for key in found | gains}
+        times = np.concatenate([block.times for block in model.blocks])
+        names = [p.name for p in model.parameters if not p.of_noise]
+        scores = self._problem.residuals(theta)
+        halves, changes = moved(scores, self._problem.slopes(theta), times, names)
+        order = sorted(found.items(), key=lambda item: -item[1])
+        return Misfit(dict(order), halves, changes)
 
     def _take(self, noises: Sequence[Noise]) -> None:
         """Take noises for the channels: with other parameters of the sensors."""
@@ -326,6 +377,7 @@ class _Solved:
                 block=b,
                 noise=_noise_of(model, b),
                 rejected=self._rejected[i],
+                over=self._over(b),
                 parameters=len(theta),
                 added={
                     model.parameters[j].key.removeprefix(f"{b.channel}_"): float(theta[j])
@@ -335,6 +387,7 @@ class _Solved:
             for i, b in enumerate(model.blocks)
         )
         return Fit(
+            misfit=self._misfit(),
             model=model,
             given=self._given,
             theta=theta,

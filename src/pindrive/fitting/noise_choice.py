@@ -52,32 +52,60 @@ class Linearised:
     others: Array
     other_slopes: Array
 
-    def criterion(self, noise: Noise) -> float:
-        """Return the criterion of Schwarz (Ann. Statist. 6:461, 1978) for a noise."""
+    def solved(self, noise: Noise) -> Solved:
+        """Return the optimum nearby with a noise."""
         hum = float(noise.hum or 0.0)
         added = [column(key, self.times, self.span, hum) for key in noise.keys]
         slopes = np.column_stack([self.slopes, *added]) if added else self.slopes
         rest = np.zeros((len(self.others), len(added)))
         other_slopes = np.hstack([self.other_slopes, rest])
-        off, others, last = self.off, self.others, np.inf
+        off, others, best = self.off, self.others, None
         for _ in range(TURNS):
             made = estimated(noise, off, slopes, self.times, self.interval, 1.0)
             deviance = made.deviance(off) + float(others @ others)
-            if deviance > last - CLOSE:
+            if best is not None and deviance > best.deviance - CLOSE:
                 break
-            last = deviance
-            step = _step(made, off, slopes, others, other_slopes)
+            price = log(len(off)) * (noise.count + (noise.size is None))
+            best = Solved(
+                made,
+                off,
+                np.concatenate([made.residuals(off), others]),
+                np.vstack([made.slopes(off, slopes), other_slopes]),
+                deviance,
+                deviance + price,
+            )
+            step = _step(best)
             off, others = off + slopes @ step, others + other_slopes @ step
-        return min(last, deviance) + log(len(off)) * (noise.count + (noise.size is None))
+        assert best
+        return best
 
 
-def _step(made: Whitening, off: Array, slopes: Array, others: Array, other_slopes: Array) -> Array:
+@dataclass(frozen=True, slots=True)
+class Solved:
+    """Optimum under a noise.
+
+    Attributes:
+        whitening: Whitening of the channel.
+        off: Computed less recorded of the channel, SI, shape (n,).
+        residuals: Independent residuals of the channel and of all others, shape (n + m,).
+        slopes: Derivatives of these, shape (n + m, k).
+        deviance: −2 times the log-likelihood.
+        criterion: The criterion of Schwarz (Ann. Statist. 6:461, 1978).
+    """
+
+    whitening: Whitening
+    off: Array
+    residuals: Array
+    slopes: Array
+    deviance: float
+    criterion: float
+
+
+def _step(at: Solved) -> Array:
     """Return the Gauss-Newton step of all parameters, shape (k,)."""
-    x = np.vstack([made.slopes(off, slopes), other_slopes])
-    y = np.concatenate([made.residuals(off), others])
-    size = np.linalg.norm(x, axis=0)
+    size = np.linalg.norm(at.slopes, axis=0)
     size[size == 0.0] = 1.0
-    found, *_ = np.linalg.lstsq(x / size, -y, rcond=1e-9)
+    found, *_ = np.linalg.lstsq(at.slopes / size, -at.residuals, rcond=1e-9)
     step: Array = found / size
     return step
 
@@ -85,8 +113,8 @@ def _step(made: Whitening, off: Array, slopes: Array, others: Array, other_slope
 def chosen(at: Linearised, start: Noise, recorded: Array) -> tuple[Noise, dict[str, float]]:
     """Return the noise with the least criterion, and by how much others exceed it, by their words.
 
-    Of noises that are as good it is the one with the fewest parameters. Drift, hum, correlation and outliers are added one by one where they help most, and left out
-    again where they do not.
+    Of noises that are as good it is the one with the fewest parameters. Drift, hum, correlation and
+    outliers are added one by one where they help most, and left out again where they do not.
 
     Args:
         at: Residuals of the channel.
@@ -96,12 +124,12 @@ def chosen(at: Linearised, start: Noise, recorded: Array) -> tuple[Noise, dict[s
     step = step_of(recorded)
     if step is not None and start.size is None and float(np.std(at.off)) < step:
         start = replace(start, step=step)
-    known = {start: at.criterion(start)}
+    known = {start: at.solved(start).criterion}
     best = start
     while True:
         for noise in _neighbours(best):
             if noise not in known:
-                known[noise] = at.criterion(noise)
+                known[noise] = at.solved(noise).criterion
         least = min(known, key=lambda noise: known[noise])
         if least == best:
             break

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from pindrive.fitting.model import Block
 from pindrive.fitting.noise import Noise
+from pindrive.fitting.structure import UNLIKELY, Place, places
 from pindrive.fitting.whitening import Whitening
 from pindrive.lazy import stats
 from pindrive.quantities.quantity import significant
@@ -20,8 +21,6 @@ Array = NDArray[np.float64]
 
 LAGS: Final = 20
 """Lags of the Ljung-Box test; a fifth of the samples where they are fewer."""
-UNLIKELY: Final = 1e-3
-"""Residuals whose tests have a lower p-value have structure."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +47,8 @@ class Residuals:
         runs: P-value of the Wald-Wolfowitz test for the number of runs of one sign; NaN of rounded
             samples, whose signs are not even.
         neighbours: Correlation of neighbouring residuals as independent ones.
+        places: Tests of the residuals as independent ones over "time", "speed" and "position" of
+            the pin, SI.
     """
 
     recording: int
@@ -64,6 +65,7 @@ class Residuals:
     ljung_box: float
     runs: float
     neighbours: float
+    places: dict[str, Place]
 
     @property
     def known(self) -> bool:
@@ -94,7 +96,8 @@ class Residuals:
     @property
     def structured(self) -> bool:
         """True if the residuals are no noise: the drive does more than the model."""
-        return any(p < UNLIKELY for p in (self.ljung_box, self.runs)) or self.excessive
+        tests = (self.ljung_box, self.runs, *(place.p_value for place in self.places.values()))
+        return any(p < UNLIKELY for p in tests) or self.excessive
 
     @property
     def excessive(self) -> bool:
@@ -111,6 +114,7 @@ def tested(
     noise: Noise,
     added: dict[str, float],
     rejected: dict[str, float],
+    over: dict[str, Array],
     parameters: int,
 ) -> Residuals:
     """The residuals of a block with their tests.
@@ -123,6 +127,7 @@ def tested(
         noise: Noise that was given or chosen.
         added: Values that the sensor adds, by their key.
         rejected: Excess of the criterion of other noises.
+        over: Time, speed and position of the pin at the samples, SI, by name, shape (n,).
         parameters: Number of fitted parameters.
     """
     n = len(off)
@@ -147,6 +152,7 @@ def tested(
         ljung_box=float(stats.chi2.sf(statistic, degrees)) if power else nan,
         runs=nan if made.half else _runs(independent),
         neighbours=float(rho[0]),
+        places=places(independent, over),
     )
 
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import exp, isfinite, log
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,7 @@ from pindrive.fitting.parameters import Parameter
 from pindrive.fitting.profiles import ProfileLikelihood
 from pindrive.fitting.recording import Recording
 from pindrive.fitting.residuals import Residuals
+from pindrive.fitting.structure import UNLIKELY, Misfit
 from pindrive.lazy import mpl_figure, xr
 from pindrive.motion.drive import Drive
 from pindrive.motion.motion import Motion
@@ -31,6 +32,9 @@ from pindrive.quantities.value import concise, equal_by_value
 Array = NDArray[np.float64]
 
 __all__ = ["Estimate", "Fit", "ModelComparison"]
+
+PLACE_UNITS: Final = {"time": ("ms", 1e3), "speed": ("mm/s", 1e3), "position": ("mm", 1e3)}
+"""Display unit of each quantity over which residuals are tested, and its number in an SI unit."""
 
 
 @equal_by_value
@@ -100,6 +104,7 @@ class Fit(lazy.NotebookHtml):
         covariance: Covariance of all values, from the derivatives at the optimum, shape (k, k).
         correlation: Correlation of all values; NaN for an undetermined one.
         residuals: Residuals of each channel of each recording.
+        misfit: Signs that the drive does what the model does not.
         confidence: Confidence of the intervals.
         threshold: The increase of the cost at the end of an interval.
         converged: True if the last refinement ended at an optimum.
@@ -112,6 +117,7 @@ class Fit(lazy.NotebookHtml):
     covariance: Array
     correlation: Array
     residuals: tuple[Residuals, ...]
+    misfit: Misfit
     confidence: float
     threshold: float
     converged: bool
@@ -147,19 +153,49 @@ class Fit(lazy.NotebookHtml):
             for e in self.estimates
             if e.explanation
         ]
-        for left in self.residuals:
-            name = self.model.recordings[left.recording].name
-            if left.structured:
-                why = (
-                    f"are {left.reduced**0.5:.3g} times the given noise"
-                    if left.excessive
-                    else f"have structure (neighbours correlate by {left.neighbours:.2f})"
-                )
-                found.append(
-                    f"{name}: the residuals of the {left.channel} {why}: the drive does what this "
-                    "model does not, and the intervals do not hold"
-                )
+        found += [line for left in self.residuals for line in self._structure(left)]
+        if self.structured:
+            found.append(self._cause())
         return tuple(found)
+
+    @property
+    def structured(self) -> bool:
+        """True if the drive does what the model does not, so that the intervals do not hold."""
+        return self.misfit.found or any(left.structured for left in self.residuals)
+
+    def _structure(self, left: Residuals) -> list[str]:
+        """Return where the residuals of a channel keep a structure, a line."""
+        if not left.structured:
+            return []
+        name = self.model.recordings[left.recording].name
+        if left.excessive:
+            why = f"are {left.reduced**0.5:.3g} times the given noise"
+        else:
+            over = min(left.places, key=lambda each: left.places[each].p_value)
+            place = left.places[over]
+            why = f"keep a structure (neighbours correlate by {left.neighbours:.2f})"
+            if place.p_value < UNLIKELY:
+                unit, scale = PLACE_UNITS[over]
+                ends = [significant(end * scale, 3) for end in (place.begin, place.end)]
+                why = f"keep a structure over the {over}, most from {ends[0]} to {ends[1]} {unit}"
+        return [f"{name}: the residuals of the {left.channel} {why}, which no noise explains"]
+
+    def _cause(self) -> str:
+        """Return what might explain a structure, and what it does to the parameters."""
+        parts = ["the drive does what this model does not, and the intervals do not hold"]
+        laws = [*self.misfit.explanations.items()]
+        if laws:
+            others = f", {laws[1][0]} by {laws[1][1]:.0f}" if len(laws) > 1 else ""
+            words = f"{laws[0][0]} explains more: BIC lower by {laws[0][1]:.0f}{others}"
+            parts.append(words.replace(",,", ","))
+        for name, (change, errors) in [*self.misfit.moved.items()][:2]:
+            unit, scale = self[name].parameter.scale
+            size = f"{significant(change * scale, 3)} {unit}".rstrip()
+            parts.append(
+                f"{name} moves by {size}, {errors:.0f} standard errors, from the first half to the "
+                "second"
+            )
+        return "; ".join(parts)
 
     # ---- what was fitted -------------------------------------------------------------------------
 
