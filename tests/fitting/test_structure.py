@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
 import pindrive as pd
 from pindrive import Contact, Drive, Recording, Stribeck
+from pindrive.fitting import estimation
 from pindrive.fitting.structure import moved, places
 from recordings import FREE, RELEASE, START, TRUTH, recorded
 
@@ -89,3 +92,36 @@ def test_a_release_without_a_finger_has_no_law_to_try() -> None:
     given = noisy(drive)
     found = pd.fit(given, drive, RELEASE, free=["stiffness", "damping"], profiles=False)
     assert not found.structured
+
+
+def test_searches_go_on_while_residuals_keep_a_structure(monkeypatch: pytest.MonkeyPatch) -> None:
+    searched = estimation.search
+    seeds = list[int]()
+
+    def counted(model: Any, weights: Any, seed: int) -> Any:
+        seeds.append(seed)
+        return searched(model, weights, seed)
+
+    monkeypatch.setattr(estimation, "search", counted)
+    pd.fit(noisy(TRUTH), START, RELEASE, free=FREE, profiles=False)
+    assert seeds == [1]
+    pd.fit(noisy(with_law("plate")), START, RELEASE, free=FREE, profiles=False)
+    assert seeds == [1, 1, 2]
+
+
+def test_no_interval_is_narrower_than_its_standard_error() -> None:
+    """The skin of this recording makes jumps of the cost near the optimum of a rigid finger."""
+    drive = Drive(
+        mass=0.006,
+        stiffness=160.0,
+        damping=0.19,
+        plate=Contact(0.034),
+        finger=Contact(0.011, stiffness=500.0),
+    )
+    found = pd.fit(noisy(drive), START, RELEASE, free=FREE)
+    assert found.structured
+    for estimate in found.estimates:
+        low, high = estimate.interval
+        error = estimate.standard_error if np.isfinite(estimate.standard_error) else 0.0
+        assert low <= estimate.value - error
+        assert high >= estimate.value + error

@@ -10,14 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pindrive.fitting.identifiability import Identifiability, rank, untouched
-from pindrive.fitting.least_squares import Optimum, Problem
+from pindrive.fitting.least_squares import BETTER, Optimum, Problem
 from pindrive.fitting.model import Block, Model
 from pindrive.fitting.noise import Noise
 from pindrive.fitting.noise_choice import Linearised, chosen
 from pindrive.fitting.parameters import of_noise, parameters
 from pindrive.fitting.profiles import BetterOptimum, ProfileLikelihood, profile
 from pindrive.fitting.recording import Recording
-from pindrive.fitting.residuals import first_noise, tested
+from pindrive.fitting.residuals import Residuals, first_noise, tested
 from pindrive.fitting.results import Estimate, Fit
 from pindrive.fitting.search import polished, search
 from pindrive.fitting.structure import Misfit, explained, laws, moved, oscillations
@@ -38,6 +38,8 @@ RESTARTS: Final = 20
 """Largest number of restarts from a better optimum found by a profile."""
 SWING: Final = 0.25
 """The least part of a period that a recording must last."""
+SEARCHES: Final = 2
+"""Number of searches, each with other candidates, while residuals keep a structure."""
 CHOICES: Final = 4
 """Largest number of choices of the noise, each at the optimum with the one before."""
 ALIKE: Final = 1e-3
@@ -119,6 +121,10 @@ def fit(
     solved.settle_noise()
     solved.choose_noise()
     solved.polish(seed)
+    for again in range(1, SEARCHES):
+        if not solved.structured:
+            break
+        solved.search_again(seed + again)
     if not profiles:
         return solved.result([None] * len(solved.theta))
     with crew(cluster) as workers:
@@ -181,7 +187,7 @@ class _Solved:
 
     def choose_noise(self) -> None:
         """Choose the noise of each channel that has none given, and refine with it."""
-        free = [_is_to_be_chosen(self._model, block) for block in self._model.blocks]
+        free = [self._is_to_be_chosen(block) for block in self._model.blocks]
         if not any(free):
             return
         for _ in range(CHOICES):
@@ -198,6 +204,11 @@ class _Solved:
         start, data = self._asked(block), self._model.data[block.place]
         found, self._rejected[i] = chosen(self._linearised(i), start, data)
         return found
+
+    def _is_to_be_chosen(self, block: Block) -> bool:
+        """Return True of a channel without a given noise, or whose noise says so."""
+        given = self._given[block.recording].noise.get(block.channel)
+        return given is None or given.choose
 
     def _asked(self, block: Block) -> Noise:
         return self._given[block.recording].noise.get(block.channel, Noise())
@@ -222,6 +233,28 @@ class _Solved:
             asked.interval,
             apart,
             self._problem.slopes(self._best.theta)[~here][:, own],
+        )
+
+    def _residuals(self) -> tuple[Residuals, ...]:
+        """Return the residuals of each channel, tested."""
+        model, theta = self._model, self.theta
+        off, _ = self._problem.linearised(theta)
+        return tuple(
+            tested(
+                -off[b.place],
+                -self._noise[i].scores(off[b.place]),
+                self._noise[i],
+                block=b,
+                noise=_noise_of(model, b),
+                rejected=self._rejected[i],
+                over=self._over(b),
+                parameters=len(theta),
+                added={
+                    model.parameters[j].key.removeprefix(f"{b.channel}_"): float(theta[j])
+                    for j in model.added(i)[0]
+                },
+            )
+            for i, b in enumerate(model.blocks)
         )
 
     def _over(self, block: Block) -> dict[str, Array]:
@@ -293,6 +326,21 @@ class _Solved:
         self._best = Optimum(theta, self._problem.cost(theta), self._best.converged)
 
     @property
+    def structured(self) -> bool:
+        """True if residuals keep a structure, as at a false optimum."""
+        return any(left.structured for left in self._residuals())
+
+    def search_again(self, seed: int) -> None:
+        """Search with other candidates, and take what fits better."""
+        best, _ = search(self._model, _weights(self._model, [n.size for n in self._noise]), seed)
+        end = self._problem.refined(best.theta)
+        if end.cost < self._best.cost - BETTER:
+            self._best = end
+            self.settle_noise()
+            self.choose_noise()
+            self.polish(seed)
+
+    @property
     def _threshold(self) -> float:
         """The excess of the cost at the end of an interval."""
         spare = len(self._model.data) - len(self._best.theta)
@@ -311,6 +359,7 @@ class _Solved:
         if better is not self._best:
             self._best = better
             self.settle_noise()
+            self.choose_noise()
             self._rank()
 
     def profiled(self, seed: int, workers: Here | Cluster) -> list[ProfileLikelihood | None]:
@@ -333,6 +382,7 @@ class _Solved:
             again = self._problem.refined(found.theta)
             self._best = again if again.cost <= found.cost else found
             self.settle_noise()
+            self.choose_noise()
             self.polish(seed + turn + 1)
         self._best = replace(self._best, converged=False)
         return [None] * len(self._best.theta)
@@ -348,6 +398,11 @@ class _Solved:
             half = np.sqrt(self._threshold) * errors[i]
             found = traced[i]
             interval = found.interval if found else (theta[i] - half, theta[i] + half)
+            if np.isfinite(errors[i]):  # a jump of the cost may be nearer than the noise reaches
+                interval = (
+                    min(interval[0], theta[i] - errors[i]),
+                    max(interval[1], theta[i] + errors[i]),
+                )
             if i in groups:
                 verdict = Identifiability.structurally_not
             elif np.isfinite(interval).all():
@@ -368,24 +423,6 @@ class _Solved:
             )
         with np.errstate(invalid="ignore", divide="ignore"):
             correlation = covariance / np.outer(errors, errors)
-        off, _ = self._problem.linearised(theta)
-        residuals = tuple(
-            tested(
-                -off[b.place],
-                -self._noise[i].scores(off[b.place]),
-                self._noise[i],
-                block=b,
-                noise=_noise_of(model, b),
-                rejected=self._rejected[i],
-                over=self._over(b),
-                parameters=len(theta),
-                added={
-                    model.parameters[j].key.removeprefix(f"{b.channel}_"): float(theta[j])
-                    for j in model.added(i)[0]
-                },
-            )
-            for i, b in enumerate(model.blocks)
-        )
         return Fit(
             misfit=self._misfit(),
             model=model,
@@ -394,7 +431,7 @@ class _Solved:
             estimates=tuple(estimates),
             covariance=covariance,
             correlation=correlation,
-            residuals=residuals,
+            residuals=self._residuals(),
             confidence=self._confidence,
             threshold=self._threshold,
             converged=self._best.converged,
@@ -403,12 +440,6 @@ class _Solved:
 
 def _noise_of(model: Model, block: Block) -> Noise:
     return model.recordings[block.recording].noise.get(block.channel, Noise())
-
-
-def _is_to_be_chosen(model: Model, block: Block) -> bool:
-    """Return True of a channel without a given noise, or whose noise says so."""
-    given = model.recordings[block.recording].noise.get(block.channel)
-    return given is None or given.choose
 
 
 def _first_noise(model: Model, block: Block) -> float:

@@ -48,8 +48,9 @@ class Estimate:
         value: SI.
         standard_error: Standard error from the derivatives at the optimum; infinite for an
             undetermined estimate.
-        interval: Ends of the interval by profile likelihood; infinite on a side on which the
-            profile reaches the bound of the search before its end.
+        interval: Ends of the interval by profile likelihood, and at least a standard error to
+            either side; infinite on a side on which the profile reaches the bound of the search
+            before its end.
         identifiability: Identifiability of the parameter from the recordings.
         hidden_with: Parameters of which the recordings tell combinations with this one alone,
             itself among them.
