@@ -15,6 +15,7 @@ from pindrive import (
     HessSoom,
     Recording,
     Release,
+    Status,
     Stribeck,
     fit,
     fit_friction,
@@ -62,8 +63,52 @@ def test_coulomb_friction_needs_one_row_and_a_smooth_law_more() -> None:
 def test_hysteresis_is_no_noise() -> None:
     """Friction that lags behind a swinging speed: another force as it rises than as it falls."""
     t = np.linspace(0.0, 4.0 * np.pi, 400)
-    with pytest.warns(UserWarning, match="friction depends on more than the speed"):
-        fit_friction(np.sin(t), np.sign(np.sin(t)) * (0.02 + 0.01 * np.cos(t) * np.sign(np.sin(t))))
+    speed = np.sin(t)
+    force = np.sign(speed) * (0.02 + 0.01 * np.cos(t) * np.sign(speed))
+    with pytest.warns(UserWarning, match="two branches: where the speed rises, the force is"):
+        found = fit_friction(speed, force)
+    assert found.status is Status.incomplete
+    assert found.r_squared < 0.3
+    assert found.effective_size < 0.1 * len(speed)
+    assert [*found.branches] == ["speed rises", "speed falls"]
+    rise, fall = found.branches.values()
+    assert rise - fall == pytest.approx(4.0 * 0.01 / np.pi, rel=0.05)  # mean of |cos|, twice
+    labels = [line.get_label() for line in found.plot().axes[0].lines]
+    assert {"speed rises", "speed falls"} <= {*labels}
+    assert "R² " in repr(found)
+
+
+def test_directions_of_sliding_may_differ() -> None:
+    rng = np.random.default_rng(1)
+    speed = rng.uniform(-0.2, 0.2, 400)
+    force = np.sign(speed) * np.where(speed > 0, 0.024, 0.020) + 3e-4 * rng.normal(size=400)
+    with pytest.warns(UserWarning, match="two branches: forward the force is 0.00[34]"):
+        found = fit_friction(speed, force)
+    assert [*found.branches] == ["forward", "backward"]
+
+
+def test_samples_that_are_alike_count_for_fewer() -> None:
+    rng = np.random.default_rng(1)
+    speed = np.linspace(0.01, 0.2, 600)
+    slow = 4e-4 * rng.normal(size=600)
+    for i in range(1, 600):
+        slow[i] = 0.9 * slow[i - 1] + np.sqrt(1.0 - 0.81) * slow[i]
+    with pytest.warns(UserWarning, match="samples tell as much as"):
+        found = fit_friction(speed, 0.02 + slow, rows=1)
+    assert found.effective_size == pytest.approx(600 * 0.1 / 1.9, rel=0.5)
+    plain = fit_friction(speed, 0.02 + 4e-4 * rng.normal(size=600), rows=1)
+    ratio = found.standard_errors[0] / plain.standard_errors[0]
+    assert ratio == pytest.approx(np.sqrt(1.9 / 0.1), rel=0.35)
+    assert plain.warnings == ()
+
+
+def test_a_force_that_falls_beyond_the_data_is_said() -> None:
+    rng = np.random.default_rng(1)
+    speed = rng.uniform(0.0, 0.1, 300)
+    with pytest.warns(UserWarning, match="beyond the data the force falls by .* zero at 0.2"):
+        found = fit_friction(speed, 0.02 - 0.1 * speed + 1e-5 * rng.normal(size=300))
+    slope, error = found.slope
+    assert slope == pytest.approx(-0.1, abs=4.0 * error)
 
 
 @pytest.mark.parametrize(

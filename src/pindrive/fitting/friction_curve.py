@@ -89,7 +89,16 @@ class FrictionCurve(lazy.NotebookHtml):
         rows: (speed in m/s, force in N), from 0 m/s on.
         standard_errors: Standard errors of the forces, N, one for each row.
         noise: Standard deviation of the forces about the curve, N.
-        aicc: Akaike's corrected criterion for each number of rows that was tried.
+        r_squared: Part of the variance of the forces that the curve explains; about 0 where
+            friction does not depend on the speed.
+        correlation: Correlation of residuals of neighbouring samples, in the recorded order.
+        effective_size: Number of independent samples that tell as much, by that correlation.
+        branches: Mean force above the curve, N, of two branches that differ: "speed rises" and
+            "speed falls", or "forward" and "backward"; empty where they agree.
+        slope: Slope of the force beyond the last row, N*s/m, with its standard error; zeros of one
+            row.
+        aicc: Akaike's corrected criterion, by the effective size, for each number of rows that was
+            tried.
         laws: Laws fitted to the same data: "coulomb", "stribeck" and "stribeck, exponent 2", and
             "hess-soom", each with a viscous part.
         speed: Measured sliding speeds, m/s, shape (n,).
@@ -99,6 +108,11 @@ class FrictionCurve(lazy.NotebookHtml):
     rows: tuple[tuple[float, float], ...]
     standard_errors: tuple[float, ...]
     noise: float
+    r_squared: float
+    correlation: float
+    effective_size: float
+    branches: dict[str, float]
+    slope: tuple[float, float]
     aicc: dict[int, float]
     laws: dict[str, FittedLaw]
     speed: Array
@@ -108,14 +122,48 @@ class FrictionCurve(lazy.NotebookHtml):
         """Return the number of points and of samples in a line."""
         count = counted(len(self.speed), "sample")
         rows = counted(len(self.rows), "row")
-        return (
-            f"<FrictionCurve of {rows} from {count}, noise {self.noise:.3g} N, {self.status.name}>"
-        )
+        size = f"R² {self.r_squared:.2f}, noise {self.noise:.3g} N"
+        return f"<FrictionCurve of {rows} from {count}, {size}, {self.status.name}>"
 
     @property
     def status(self) -> Status:
-        """Always `ok`: what cannot be fitted is refused."""
-        return Status.ok
+        """`incomplete` where `warnings` says so."""
+        return Status.incomplete if self.warnings else Status.ok
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Doubts about the curve, a line each."""
+        found = []
+        noise, mean = self.noise, float(np.mean(self.force))
+        if self.branches:
+            (one, above), (other, below) = self.branches.items()
+            gap = f"the force is {above - below:.3g} N above that"
+            if one.startswith("speed"):
+                found.append(
+                    f"two branches: where the {one}, {gap} where the {other}; friction depends on "
+                    "more than the speed"
+                )
+            else:
+                found.append(f"two branches: {one} {gap} {other}")
+        elif self.correlation > HYSTERESIS and noise > SMALL * mean and len(self.force) >= LEAST:
+            found.append(
+                f"the forces differ from the curve by {noise:.3g} N, and neighbouring samples to "
+                "the same side: friction depends on more than the speed (wear or a load that "
+                "changes), or the curve has too few rows"
+            )
+        if self.effective_size < WEAK * len(self.force) and not self.branches:
+            found.append(
+                f"{len(self.force)} samples tell as much as {self.effective_size:.0f} independent "
+                f"ones (neighbours correlate by {self.correlation:.2f})"
+            )
+        slope, error = self.slope
+        if slope < -2.0 * error and self.rows[-1][1] > 0.0:
+            ends = self.rows[-1][0] - self.rows[-1][1] / slope
+            found.append(
+                f"beyond the data the force falls by {-slope:.3g} N*s/m and would be zero at "
+                f"{ends:.3g} m/s: measure at higher speeds, or give a last row"
+            )
+        return tuple(found)
 
     def __call__(self, speed: ArrayLike) -> Array:
         """The force (N) at sliding speeds (m/s) of either sign, in their shape."""
@@ -165,6 +213,8 @@ class FrictionCurve(lazy.NotebookHtml):
             "curve_force": ("row", y, {"units": "N"}),
             "standard_error": ("row", np.array(self.standard_errors), {"units": "N"}),
             "noise": ((), self.noise, {"units": "N"}),
+            "r_squared": ((), self.r_squared, {"units": "1"}),
+            "effective_size": ((), self.effective_size, {"units": "1"}),
             "law_aicc": ("law", [law.aicc for law in self.laws.values()], {"units": "1"}),
             "aicc": ("row_count", [*self.aicc.values()], {"units": "1"}),
             "speed": ("sample", self.speed, {"units": "m/s"}),
@@ -197,8 +247,8 @@ def fit_friction(speed: ArrayLike, force: ArrayLike, *, rows: int | None = None)
             some speeds only.
 
     Warns:
-        UserWarning: the residuals of neighbouring samples are alike, as of hysteresis: friction
-            depends on more than the speed.
+        UserWarning: each of `FrictionCurve.warnings`: two branches, as of hysteresis; neighbouring
+            samples that are alike; a force that falls beyond the data.
     """
     u, f = (
         np.asarray(values, float).ravel() if not isinstance(values, str) else np.empty(0)
@@ -217,25 +267,85 @@ def fit_friction(speed: ArrayLike, force: ArrayLike, *, rows: int | None = None)
     if not f.any():
         raise ValueError(refusal("force", "other than zero somewhere", "0 throughout"))
     f = _against(u, f)
+    signed = u
     order = np.argsort(np.abs(u), kind="stable")
     u, f = np.abs(u)[order], f[order]
     most = rows or min(MOST, (len(u) - 3) // 2)
     tried = _grown(u, f, most, stop=rows is None)
-    aicc = {len(knots): _aicc(u, f, knots) for knots in tried}
-    count = rows or min(aicc, key=lambda n: aicc[n])
-    knots = next(k for k in tried if len(k) == count)
-    values, errors, noise = _solved(u, f, knots)
-    residuals = (f - np.interp(u, knots, values))[np.argsort(order)]  # recorded order
-    if noise > SMALL * float(np.mean(f)) and _are_alike(residuals):
-        warnings.warn(
-            f"the forces differ from the curve by {noise:.3g} N, and neighbouring samples to the "
-            "same side: friction depends on more than the speed (hysteresis, wear or a load that "
-            "changes), or the curve has too few rows",
-            stacklevel=2,
-        )
-    found = tuple(zip(knots.tolist(), np.maximum(values, 0.0).tolist(), strict=True))
-    laws = {name: _law(name, u, f) for name in _SHAPES}
-    return FrictionCurve(found, tuple(errors.tolist()), noise, aicc, laws, u, f)
+    recorded = np.argsort(order)  # places of the samples in their recorded order
+    count, correlation = rows or 0, 0.0
+    for _ in range(1 if rows else ROUNDS):  # the best rows, and the correlation that they leave
+        size = len(u) * _independent(correlation)
+        aicc = {len(knots): _aicc(u, f, knots, size) for knots in tried}
+        count = rows or min(aicc, key=lambda n: aicc[n])
+        knots = next(k for k in tried if len(k) == count)
+        values, errors, noise = _solved(u, f, knots)
+        residuals = (f - _hats(u, knots) @ values)[recorded]
+        correlation = _of_neighbours(residuals)
+    size = len(u) * _independent(correlation)
+    aicc = {len(knots): _aicc(u, f, knots, size) for knots in tried}
+    errors = errors / np.sqrt(_independent(correlation))
+    spread = float(np.sum((f - f.mean()) ** 2))
+    made = FrictionCurve(
+        rows=tuple(zip(knots.tolist(), np.maximum(values, 0.0).tolist(), strict=True)),
+        standard_errors=tuple(errors.tolist()),
+        noise=noise,
+        r_squared=1.0 - float(residuals @ residuals) / spread if spread else 0.0,
+        correlation=correlation,
+        effective_size=size,
+        branches=_branches(signed, residuals, float(np.mean(f))),
+        slope=_last_slope(knots, values, errors),
+        aicc=aicc,
+        laws={name: _law(name, u, f, size) for name in _SHAPES},
+        speed=u,
+        force=f,
+    )
+    for line in made.warnings:
+        warnings.warn(line, stacklevel=2)
+    return made
+
+
+def _of_neighbours(residuals: Array) -> float:
+    """Return the correlation of neighbouring residuals; 0 of few samples, or below."""
+    power = float(residuals @ residuals)
+    if len(residuals) < LEAST or power == 0.0:
+        return 0.0
+    return min(max(float(residuals[1:] @ residuals[:-1]) / power, 0.0), 0.999)
+
+
+def _independent(correlation: float) -> float:
+    """Return the part of samples of a first-order process that are independent ones."""
+    return (1.0 - correlation) / (1.0 + correlation)
+
+
+def _branches(u: Array, residuals: Array, mean: float) -> dict[str, float]:
+    """Return the mean residual of branches that differ by more than their scatter."""
+    rate = np.gradient(np.abs(u))
+    for names, which in (
+        (("speed rises", "speed falls"), rate),
+        (("forward", "backward"), u),
+    ):
+        parts = [residuals[which > 0.0], residuals[which < 0.0]]
+        if min(len(part) for part in parts) < FEWEST:
+            continue
+        means = [float(part.mean()) for part in parts]
+        inner = residuals - np.where(which > 0.0, *means)
+        independent = len(inner) * _independent(_of_neighbours(inner))
+        part = independent / len(inner)
+        error = float(np.std(inner)) * np.sqrt(sum(1.0 / (part * len(each)) for each in parts))
+        gap = abs(means[0] - means[1])
+        if gap > APART * error and gap > SMALL * mean:
+            found = dict(zip(names, means, strict=True))
+            return dict(sorted(found.items(), key=lambda item: -item[1]))
+    return {}
+
+
+def _last_slope(knots: Array, values: Array, errors: Array) -> tuple[float, float]:
+    """Return the slope between the last two rows, with its standard error."""
+    if len(knots) < 2:
+        return 0.0, 0.0
+    across = float(knots[-1] - knots[-2])
+    return float(values[-1] - values[-2]) / across, float(np.hypot(*errors[-2:])) / across
 
 
 _SHAPES: Final[dict[str, Callable[[Array], Array] | None]] = {
@@ -247,7 +357,7 @@ _SHAPES: Final[dict[str, Callable[[Array], Array] | None]] = {
 """The part that falls, over the speed in units of the Stribeck velocity."""
 
 
-def _law(name: str, u: Array, f: Array) -> FittedLaw:
+def _law(name: str, u: Array, f: Array, size: float) -> FittedLaw:
     """A law by least squares, no force negative; the Stribeck velocity by a search along it."""
     shape = _SHAPES[name]
 
@@ -271,7 +381,7 @@ def _law(name: str, u: Array, f: Array) -> FittedLaw:
     rest = kinetic + (float(values[2]) if shape is not None else 0.0)
     n, k = len(u), 3 if shape is None else 5
     noise = sqrt(power / max(1, n - k + 1))
-    return FittedLaw(name, kinetic, rest, velocity, viscous, noise, _criterion(power, f, k))
+    return FittedLaw(name, kinetic, rest, velocity, viscous, noise, _criterion(power, f, k, size))
 
 
 HYSTERESIS: Final = 0.7
@@ -279,14 +389,16 @@ HYSTERESIS: Final = 0.7
 SMALL: Final = 0.1
 """Noise, a part of the mean force, below which what the curve leaves out does not matter."""
 
+LEAST: Final = 20
+"""Samples of which the correlation of neighbours is computed."""
+WEAK: Final = 0.1
+"""Part of independent samples below which a warning says so."""
+APART: Final = 4.0
+"""Standard errors by which branches differ."""
+ROUNDS: Final = 4
+"""Choices of the number of rows, each with the correlation that the one before leaves."""
 FEWEST: Final = 8
-"""Samples of a friction curve."""
-
-
-def _are_alike(residuals: Array) -> bool:
-    """Return True if neighbouring residuals correlate more than noise."""
-    correlation = float(np.sum(residuals[1:] * residuals[:-1]) / np.sum(residuals**2))
-    return len(residuals) >= 20 and correlation > HYSTERESIS
+"""Samples of a friction curve, and of a branch."""
 
 
 def _against(u: Array, f: Array) -> Array:
@@ -304,7 +416,7 @@ def _against(u: Array, f: Array) -> Array:
 def _grown(u: Array, f: Array, most: int, *, stop: bool) -> list[Array]:
     """Knots for 1, 2, ... rows, each from the ones before and one more where it helps most."""
     found = [np.zeros(1)]
-    best, since = _aicc(u, f, found[0]), 0
+    best, since = _aicc(u, f, found[0], len(u)), 0
     for count in range(2, most + 1):
         last = float(u[-1])
         if count == 2:
@@ -321,7 +433,7 @@ def _grown(u: Array, f: Array, most: int, *, stop: bool) -> list[Array]:
                 break
             knots = _moved(u, f, min(tried, key=lambda k: _power(u, f, k)))
         found.append(knots)
-        aicc = _aicc(u, f, knots)
+        aicc = _aicc(u, f, knots, len(u))
         best, since = (aicc, 0) if aicc < best else (best, since + 1)
         if stop and since >= WITHOUT_GAIN:
             break
@@ -370,15 +482,15 @@ def _power(u: Array, f: Array, knots: Array) -> float:
     return float(off @ off)
 
 
-def _aicc(u: Array, f: Array, knots: Array) -> float:
+def _aicc(u: Array, f: Array, knots: Array, size: float) -> float:
     """Return the corrected Akaike criterion for forces, inner knots and noise."""
-    return _criterion(_power(u, f, knots), f, len(knots) + KNOT * max(0, len(knots) - 2) + 1)
+    count = len(knots) + KNOT * max(0, len(knots) - 2) + 1
+    return _criterion(_power(u, f, knots), f, count, size)
 
 
-def _criterion(power: float, f: Array, k: int) -> float:
-    """Return the corrected Akaike criterion of a sum of squares and a number of parameters."""
-    n = len(f)
-    square = max(power / n, (1e-12 * float(np.abs(f).max())) ** 2)
+def _criterion(power: float, f: Array, k: int, n: float) -> float:
+    """Return the corrected Akaike criterion of a sum of squares, k parameters, n free samples."""
+    square = max(power / len(f), (1e-12 * float(np.abs(f).max())) ** 2)
     return n * (log(2.0 * pi * square) + 1.0) + 2.0 * k + 2.0 * k * (k + 1) / max(n - k - 1, 1)
 
 

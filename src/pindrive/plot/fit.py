@@ -217,7 +217,13 @@ def plot_friction_curve(found: FrictionCurve) -> Figure:
             at = np.linspace(0.0, float(found.speed[-1]), 300)
             axes.plot(MM * at, 1e3 * law(at), color=PALETTE["stick"], label=law.name, gid="law")
         axes.errorbar(MM * speed, 1e3 * force, 1.96 * errors, fmt="none", color=PALETTE["curve"])
+        for way, branch in zip((1.0, -1.0), found.branches.items(), strict=False):
+            name, above = branch
+            look_of = {"color": PALETTE["curve"], "ls": ":" if way > 0 else "-."}
+            axes.plot(MM * speed, 1e3 * (force + above), **look_of, label=name, gid="branch")
         axes.set(xlabel="sliding speed (mm/s)", ylabel="friction force (mN)")
+        words = f"R² {found.r_squared:.2f}, {found.effective_size:.0f} independent samples"
+        axes.set_title(words, fontsize=SMALL, loc="left")
         axes.legend(frameon=False)
         counts = [*found.aicc]
         excess = np.array([*found.aicc.values()]) - min(found.aicc.values())
