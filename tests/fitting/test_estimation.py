@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.optimize import least_squares
 
 import pindrive as pd
 from benchmarks.fitting import outcome
@@ -249,3 +250,66 @@ def test_times_before_the_release_need_a_free_offset() -> None:
 
 def test_name_is_public() -> None:
     assert pd.fit is fit
+
+
+def test_a_parameter_may_be_shared_or_of_each_recording() -> None:
+    """Two recordings with finger friction of their own, and one displacement."""
+    other = Drive(
+        mass=0.006, stiffness=160.0, damping=0.19, plate=Contact(0.034), finger=Contact(0.020)
+    )
+    given = [recorded(TRUTH, rate=2e3), recorded(other, rate=2e3, seed=2)]
+    free = ["stiffness", "damping", "plate.kinetic", "finger.kinetic@each", "displacement@all"]
+    found = fit(given, START, RELEASE, free=free, profiles=False)
+    assert [e.name for e in found.estimates] == [
+        *("stiffness", "damping", "plate.kinetic", "finger.kinetic@0", "finger.kinetic@1"),
+        "displacement",
+    ]
+    assert found["finger.kinetic@0"].value == pytest.approx(0.011, rel=0.2)
+    assert found["finger.kinetic@1"].value == pytest.approx(0.020, rel=0.2)
+    assert found["displacement"].value == pytest.approx(2.2e-3, rel=0.01)
+    one, two = found.drives
+    assert one.finger.kinetic == found["finger.kinetic@0"].value
+    assert two.finger.kinetic == found["finger.kinetic@1"].value
+    assert found.motions[1].drive.finger.kinetic == two.finger.kinetic
+    with pytest.raises(ValueError, match="each has its own sensor"):
+        fit(given, START, RELEASE, free=["time_offset@all"])
+    with pytest.raises(ValueError, match="with @each or @all at most"):
+        fit(given, START, RELEASE, free=["stiffness@1"])
+
+
+def test_residuals_and_their_derivatives_are_for_other_programs() -> None:
+    found = fit(recorded(rate=2e3), START, RELEASE, free=FREE, profiles=False)
+    assert found.names == tuple(FREE)
+    residual = found.residual()
+    assert residual @ residual == pytest.approx(len(residual) - len(FREE), rel=1e-3)
+    again = least_squares(found.residual, 1.02 * found.theta, found.jacobian, x_scale="jac")
+    np.testing.assert_allclose(again.x, found.theta, rtol=1e-3)
+    with pytest.raises(ValueError, match="theta must be one value for each of stiffness, damping"):
+        found.residual([1.0])
+
+
+def test_a_channel_of_your_own_is_a_function_of_the_motion() -> None:
+    clean = recorded(noise=0.0, rate=2e3)
+    x = clean.channels["position"]
+    noise = 1e-4 * np.random.default_rng(1).normal(size=len(x))
+    own = {"gap": 1.0 / (1.0 + 200.0 * x) + noise}
+    given = Recording(clean.time + 2e-3, own=own, noise={"gap": 1e-4})
+    found = fit(
+        given,
+        START,
+        RELEASE,
+        free=[*FREE, "time_offset"],
+        bounds={"time_offset": (1e-3, 3e-3)},
+        own={"gap": lambda motion, t: 1.0 / (1.0 + 200.0 * motion.position(np.maximum(t, 0.0)))},
+        profiles=False,
+    )
+    assert not found.structured
+    for name, value in zip(FREE, (160.0, 0.19, 0.034, 0.011, 2.2e-3), strict=True):
+        error = found[name].standard_error
+        assert found[name].value == pytest.approx(value, abs=4.0 * error)
+        assert error < 0.2 * value
+    assert found.plot().axes[0].get_ylabel() == "gap"
+    with pytest.raises(ValueError, match="own must be a function for gap, got none"):
+        fit(given, START, RELEASE, free=FREE)
+    with pytest.raises(ValueError, match="a channel of your own must be named by a word other"):
+        Recording(clean.time, own={"position": x})

@@ -9,8 +9,8 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from pindrive.cli.tables import new_table
+from pindrive.fitting.recording import display_of
 from pindrive.quantities.quantity import significant
-from pindrive.quantities.results import CHANNELS
 
 NEAR = 3
 """Rejected noises that are named."""
@@ -48,8 +48,8 @@ def _noise(found: Fit) -> Table:
     heads = ("channel", ">samples", ">size", "noise", ">runs p", ">Ljung-Box p", "rest")
     table = new_table("Noise", *(["recording", *heads] if several else heads))
     for left in found.residuals:
-        channel = CHANNELS[left.channel]
-        size = f"{significant(left.noise * channel.display_scale, 3)} {channel.display_unit}"
+        unit, scale = display_of(left.channel)
+        size = f"{significant(left.noise * scale, 3)} {unit}"
         row = (
             left.channel,
             str(left.count),

@@ -63,6 +63,7 @@ def compare_models(found: Fit, seed: int = 1) -> ModelComparison:
                 seed=seed,
                 confidence=found.confidence,
                 profiles=False,
+                own=model.own,
             )
         except ValueError as error:
             refused[law] = str(error)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from pindrive.fitting.identifiability import Identifiability, rank, untouched
 from pindrive.fitting.least_squares import BETTER, Optimum, Problem
-from pindrive.fitting.model import Block, Model
+from pindrive.fitting.model import Block, Model, OwnChannel
 from pindrive.fitting.noise import Noise
 from pindrive.fitting.noise_choice import Linearised, chosen
 from pindrive.fitting.parameters import of_noise, parameters
@@ -26,6 +26,7 @@ from pindrive.lazy import stats
 from pindrive.motion.drive import Drive
 from pindrive.motion.release import Release, check_fits
 from pindrive.quantities.refusal import check_whole, refusal
+from pindrive.quantities.results import CHANNELS
 from pindrive.study.workers import Cluster, Here, crew
 
 Array = NDArray[np.float64]
@@ -59,6 +60,7 @@ def fit(
     confidence: float = 0.95,
     profiles: bool = True,
     cluster: str | None = None,
+    own: Mapping[str, OwnChannel] | None = None,
 ) -> Fit:
     """Fit parameters of a drive and its releases to recordings.
 
@@ -80,8 +82,9 @@ def fit(
             `velocity`, `skin_stretch`, `mouse_velocity`, `plate_load`, rows such as
             `plate_load[1].time`; of each recording `time_offset`, its time of the release, and
             `position_offset` or that of another channel. Keys of device files are names too. With
-            several recordings, what each has of its own is named with its place, such as
-            `displacement@0`.
+            several recordings, the drive is shared, and a release is not: `plate.kinetic@each` is
+            fitted for each recording, `displacement@all` for all together. Results name what each
+            has of its own with its place, such as `displacement@0`.
         bounds: (least, largest) by name, SI or text with a unit. Default: a tenth to ten times the
             value of the drive; from 0 for damping and friction.
         seed: Seed of the candidates, from 0 on.
@@ -90,6 +93,8 @@ def fit(
             derivatives alone.
         cluster: The address of a Dask scheduler, whose workers compute the profiles, which take
             most of the time.
+        own: Channels of your own by name: functions of the `Motion` and of the sample times since
+            the release, s, shape (n,), negative before it; their derivatives are differences.
 
     Returns:
         Values with standard errors, intervals, correlations and identifiability; the noise; the
@@ -109,7 +114,14 @@ def fit(
     drive = drive.by_forces
     found = parameters(free, bounds or {}, drive, releases, given)
     _check_lengths(given, drive, [p.key for p in found])
-    model = Model(found, drive, releases, given)
+    own = own or {}
+    for recording in given:
+        for channel in recording.channels:
+            if channel not in CHANNELS and channel not in own:
+                raise ValueError(
+                    refusal("own", f"a function for {channel}", "none", recording.name)
+                )
+    model = Model(found, drive, releases, given, own=own)
     if len(model.data) <= len(found):
         required = f"more samples than free parameters ({len(found)})"
         raise ValueError(refusal("recordings", required, len(model.data)))
@@ -312,7 +324,7 @@ class _Solved:
         ]
         free = [p for p in before.parameters if not p.of_noise]
         found = (*free, *of_noise(free, recordings))
-        self._model = Model(found, before.drive, before.releases, recordings)
+        self._model = Model(found, before.drive, before.releases, recordings, own=before.own)
         known = {p.name: float(x) for p, x in zip(before.parameters, self.theta, strict=True)}
         theta = np.array([known.get(p.name, p.start) for p in found])
         columns = {p.name: i for i, p in enumerate(before.parameters)}
@@ -424,6 +436,7 @@ class _Solved:
         with np.errstate(invalid="ignore", divide="ignore"):
             correlation = covariance / np.outer(errors, errors)
         return Fit(
+            whitenings=tuple(self._noise),
             misfit=self._misfit(),
             model=model,
             given=self._given,
@@ -466,7 +479,9 @@ def _weights(model: Model, noise: Sequence[float] | Array) -> Array:
 def _coarse(model: Model, weights: Array) -> Problem:
     """Return the recordings reduced to some forty samples each."""
     strides = [max(1, len(recording.time) // 40) for recording in model.recordings]
-    thin = Model(model.parameters, model.drive, model.releases, model.recordings, strides)
+    thin = Model(
+        model.parameters, model.drive, model.releases, model.recordings, strides, model.own
+    )
     found = [
         np.full(few.size, weights[block.place.start])
         for block, few in zip(model.blocks, thin.blocks, strict=True)

@@ -6,10 +6,10 @@ matters for a fitted time of the release.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,9 +19,16 @@ from pindrive.fitting.noise import Noise, column
 from pindrive.fitting.parameters import Assembly, Parameter
 from pindrive.fitting.recording import Recording
 from pindrive.motion.drive import Drive
+from pindrive.motion.motion import Motion
 from pindrive.motion.release import Release
+from pindrive.motion.simulate import simulated
 
 Array = NDArray[np.float64]
+OwnChannel = Callable[[Motion, Array], Any]
+"""Values of a channel, SI, from a motion and times since its release, s, negative before it."""
+
+DIFFERENCE: Final = 1e-6
+"""Step of differences, a part of a parameter or of a thousandth of its range."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -49,6 +56,7 @@ class Model:
         releases: Releases that the parameters change, one for each recording.
         recordings: Measurements.
         strides: Stride of the used samples of each recording.
+        own: Channels of the user's own, as functions of the motion and of times since the release.
     """
 
     def __init__(
@@ -58,7 +66,9 @@ class Model:
         releases: Sequence[Release],
         recordings: Sequence[Recording],
         strides: Sequence[int] | None = None,
+        own: Mapping[str, OwnChannel] | None = None,
     ) -> None:
+        self.own = dict(own or {})
         self.parameters, self.drive, self.releases = tuple(found), drive, tuple(releases)
         self.recordings = tuple(recordings)
         strides = strides or [1] * len(recordings)
@@ -100,7 +110,7 @@ class Model:
     def thinned(self, samples: int) -> Model:
         """Return the model at evenly spaced samples of each recording, at least so many or all."""
         strides = [max(1, len(recording.time) // samples) for recording in self.recordings]
-        return Model(self.parameters, self.drive, self.releases, self.recordings, strides)
+        return Model(self.parameters, self.drive, self.releases, self.recordings, strides, self.own)
 
     def _latest(self, r: int) -> float:
         """Until when a recording is simulated, s."""
@@ -144,26 +154,54 @@ class Model:
             numbers = self.assembly.numbers(theta, r)
             trace = _Trace(numbers)
             begin = self.offset(theta, r)
-            own = [
+            sampled = [
                 (block, _Sampling(block.times - begin, self._half[r], self._average(block)), *added)
                 for block, added in zip(self.blocks, self._added, strict=True)
                 if block.recording == r
             ]
-            for block, sampling, places, columns in own:
-                computed = trace.channel(block.channel, sampling)
+            for block, sampling, places, columns in sampled:
+                computed = self._channel(trace, theta, block, sampling)
                 values[block.place] = computed + columns @ theta[places]
             if not derivatives:
                 continue
             for i in self.assembly.places(r):
                 tangent = trace.along(self.assembly.along(theta.tolist(), i, r))
-                for block, sampling, _, _ in own:
-                    slopes[block.place, i] = tangent.channel(block.channel, sampling)
-            for block, sampling, places, columns in own:
+                for block, sampling, _, _ in sampled:
+                    if block.channel not in self.own:
+                        slopes[block.place, i] = tangent.channel(block.channel, sampling)
+            for block, sampling, places, columns in sampled:
                 slopes[block.place, places] = columns
                 late = self._times_offset[r]
-                if late is not None:
+                if block.channel in self.own:
+                    self._differences(theta, block, sampling, slopes)
+                elif late is not None:
                     slopes[block.place, late] = -trace.rate(block.channel, sampling)
         return values, slopes
+
+    def _channel(self, trace: _Trace, theta: Array, block: Block, sampling: _Sampling) -> Array:
+        if block.channel not in self.own:
+            return trace.channel(block.channel, sampling)
+        r = block.recording
+        motion = simulated(
+            self.assembly.drive(theta, r), self.assembly.release(theta, r), duration=self._latest(r)
+        )
+        own = self.own[block.channel]
+        return sampling.value_of(lambda t: np.asarray(own(motion, t), float))
+
+    def _differences(self, theta: Array, block: Block, sampling: _Sampling, slopes: Array) -> None:
+        """Fill in the derivatives of a channel of the user's own, by central differences."""
+        r, late = block.recording, self._times_offset[block.recording]
+        for i in [*self.assembly.places(r), *([] if late is None else [late])]:
+            p = self.parameters[i]
+            step = DIFFERENCE * max(abs(theta[i]), 1e-3 * (p.upper - p.lower))
+            ends = []
+            for way in (1.0, -1.0):
+                moved = theta.copy()
+                moved[i] += way * step
+                shift = self.offset(theta, r) - self.offset(moved, r)
+                trace = _Trace(self.assembly.numbers(moved, r))
+                ends.append(self._channel(trace, moved, block, sampling.moved(shift)))
+            slopes[block.place, i] = (ends[0] - ends[1]) / (2.0 * step)
 
     def _average(self, block: Block) -> str:
         noise = self.recordings[block.recording].noise.get(block.channel, Noise())
@@ -195,6 +233,15 @@ class _Sampling:
         middle, half = self.middle, self.half
         found: Array = (of(middle - half) + 4.0 * of(middle) + of(middle + half)) / 6.0
         return found
+
+    def value_of(self, of: Any) -> Array:
+        """A function at the samples, or its mean over each interval."""
+        found: Array = of(self.times) if self.average == "instant" else self.mean(of)
+        return found
+
+    def moved(self, by: float) -> _Sampling:
+        """The samples at later times."""
+        return replace(self, times=self.times + by)
 
     def value(self, of: Any, rate: Any) -> Array:
         """A function at the samples, or the mean of its rate over each interval."""

@@ -16,7 +16,7 @@ from typing import Any, Final
 import numpy as np
 
 from pindrive.fitting.noise import DRIFT_KEYS, HUM_KEYS, Noise
-from pindrive.fitting.recording import Recording
+from pindrive.fitting.recording import Recording, unit_of
 from pindrive.motion.core_numbers import PLACES, ROWS, CoreNumbers, entry, mapped
 from pindrive.motion.drive import Contact, Drive
 from pindrive.motion.friction import FALLING
@@ -51,8 +51,6 @@ SENSOR: Final = (
     *(f"{channel}_{key}" for channel in CHANNELS for key in DRIFT_KEYS),
 )
 """Parameters of each recording: its time of the release, and what its sensors add."""
-HUM: Final = tuple(f"{channel}_{key}" for channel in CHANNELS for keys in HUM_KEYS for key in keys)
-"""Parameters of hum, which a noise brings along."""
 _NAMES: Final = Names(
     "parameter",
     {
@@ -129,7 +127,8 @@ def parameters(
     """
     if isinstance(free, str) or not free:
         raise ValueError(refusal("free", "a list of parameters, like ['stiffness']", repr(free)))
-    keys = [_key(name) for name in free]
+    scopes = [_scope(name) for name in free]
+    keys = [_key(name) for name, _ in scopes]
     for i, key in enumerate(keys):
         if key in keys[:i]:
             raise ValueError(refusal("free", "names that differ", f"{key} twice"))
@@ -140,8 +139,12 @@ def parameters(
         if key not in keys:
             raise ValueError(refusal("bounds", f"for a free parameter ({', '.join(keys)})", key))
     found = []
-    for key in keys:
+    for key, (_, scope) in zip(keys, scopes, strict=True):
         own = key in SENSOR or key in START or key.startswith(("mouse_velocity", "plate_load"))
+        if key in SENSOR and scope == "all":
+            required = "one of each recording: each has its own sensor"
+            raise ValueError(refusal("free", required, f"{key}@all"))
+        own = scope == "each" or (own and scope != "all")
         for r in range(len(releases)) if own else (None,):
             found += _parameter(key, r, given.get(key), drive, releases, recordings)
     if not found:
@@ -161,9 +164,17 @@ def of_noise(free: Sequence[Parameter], recordings: Sequence[Recording]) -> tupl
                 if (key, r) in given:
                     continue
                 name = key if len(recordings) == 1 else f"{key}@{r}"
-                unit = CHANNELS[channel].unit
+                unit = unit_of(channel)
                 found.append(Parameter(name, key, r, unit, 0.0, -size, size, of_noise=True))
     return tuple(found)
+
+
+def is_of_sensor(key: str) -> bool:
+    """True of a parameter of a sensor, which does not change the motion."""
+    return key in SENSOR or key.endswith(_ADDED)
+
+
+_ADDED: Final = tuple(f"_{key}" for key in (*DRIFT_KEYS, *sum(HUM_KEYS, ())))
 
 
 def key_of(name: str) -> str:
@@ -180,6 +191,14 @@ def _key(given: str) -> str:
     """The name of a parameter: a key of a device file, with its section or without."""
     name = str(given).strip().removeprefix("motion.").removeprefix("drive.")
     return name if ROW.fullmatch(name) else _NAMES.find(name, "free")
+
+
+def _scope(given: str) -> tuple[str, str]:
+    """Return a name and its scope: "each" or "all" recordings, or neither."""
+    name, at, scope = str(given).strip().partition("@")
+    if at and scope not in ("each", "all"):
+        raise ValueError(refusal("free", "a name, with @each or @all at most", repr(given)))
+    return name, scope
 
 
 def _quantity(key: str) -> Quantity | None:
@@ -207,7 +226,7 @@ def _parameter(
             if any(channel in other.channels for other in recordings):
                 return []  # belongs to another recording
             raise ValueError(refusal("free", "an offset of a recorded channel", key))
-        unit = "s" if channel == "time" else CHANNELS[channel].unit
+        unit = "s" if channel == "time" else unit_of(channel)
         start, allowed = 0.0, Bounds()
         if channel == "time":
             first, last = float(recording.time[0]), float(recording.time[-1])
@@ -311,11 +330,14 @@ def _size(unit: str, drive: Drive, recordings: Sequence[Recording]) -> float:
         "acceleration": omega**2,
         "force": drive.stiffness,
     }
-    length = max(
+    lengths = [
         float(np.nanmax(np.abs(values))) / per_length[channel]
         for recording in recordings
         for channel, values in recording.channels.items()
-    )
+        if channel in per_length
+    ]
+    held = (drive.plate.static_friction + drive.finger.static_friction) / drive.stiffness
+    length = max(lengths, default=0.0) or held or 1e-3
     powers = {"m": length, "m/s": length * omega, "N": length * drive.stiffness, "s": 1.0 / omega}
     return powers.get(unit, drive.mass * omega if unit == "N*s/m" else 1.0)
 
@@ -344,7 +366,7 @@ class Assembly:
             {
                 p.key: i
                 for i, p in enumerate(found)
-                if p.recording in (None, r) and p.key not in (*SENSOR, *HUM)
+                if p.recording in (None, r) and not is_of_sensor(p.key)
             }
             for r in range(len(releases))
         ]
@@ -373,11 +395,11 @@ class Assembly:
         end = self._durations[r] if duration is None else duration
         return _assembled(values, self._base[r], self._functions[r], self._carried[r], end)
 
-    def drive(self, theta: Any) -> Drive:
-        """The drive with these parameters."""
-        mass, stiffness, damping, *contacts = self.numbers(theta, 0)[:5]
+    def drive(self, theta: Any, r: int = 0) -> Drive:
+        """The drive of a recording with these parameters."""
+        mass, stiffness, damping, *contacts = self.numbers(theta, r)[:5]
         made = [
-            _made_contact(numbers, given, f"{name}.static" in self._own[0])
+            _made_contact(numbers, given, f"{name}.static" in self._own[r])
             for numbers, given, name in zip(
                 contacts, (self._drive.plate, self._drive.finger), ("plate", "finger"), strict=True
             )
@@ -389,7 +411,7 @@ class Assembly:
             plate=made[0],
             finger=made[1],
             preload=self._drive.preload,
-            load_exponent=float(self.numbers(theta, 0)[4][6]),
+            load_exponent=float(self.numbers(theta, r)[4][6]),
             travel=self._drive.travel,
             stop_stiffness=self._drive.stop_stiffness,
             stop_damping=self._drive.stop_damping,

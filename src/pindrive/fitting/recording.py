@@ -46,6 +46,7 @@ class Recording:
         velocity: m/s, shape (n,).
         acceleration: m/s², shape (n,).
         force: N, shape (n,).
+        own: Channels of your own by name, each of shape (n,), whose functions a fit is given.
         mouse_velocity: Mouse velocity of this recording in place of the release's: m/s, a
             `Profile`, or one value for each time, shape (n,).
         plate_load: Factor on the friction of the plate, in the same notations.
@@ -75,6 +76,7 @@ class Recording:
         velocity: ArrayLike | None = None,
         acceleration: ArrayLike | None = None,
         force: ArrayLike | None = None,
+        own: Mapping[str, ArrayLike] | None = None,
         mouse_velocity: ArrayLike | str | Profile | None = None,
         plate_load: ArrayLike | str | Profile | None = None,
         noise: Mapping[str, float | str | Noise] | None = None,
@@ -88,6 +90,11 @@ class Recording:
             "acceleration": acceleration,
             "force": force,
         }
+        for channel in own or {}:
+            if channel in CHANNELS or not channel.isidentifier() or channel == "time":
+                required = f"named by a word other than time, {', '.join(CHANNELS)}"
+                raise ValueError(refusal("a channel of your own", required, repr(channel), name))
+        given |= own or {}
         times = _column(time, "time", name)
         _check_times(times, name)
         channels = {
@@ -185,7 +192,7 @@ def read_recording(
         required = f"greater than the one before, {time[back[0]]:g} s; sort the rows, or split it"
         raise ValueError(refusal(f"row {row}: time", required, f"{time[back[0] + 1]:g} s", file))
 
-    channels = {
+    channels: dict[str, Any] = {
         name: np.array(table.column(name, quantity, missing=True))
         for name, quantity in CHANNELS.items()
         if name in table
@@ -202,6 +209,18 @@ def read_recording(
         inputs["mouse_velocity"] = mouse_velocity
     made = Recording(time, **channels, **inputs, noise=noise, name=file)
     return made.with_changes(name=Path(file).name, sources=(Path(path),))
+
+
+def unit_of(channel: str) -> str:
+    """The SI unit of a channel; "1" of one of your own."""
+    return CHANNELS[channel].unit if channel in CHANNELS else "1"
+
+
+def display_of(channel: str) -> tuple[str, float]:
+    """Display unit of a channel, and its number in an SI unit."""
+    if channel not in CHANNELS:
+        return "", 1.0
+    return CHANNELS[channel].display_unit, CHANNELS[channel].display_scale
 
 
 # ---- what is checked -----------------------------------------------------------------------------
@@ -241,7 +260,7 @@ def _noise(
         if channel not in channels:
             raise ValueError(refusal("noise", f"of {' or '.join(channels)}", channel, where))
     return {
-        channel: noise_of(noise, CHANNELS[channel].unit, f"{where}: noise of {channel}")
+        channel: noise_of(noise, unit_of(channel), f"{where}: noise of {channel}")
         for channel, noise in given.items()
     }
 

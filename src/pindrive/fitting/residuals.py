@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from pindrive.fitting.model import Block
 from pindrive.fitting.noise import Noise
+from pindrive.fitting.recording import display_of
 from pindrive.fitting.structure import UNLIKELY, Place, places
 from pindrive.fitting.whitening import Whitening
 from pindrive.lazy import stats
 from pindrive.quantities.quantity import significant
-from pindrive.quantities.results import CHANNELS
 
 Array = NDArray[np.float64]
 
@@ -75,10 +75,10 @@ class Residuals:
     @property
     def description(self) -> str:
         """Noise in words, with its numbers."""
-        channel = CHANNELS[self.channel]
+        unit, scale = display_of(self.channel)
 
         def shown(value: float) -> str:
-            return f"{significant(abs(value) * channel.display_scale, 3)} {channel.display_unit}"
+            return f"{significant(abs(value) * scale, 3)} {unit}".rstrip()
 
         parts = [f"{key} {shown(value)}" for key, value in self.added.items() if "_" not in key]
         for key, words in (("hum", "hum"), ("hum2", "its harmonic")):

@@ -9,23 +9,25 @@ from math import exp, isfinite, log
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from pindrive import lazy
 from pindrive.fitting.identifiability import Identifiability
+from pindrive.fitting.least_squares import Problem
 from pindrive.fitting.model import Model
 from pindrive.fitting.parameters import Parameter
 from pindrive.fitting.profiles import ProfileLikelihood
-from pindrive.fitting.recording import Recording
+from pindrive.fitting.recording import Recording, unit_of
 from pindrive.fitting.residuals import Residuals
 from pindrive.fitting.structure import UNLIKELY, Misfit
+from pindrive.fitting.whitening import Whitening
 from pindrive.lazy import mpl_figure, xr
 from pindrive.motion.drive import Drive
 from pindrive.motion.motion import Motion
 from pindrive.motion.release import Release
 from pindrive.motion.simulate import simulated
 from pindrive.quantities.quantity import counted, significant
-from pindrive.quantities.results import CHANNELS
+from pindrive.quantities.refusal import refusal
 from pindrive.quantities.status import Status
 from pindrive.quantities.value import concise, equal_by_value
 
@@ -105,6 +107,7 @@ class Fit(lazy.NotebookHtml):
         covariance: Covariance of all values, from the derivatives at the optimum, shape (k, k).
         correlation: Correlation of all values; NaN for an undetermined one.
         residuals: Residuals of each channel of each recording.
+        whitenings: Map from the residuals of each channel to independent ones.
         misfit: Signs that the drive does what the model does not.
         confidence: Confidence of the intervals.
         threshold: The increase of the cost at the end of an interval.
@@ -118,6 +121,7 @@ class Fit(lazy.NotebookHtml):
     covariance: Array
     correlation: Array
     residuals: tuple[Residuals, ...]
+    whitenings: tuple[Whitening, ...] = field(compare=False)
     misfit: Misfit
     confidence: float
     threshold: float
@@ -205,10 +209,16 @@ class Fit(lazy.NotebookHtml):
         """Fitted recordings."""
         return self.model.recordings
 
-    @cached_property
+    @property
     def drive(self) -> Drive:
-        """The drive with the fitted values."""
-        return self.model.assembly.drive(self.theta)
+        """The drive with the fitted values; of the first recording where each has its own."""
+        return self.drives[0]
+
+    @cached_property
+    def drives(self) -> tuple[Drive, ...]:
+        """The drive of each recording with the fitted values."""
+        each = range(len(self.recordings))
+        return tuple(self.model.assembly.drive(self.theta, r) for r in each)
 
     @cached_property
     def releases(self) -> tuple[Release, ...]:
@@ -224,9 +234,43 @@ class Fit(lazy.NotebookHtml):
             for r, recording in enumerate(self.recordings)
         ]
         return tuple(
-            simulated(self.drive, release, duration=max(end, recording.interval))
-            for release, end, recording in zip(self.releases, ends, self.recordings, strict=True)
+            simulated(drive, release, duration=max(end, recording.interval))
+            for drive, release, end, recording in zip(
+                self.drives, self.releases, ends, self.recordings, strict=True
+            )
         )
+
+    def residual(self, theta: ArrayLike | None = None) -> Array:
+        """Return computed less recorded as independent residuals of variance one, shape (n,).
+
+        The sum of squares is −2 times the log-likelihood, up to a constant, as `lmfit`, `emcee` and
+        `scipy.optimize.least_squares` take it.
+
+        Args:
+            theta: Values of all parameters, SI, shape (k,), in the order of `names`; None: the
+                fitted ones.
+        """
+        return self._problem.residuals(self._theta(theta)).copy()
+
+    def jacobian(self, theta: ArrayLike | None = None) -> Array:
+        """Return the exact derivatives of `residual`, shape (n, k)."""
+        return self._problem.slopes(self._theta(theta)).copy()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of all values in `theta`."""
+        return tuple(p.name for p in self.model.parameters)
+
+    @cached_property
+    def _problem(self) -> Problem:
+        return Problem(self.model, self.whitenings)
+
+    def _theta(self, given: ArrayLike | None) -> Array:
+        theta = self.theta if given is None else np.asarray(given, float)
+        if theta.shape != self.theta.shape:
+            required = f"one value for each of {', '.join(self.names)}"
+            raise ValueError(refusal("theta", required, f"shape {theta.shape}"))
+        return theta
 
     def predicted(self, recording: int, channel: str) -> tuple[Array, Array]:
         """The fitted channel at the sample times, SI, and its standard error, shapes (n,)."""
@@ -312,7 +356,7 @@ class Fit(lazy.NotebookHtml):
             "unit": ("parameter", [e.parameter.unit for e in self.estimates]),
             "recording": ("block", [self.recordings[b.recording].name for b in blocks]),
             "channel": ("block", [b.channel for b in blocks]),
-            "block_unit": ("block", [CHANNELS[b.channel].unit for b in blocks]),
+            "block_unit": ("block", [unit_of(b.channel) for b in blocks]),
         }
         attributes = {"status": self.status.name, "confidence": self.confidence}
         return xr.Dataset(data, coords=coords, attrs=attributes)

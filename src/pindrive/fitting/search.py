@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from pindrive.fitting.least_squares import BETTER, Optimum, Problem
 from pindrive.fitting.model import Model
-from pindrive.fitting.parameters import HUM, SENSOR
+from pindrive.fitting.parameters import is_of_sensor
 from pindrive.lazy import qmc
 from pindrive.motion.batch import simulate_batch
 from pindrive.motion.core_numbers import LAW_PLACE, PLACES, ROWS, entry
@@ -235,7 +235,7 @@ def _plain(model: Model) -> bool:
     ]
     channels = {block.channel for block in model.blocks}
     rigid = all(np.isinf(n[4][2]) for n in numbers)
-    free = all(p.key in (*_PLAIN, *SENSOR, *HUM) for p in model.parameters)
+    free = all(p.key in _PLAIN or is_of_sensor(p.key) for p in model.parameters)
     unbounded = all(np.isinf(n[13][0]) for n in numbers)
     constant = all(len(n[5]) == 1 and len(n[6]) == 1 for n in numbers)
     coulomb = all(

@@ -211,7 +211,7 @@ def laws(model: Model, theta: Array) -> Iterator[tuple[str, Array, int]]:
     for words, changed, free, count in _variants(drive, fastest):
         try:
             found = parameters(free, {}, changed, releases, model.recordings)
-            other = Model(found, changed, releases, model.recordings)
+            other = Model(found, changed, releases, model.recordings, own=model.own)
             _, slopes = other.linearise(np.array([p.start for p in found]))
         except ValueError:  # a law that this drive or its inputs cannot have
             continue

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from pindrive.fitting.recording import display_of
 from pindrive.lazy import matplotlib
 from pindrive.plot.style import (
     GREY,
@@ -20,7 +21,7 @@ from pindrive.plot.style import (
     new_figure,
     plain,
 )
-from pindrive.quantities.quantity import DISPLAY, significant
+from pindrive.quantities.quantity import significant
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -39,7 +40,6 @@ ACROSS: Final = 1.96
 """Standard errors on either side of the fit in its band."""
 LEGEND: Final = 0.35
 """Part of the height of the first panel that is added for the legend."""
-UNITS: Final = {"position": "m", "velocity": "m/s", "acceleration": "m/s^2", "force": "N"}
 SYMBOLS: Final = {"position": "x", "velocity": "x'", "acceleration": "x''", "force": "F"}
 CURVE: Final = PALETTE["curve"]
 
@@ -81,7 +81,7 @@ def _draw_blocks(left: Any, found: Fit) -> None:
         below.sharex(axes)
         axes.tick_params(labelbottom=False)
         recording = found.recordings[block.recording]
-        unit, scale = DISPLAY.get(UNITS[block.channel], (UNITS[block.channel], 1.0))
+        unit, scale = display_of(block.channel)
         times = 1e3 * block.times
         data = scale * found.model.data[block.place]
         values, spread = (scale * part for part in found.predicted(block.recording, block.channel))
@@ -95,7 +95,8 @@ def _draw_blocks(left: Any, found: Fit) -> None:
         if block.channel in ("position", "velocity"):
             _events(axes, found, i, scale)
         several = len(found.recordings) > 1
-        axes.set_ylabel(f"${SYMBOLS[block.channel]}$ ({unit})")
+        symbol = f"${SYMBOLS[block.channel]}$" if block.channel in SYMBOLS else block.channel
+        axes.set_ylabel(f"{symbol} ({unit})" if unit else symbol)
         if several:
             axes.set_title(plain(recording.name), fontsize=SMALL, loc="left")
         below.plot(times[::step], (data - values)[::step], **dots, gid="residuals")
@@ -188,7 +189,7 @@ def plot_comparison(compared: ModelComparison) -> Figure:
         panels = figure.subplots(len(fits), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
         for axes, (law, found) in zip(panels, fits.items(), strict=True):
             block = found.model.blocks[0]
-            unit, scale = DISPLAY.get(UNITS[block.channel], (UNITS[block.channel], 1.0))
+            unit, scale = display_of(block.channel)
             values, _ = found.predicted(block.recording, block.channel)
             off = scale * (found.model.data[block.place] - values)
             times = 1e3 * block.times
