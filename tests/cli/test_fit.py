@@ -8,6 +8,7 @@ import pytest
 
 from command import GOOD, refused, run
 from pindrive import Contact, Drive, Release, load_device
+from pindrive.fitting import Noise, load_fit
 from recordings import recorded
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
@@ -99,3 +100,78 @@ def test_a_fit_of_a_drive_with_coefficients_has_forces() -> None:
     assert drive.plate.static_friction == drive.plate.kinetic
     assert drive.finger == Contact(0.5 * 0.012)
     assert (drive.preload, drive.plate.coefficient) == (0.001, None)
+
+
+def test_a_fit_file_names_device_recordings_and_noise() -> None:
+    write("other.csv")
+    Path("fit.toml").write_text(
+        """
+base = "device.toml"
+free = ["stiffness", "damping", "finger.kinetic@each"]
+seed = 3
+confidence = 0.9
+
+[bounds]
+stiffness = ["50 N/m", "300 N/m"]
+
+[[recording]]
+file = "pin.csv"
+mouse_velocity = "100 mm/s"
+window = ["1 ms", "120 ms"]
+noise = "drift"
+
+[[recording]]
+file = "other.csv"
+mouse_velocity = "100 mm/s"
+noise.position = "20 um"
+"""
+    )
+    changes = ("--set", "displacement=2 mm", "--set", "mass=10 g", "--set", "plate.kinetic=19 mN")
+    problem = load_fit("fit.toml", [change for change in changes if change != "--set"])
+    assert problem.free == ("stiffness", "damping", "finger.kinetic@each")
+    assert (problem.seed, problem.confidence) == (3, 0.9)
+    assert problem.recordings[0].noise == {"position": Noise(drift="linear")}
+    assert problem.recordings[0].time[0] == pytest.approx(1e-3)
+    assert problem.recordings[1].noise == {"position": Noise(pytest.approx(2e-5))}
+    done = run("fit", "fit.toml", *changes, "-o", "fitted.toml")
+    assert done.exit_code == 0, done.output
+    assert "90 % from" in done.stdout
+    assert "finger.kinetic@1" in done.stdout
+    assert "Noise of the position of pin.csv, given: offset" in done.stdout
+    assert load_device("fitted.toml").drive.stiffness == pytest.approx(140.0, rel=0.02)
+    assert "--noise must be left out with a fit file" in refused(
+        "fit", "fit.toml", "--noise", "position=white"
+    )
+
+
+def test_everything_wrong_with_a_fit_file_is_said_at_once() -> None:
+    Path("fit.toml").write_text(
+        """
+base = "device.toml"
+free = "stiffness"
+smooth = 3
+
+[bounds]
+stiffness = "wide"
+
+[[recording]]
+file = "none.csv"
+
+[[recording]]
+noise = "slow"
+"""
+    )
+    with pytest.raises(ValueError) as error:
+        load_fit("fit.toml")
+    text = str(error.value)
+    for part in (
+        "fit.toml: free must be a list of keys",
+        "smooth",
+        "fit.toml: bounds of stiffness must be two values",
+        "none.csv",
+        "fit.toml: file of a recording must be the path of a CSV in quotes",
+    ):
+        assert part in text
+    assert "device.toml: names no recordings; give their files after it" in refused(
+        "fit", "device.toml", "--free", "stiffness"
+    )

@@ -10,7 +10,8 @@ import pytest
 import pindrive as pd
 from pindrive import Contact, Drive, Recording, Stribeck
 from pindrive.fitting import estimation
-from pindrive.fitting.structure import moved, places
+from pindrive.fitting.residuals import places
+from pindrive.fitting.structure import moved
 from recordings import FREE, RELEASE, START, TRUTH, recorded
 
 
@@ -35,6 +36,8 @@ def test_the_law_that_is_missing_is_named(contact: str) -> None:
     best = next(iter(found.misfit.explanations))
     assert best == f"Stribeck's law at the {contact}"
     assert found.status is pd.Status.incomplete
+    drawn = {line.get_gid() for axes in found.plot().axes for line in axes.patches}
+    assert {"rest over time", "rest over speed", "rest over position"} <= drawn
     text = "\n".join(found.warnings)
     assert "pin: the residuals of the position keep a structure over the" in text
     assert f"the intervals do not hold; {best} explains more: BIC lower by" in text

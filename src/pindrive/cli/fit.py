@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -28,6 +29,7 @@ from pindrive.cli.outputs import (
 
 if TYPE_CHECKING:
     from pindrive.files.device import DeviceFile
+    from pindrive.fitting.problem import FitProblem
     from pindrive.fitting.recording import Recording
 
 EXAMPLE = "stiffness, damping, plate.kinetic=5 mN..50 mN"
@@ -35,14 +37,19 @@ EXAMPLE = "stiffness, damping, plate.kinetic=5 mN..50 mN"
 
 @command("Measurements", 'pindrive fit device.toml pin.csv --free "stiffness, damping"')
 def fit(
-    device: Annotated[Path, typer.Argument(metavar="DEVICE", help="Device file (TOML).")],
-    recordings: Annotated[
-        list[Path],
+    device: Annotated[
+        Path,
         typer.Argument(
-            metavar="RECORDING...",
-            help="Recordings of releases (CSV files with units in the header).",
+            metavar="DEVICE|FIT", help="Device file, or fit file that names recordings (TOML)."
         ),
     ],
+    recordings: Annotated[
+        list[Path] | None,
+        typer.Argument(
+            metavar="[RECORDING...]",
+            help="Recordings of releases (CSV files with units in the header).",
+        ),
+    ] = None,
     free: Annotated[
         list[str] | None,
         option(ASKED, f'Free parameters, optionally with bounds: "{EXAMPLE}".', metavar="KEYS"),
@@ -75,44 +82,33 @@ def fit(
 ) -> None:
     """Fit a device to recordings of its pin, and report undetermined parameters.
 
+    A fit file names the device, free keys, and recordings with their noise (docs/fitting.md).
     A recording has columns time and position, velocity, acceleration or force, and mouse_velocity
     and plate_load if they vary, for example "time [s], position [m]". Parameters of a fit are the
     keys of a drive and its motion, time_offset, and the offset of a channel (position_offset).
     The noise of a channel lists, apart by commas: a size (5 um), offset, drift, quadratic drift,
     hum 50 Hz, harmonic, correlated, outliers, step 20 um, average before, white, choose.
     """
-    from pindrive.files.device import load_device
     from pindrive.files.output import DEVICE_FILE
     from pindrive.fitting.results import Fit
 
     with refusing():
-        if not free:
-            raise ValueError(f'--free KEYS must say what is fitted, such as --free "{EXAMPLE}"')
-        loaded = load_device(device, overrides or ())
-        keys, bounds = _free(free)
-        given = _recordings(recordings, mouse_velocity or [], noise or [], window, loaded)
+        problem = _problem(
+            device, recordings or [], free or [], mouse_velocity, noise, window, overrides, seed
+        )
 
         def write_device(found: Fit, part: Path) -> None:
             from pindrive.fitting.device_file import fitted_file
 
-            part.write_text(fitted_file(loaded, found, part), encoding="utf-8")
+            part.write_text(fitted_file(problem.device, found, part), encoding="utf-8")
 
         targets = by_suffix([output] if output else [], {".toml": (DEVICE_FILE, write_device)})
         targets += pictures(plot, Fit.plot)
-        with results(targets, [*loaded.inputs, *recordings], force=force) as write:
+        with results(targets, problem.files, force=force) as write:
             from pindrive.fitting.comparison import compare_models
-            from pindrive.fitting.estimation import fit as fitted
 
-            found = fitted(
-                given,
-                loaded.drive,
-                loaded.release,
-                free=keys,
-                bounds=bounds,
-                seed=seed,
-                cluster=cluster,
-            )
-            compared = compare_models(found, seed) if compare else None
+            found = problem.run(cluster=cluster)
+            compared = compare_models(found, problem.seed) if compare else None
             write(found)
     from pindrive.cli.fit_tables import comparison_report, fit_report
     from pindrive.cli.tables import show
@@ -121,6 +117,48 @@ def fit(
     if compared:
         show(comparison_report(compared))
     say_written(targets)
+
+
+def _problem(
+    device: Path,
+    recordings: Sequence[Path],
+    free: Sequence[str],
+    mouse_velocity: Sequence[str] | None,
+    noise: Sequence[str] | None,
+    window: str | None,
+    overrides: Sequence[str] | None,
+    seed: int,
+) -> FitProblem:
+    """Return the fit of a fit file, or of a device file with recordings and options."""
+    from pindrive.files.device import load_device
+    from pindrive.fitting.problem import FitProblem, is_fit_file, load_fit
+
+    if not recordings and is_fit_file(device):
+        for name, given in (
+            ("--free", free),
+            ("--mouse-velocity", mouse_velocity),
+            ("--noise", noise),
+            ("--window", window),
+        ):
+            if given:
+                raise ValueError(f"{name} must be left out with a fit file, which gives it")
+        found = load_fit(device, overrides or ())
+        return found if seed == 1 else replace(found, seed=seed)
+    if not free:
+        raise ValueError(f'--free KEYS must say what is fitted, such as --free "{EXAMPLE}"')
+    if not recordings:
+        raise ValueError(f"{device}: names no recordings; give their files after it")
+    loaded = load_device(device, overrides or ())
+    keys, bounds = _free(free)
+    made = _recordings(recordings, mouse_velocity or [], noise or [], window, loaded)
+    return FitProblem(
+        device=loaded,
+        recordings=tuple(made),
+        free=tuple(keys),
+        bounds=bounds,
+        seed=seed,
+        files=(*loaded.inputs, *recordings),
+    )
 
 
 def _free(given: Sequence[str]) -> tuple[list[str], dict[str, tuple[float | str, float | str]]]:

@@ -45,7 +45,7 @@ def fit_report(found: Fit) -> RenderableType:
 
 def _noise(found: Fit) -> Table:
     several = len(found.recordings) > 1
-    heads = ("channel", ">samples", ">size", "noise", ">runs p", ">Ljung-Box p", "rest")
+    heads = ("channel", ">samples", ">size", ">runs p", ">Ljung-Box p", "rest")
     table = new_table("Noise", *(["recording", *heads] if several else heads))
     for left in found.residuals:
         unit, scale = display_of(left.channel)
@@ -54,7 +54,6 @@ def _noise(found: Fit) -> Table:
             left.channel,
             str(left.count),
             f"{size} given" if left.known else size,
-            left.description,
             f"{left.runs:.2g}",
             f"{left.ljung_box:.2g}",
             "structure" if left.structured else "noise",
@@ -65,18 +64,19 @@ def _noise(found: Fit) -> Table:
 
 
 def _choices(found: Fit) -> list[str]:
-    """The noise that was chosen for each channel, and others that come near, or are plainer."""
+    """The noise of each channel; where it was chosen, others that come near, and white noise."""
     lines = []
     for left in found.residuals:
-        if left.rejected:
-            others = [*left.rejected.items()][:NEAR]
-            if "white" in left.rejected and "white" not in dict(others):
-                others.append(("white", left.rejected["white"]))
-            rest = "; ".join(f"{words} {excess:+.1f}" for words, excess in others)
-            name = found.recordings[left.recording].name
-            lines.append(
-                f"Noise of the {left.channel} of {name} by BIC: {left.model}; rejected: {rest}"
-            )
+        name = found.recordings[left.recording].name
+        of = f"Noise of the {left.channel} of {name}"
+        if not left.rejected:
+            lines.append(f"{of}, given: {left.description}")
+            continue
+        others = [*left.rejected.items()][:NEAR]
+        if "white" in left.rejected and "white" not in dict(others):
+            others.append(("white", left.rejected["white"]))
+        rest = "; ".join(f"{words} {excess:+.1f}" for words, excess in others)
+        lines += [f"{of}, by BIC: {left.description}", f"  rejected: {rest}"]
     return lines
 
 

@@ -4,10 +4,12 @@
 - `Estimate`: one fitted parameter
 - `fit`: fits parameters of a drive and its releases to recordings
 - `Fit`: what `fit` found
+- `FitProblem`: a fit as its file describes it
 - `fit_friction`: fits a friction curve to friction forces that were measured at sliding speeds
 - `FrictionCurve`: a friction curve that was fitted
 - `FittedLaw`: a friction law that was fitted
 - `Identifiability`: whether recordings tell a parameter
+- `load_fit`: a fit from its file
 - `ModelComparison`: fits of several laws of friction to the same recordings
 - `Noise`: noise of a recorded channel: size, drift, hum, correlation, outliers, steps, averages
 - `read_recording`: a recording from a CSV file whose header names columns with their units

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import hypot, nan, sqrt
 from typing import Final
@@ -12,15 +13,31 @@ from numpy.typing import NDArray
 from pindrive.fitting.model import Block
 from pindrive.fitting.noise import Noise
 from pindrive.fitting.recording import display_of
-from pindrive.fitting.structure import UNLIKELY, Place, places
-from pindrive.fitting.whitening import Whitening
+from pindrive.fitting.whitening import UNLIKELY, Whitening
 from pindrive.lazy import stats
 from pindrive.quantities.quantity import significant
 
 Array = NDArray[np.float64]
 
+BINS: Final = 12
+"""Parts of the time, the speed and the position in which residuals are compared."""
 LAGS: Final = 20
 """Lags of the Ljung-Box test; a fifth of the samples where they are fewer."""
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Test of residuals against a quantity.
+
+    Attributes:
+        p_value: P-value of equal means, or of equal spreads, in parts of the range.
+        begin: Begin of the part that is farthest off, SI.
+        end: End of that part.
+    """
+
+    p_value: float
+    begin: float = nan
+    end: float = nan
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,8 +53,9 @@ class Residuals:
             samples that before the converter.
         correlation: Correlation of neighbours of correlated noise; 0 of other noise.
         degrees: Degrees of freedom of outliers; infinite of other noise.
-        added: Values that the sensor adds, by their key, SI: the offset; the drift, from the first
-            time to the last; the bend, the middle less the ends; hum.
+        added: Values that the sensor adds, by their key, SI: the offset, in the middle of the
+            recording; the drift, from the first time to the last; the bend, the middle less the
+            ends; hum.
         rejected: Excess of the information criterion of other noises, by their words; empty where
             the noise was given.
         reduced: Mean square of the residuals over the square of the noise; 1 where it is estimated.
@@ -154,6 +172,42 @@ def tested(
         neighbours=float(rho[0]),
         places=places(independent, over),
     )
+
+
+def places(scores: Array, over: Mapping[str, Array]) -> dict[str, Place]:
+    """Return tests of residuals against quantities.
+
+    Args:
+        scores: Residuals that are independent and have variance one, shape (n,).
+        over: Quantities by name, shape (n,).
+    """
+    return {name: _place(scores, values) for name, values in over.items()}
+
+
+def binned(scores: Array, values: Array) -> tuple[Array, Array]:
+    """Return parts of a range by their edges, (m + 1,), and their means in standard errors, (m,).
+
+    Args:
+        scores: Residuals that are independent and have variance one, shape (n,).
+        values: Quantity whose range is parted, with as many samples in each part, shape (n,).
+    """
+    edges = np.unique(np.quantile(values, np.linspace(0.0, 1.0, BINS + 1)))
+    if len(edges) < 3:
+        return edges, np.zeros(max(len(edges) - 1, 0))
+    part = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, len(edges) - 2)
+    count = np.bincount(part, minlength=len(edges) - 1)
+    sums = np.bincount(part, scores, minlength=len(count))
+    size = np.sqrt(np.maximum(count, 1) * np.mean(scores**2))
+    return edges, np.divide(sums, size, out=np.zeros(len(count)), where=size > 0.0)
+
+
+def _place(scores: Array, values: Array) -> Place:
+    edges, off = binned(scores, values)
+    if not off.any():
+        return Place(1.0)
+    p_value = float(stats.chi2.sf(float(off @ off), len(off)))
+    worst = int(np.abs(off).argmax())
+    return Place(p_value, float(edges[worst]), float(edges[worst + 1]))
 
 
 def _runs(off: Array) -> float:

@@ -18,9 +18,9 @@ from pindrive.fitting.model import Model
 from pindrive.fitting.parameters import Parameter
 from pindrive.fitting.profiles import ProfileLikelihood
 from pindrive.fitting.recording import Recording, unit_of
-from pindrive.fitting.residuals import Residuals
-from pindrive.fitting.structure import UNLIKELY, Misfit
-from pindrive.fitting.whitening import Whitening
+from pindrive.fitting.residuals import Residuals, binned
+from pindrive.fitting.structure import Misfit
+from pindrive.fitting.whitening import UNLIKELY, Whitening
 from pindrive.lazy import mpl_figure, xr
 from pindrive.motion.drive import Drive
 from pindrive.motion.motion import Motion
@@ -183,11 +183,14 @@ class Fit(lazy.NotebookHtml):
                 unit, scale = PLACE_UNITS[over]
                 ends = [significant(end * scale, 3) for end in (place.begin, place.end)]
                 why = f"keep a structure over the {over}, most from {ends[0]} to {ends[1]} {unit}"
-        return [f"{name}: the residuals of the {left.channel} {why}, which no noise explains"]
+        noise = "no noise explains" if left.rejected else "the given noise does not explain"
+        return [f"{name}: the residuals of the {left.channel} {why}, which {noise}"]
 
     def _cause(self) -> str:
         """Return what might explain a structure, and what it does to the parameters."""
         parts = ["the drive does what this model does not, and the intervals do not hold"]
+        if any(left.structured and not left.rejected for left in self.residuals):
+            parts = ["leave out the given noise to have it chosen, or else " + parts[0]]
         laws = [*self.misfit.explanations.items()]
         if laws:
             others = f", {laws[1][0]} by {laws[1][1]:.0f}" if len(laws) > 1 else ""
@@ -255,6 +258,23 @@ class Fit(lazy.NotebookHtml):
     def jacobian(self, theta: ArrayLike | None = None) -> Array:
         """Return the exact derivatives of `residual`, shape (n, k)."""
         return self._problem.slopes(self._theta(theta)).copy()
+
+    def rest_over(self, block: int) -> dict[str, tuple[Array, Array]]:
+        """Return means of a channel's residuals in parts of the time, the speed and the position.
+
+        Args:
+            block: Place of the channel in `residuals`.
+
+        Returns:
+            For "time", "speed" and "position" of the pin, the edges of the parts, SI, shape
+            (m + 1,), and recorded less computed in standard errors, shape (m,).
+        """
+        one = self.model.blocks[block]
+        off = self.model.predict(self.theta)[one.place] - self.model.data[one.place]
+        scores = -self.whitenings[block].scores(off)
+        x, v = self.model.motion(self.theta, one)
+        over = {"time": one.times, "speed": v, "position": x}
+        return {name: binned(scores, values) for name, values in over.items()}
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import log, nan
+from math import log
 from typing import Final
 
 import numpy as np
@@ -14,15 +14,12 @@ from pindrive.fitting.model import Model
 from pindrive.fitting.noise import Noise
 from pindrive.fitting.noise_choice import Linearised, Solved
 from pindrive.fitting.parameters import parameters
+from pindrive.fitting.whitening import UNLIKELY
 from pindrive.lazy import stats
 from pindrive.motion.drive import Contact, Drive, Stribeck
 
 Array = NDArray[np.float64]
 
-BINS: Final = 12
-"""Parts of the time, the speed and the position in which residuals are compared."""
-UNLIKELY: Final = 1e-3
-"""Residuals whose tests have a lower p-value have structure."""
 STRONG: Final = 10.0
 """Gain of the criterion from which a law explains what noise does not (Kass and Raftery, 1995)."""
 APART: Final = 4.0
@@ -32,28 +29,13 @@ STRIBECK: Final = (0.05, 0.2, 0.6)
 ROWS: Final = (0.0, 0.25, 0.6, 1.0)
 """Rows of a friction curve, parts of the largest sliding speed."""
 SKIN: Final = 30.0
-"""Stiffness of skin that is tried, in those of the drive."""
+"""Stiffness of skin that is tried, over that of the drive."""
 PITCHES: Final = 48
 """Frequencies of an oscillation that are tried."""
 DECAYS: Final = (1.0, 0.2, 0.05)
 """Times in which it decays, parts of the recording."""
 SEEN: Final = 1e-7
 """A singular value so much smaller than the largest is zero."""
-
-
-@dataclass(frozen=True, slots=True)
-class Place:
-    """Test of residuals against a quantity.
-
-    Attributes:
-        p_value: P-value of equal means, or of equal spreads, in parts of the range.
-        begin: Begin of the part that is farthest off, SI.
-        end: End of that part.
-    """
-
-    p_value: float
-    begin: float = nan
-    end: float = nan
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,31 +58,6 @@ class Misfit:
     def found(self) -> bool:
         """True if a law explains what noise does not, or if parameters move."""
         return bool(self.explanations) or self.halves < UNLIKELY
-
-
-def places(scores: Array, over: Mapping[str, Array]) -> dict[str, Place]:
-    """Return tests of residuals against quantities.
-
-    Args:
-        scores: Residuals that are independent and have variance one, shape (n,).
-        over: Quantities by name, shape (n,).
-    """
-    return {name: _place(scores, values) for name, values in over.items()}
-
-
-def _place(scores: Array, values: Array) -> Place:
-    edges = np.unique(np.quantile(values, np.linspace(0.0, 1.0, BINS + 1)))
-    if len(edges) < 3:
-        return Place(1.0)
-    part = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, len(edges) - 2)
-    count = np.bincount(part, minlength=len(edges) - 1)
-    sums = np.bincount(part, scores, minlength=len(count))
-    used = count > 0
-    off = np.zeros(len(count))
-    off[used] = sums[used] / np.sqrt(count[used] * np.mean(scores**2))
-    p_value = float(stats.chi2.sf(float(off @ off), int(np.count_nonzero(used))))
-    worst = int(np.abs(off).argmax())
-    return Place(p_value, float(edges[worst]), float(edges[worst + 1]))
 
 
 def moved(

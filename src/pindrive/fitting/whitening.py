@@ -14,6 +14,8 @@ from pindrive.lazy import optimize, special
 
 Array = NDArray[np.float64]
 
+UNLIKELY: Final = 1e-3
+"""Independent residuals whose tests have a lower p-value have structure."""
 FINEST: Final = 1.0 / 12.0
 """Least noise before a converter, a part of its step, with which the cost remains smooth."""
 MOST_CORRELATED: Final = 0.999

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from pindrive.fitting.recording import display_of
+from pindrive.fitting.results import PLACE_UNITS
 from pindrive.lazy import matplotlib
 from pindrive.plot.style import (
     GREY,
@@ -48,12 +49,15 @@ def plot_fit(found: Fit) -> Figure:
     """Draw a fit.
 
     On the left each channel over time, with the fit, its 95 % band and the events, and its
-    residuals below; on the right the profile of each parameter, with its interval.
+    residuals below; on the right the profile of each parameter, with its interval. Where residuals
+    keep a structure, their means over time, speed and position follow.
     """
     blocks = found.model.blocks[:BLOCKS]
     estimates = found.estimates
     with matplotlib.style.context(STYLE, after_reset=True):
-        rows = -(-len(estimates) // 2)
+        structured = [i for i, left in enumerate(found.residuals) if left.structured][:1]
+        places = [(i, over) for i in structured for over in PLACE_UNITS]
+        rows = -(-(len(estimates) + len(places)) // 2)
         height = min(240.0, 30.0 + max(62.0 * len(blocks), 36.0 * rows))
         figure = new_figure(180, height)
         halves: Any = figure.subfigures(1, 2, width_ratios=(1.15, 1.0))
@@ -62,7 +66,10 @@ def plot_fit(found: Fit) -> Figure:
         panels = right.subplots(rows, 2, squeeze=False).ravel()
         for axes, estimate in zip(panels, estimates, strict=False):
             _profile(axes, estimate, found.threshold)
-        for axes in panels[len(estimates) :]:
+        others = panels[len(estimates) :]
+        for axes, (i, over) in zip(others, places, strict=False):
+            _place(axes, found, i, over)
+        for axes in others[len(places) :]:
             axes.set_axis_off()
         right.supylabel("increase of the cost", fontsize=8.0)
         shown = len(blocks) < len(found.model.blocks)
@@ -133,6 +140,19 @@ def _events(axes: Axes, found: Fit, i: int, scale: float) -> None:
         marked.add(kind)
         look = event_marker(*kind)
         axes.plot(1e3 * (event.time + shift), scale * (value + added), label=label, **look)
+
+
+def _place(axes: Axes, found: Fit, i: int, over: str) -> None:
+    """The mean residuals of a channel in parts of a quantity, in standard errors."""
+    unit, scale = PLACE_UNITS[over]
+    edges, means = found.rest_over(i)[over]
+    axes.axhline(0.0, color=GREY, lw=0.6)
+    for way in (-1.0, 1.0):
+        axes.axhline(way * ACROSS, color=GREY, lw=0.6, ls="--")
+    if len(means):
+        axes.stairs(means, scale * edges, color=CURVE, gid=f"rest over {over}")
+    axes.set_xlabel(f"{over} ({unit})")
+    axes.set_title("mean rest / its error", fontsize=SMALL, loc="left", pad=2.0)
 
 
 def _profile(axes: Axes, estimate: Estimate, threshold: float) -> None:
