@@ -139,6 +139,9 @@ noise.position = "20 um"
     assert "finger.kinetic@1" in done.stdout
     assert "Noise of the position of pin.csv, given: offset" in done.stdout
     assert load_device("fitted.toml").drive.stiffness == pytest.approx(140.0, rel=0.02)
+    assert "fit.toml: is a fit file, as it has recordings; `pindrive fit` takes it" in refused(
+        "simulate", "fit.toml"
+    )
     assert "--noise must be left out with a fit file" in refused(
         "fit", "fit.toml", "--noise", "position=white"
     )

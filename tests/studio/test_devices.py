@@ -22,7 +22,7 @@ from studio_cases import Ask, as_input, doubles
 EXAMPLES = [
     path
     for path in sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
-    if not path.stem.endswith(("study", "problem", "system"))
+    if not path.stem.endswith(("study", "problem", "system", "fit"))
 ]
 GOOD = Path(__file__).parents[1].joinpath("minimal.toml").read_text("utf-8")
 

@@ -495,6 +495,8 @@ def read_tables(file: Path, template: str = "`pindrive init FILE` writes a devic
 
 
 def _refuse_study(file: Path, given: Mapping[str, Any]) -> None:
+    if "recording" in given:
+        raise ConfigError([f"{file}: is a fit file, as it has recordings; `pindrive fit` takes it"])
     if "body" in given:
         said = "is a system file, as it has [body]; `pindrive simulate` and `load_system` take it"
         raise ConfigError([f"{file}: {said}"])
