@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 import pindrive as pd
 from design_problems import EXAMPLES, MOUSE, PAPER, SMALL
 from notebook_reading import check_faces
-from pindrive.optimisation import Design, optimise
+from pindrive.optimisation import Design, Effort, optimise
 from pindrive.optimisation.search import non_dominated
 from pindrive.quantities.status import Status
 
@@ -215,6 +215,25 @@ def test_a_front_of_catalogue_parts_is_no_worse_than_a_grid() -> None:
         affordable = found.front.goals[:, 1] <= cost + 1e-9
         assert affordable.any()
         assert found.front.goals[affordable, 0].min() <= 1.01 * time
+
+
+def test_few_parts_are_all_evaluated() -> None:
+    """Of 66 pairs of a spring and a damper each, whatever the seed and the effort."""
+    problem = {**_catalogue_problem(), "axes": {}, "conditions": {}}
+    problem["goals"] = {"minimise": "settling_time"}
+    device = pd.load_device(MOUSE, {"drive.damping": 0.3, "drive.mass": 0.01})
+    stiffness, damping = (x.ravel() for x in np.meshgrid(SPRINGS, [*DAMPERS]))
+    numbers = pd.simulate_batch(device.drive, device.release, stiffness=stiffness, damping=damping)
+    met = (numbers.transient_peak_displacement.values >= 2.1e-3) & (
+        numbers.transient_trough_displacement.values >= -1.5e-3
+    )
+    times = np.where(met, numbers.transient_settling_time.values, np.inf)
+    best = int(times.argmin())
+    for seed in (1, 2):
+        found = pd.optimise(device, problem, effort=Effort(64, 8, 1, 8, 3, 10), seed=seed)
+        assert found.goals[0].value == pytest.approx(times[best], rel=1e-9)
+        assert found.values["drive.stiffness"] == stiffness[best]
+        assert found.values["drive.damping"] == damping[best]
 
 
 def _catalogue_problem() -> Mapping[str, Any]:

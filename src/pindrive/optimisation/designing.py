@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from math import isfinite, nan
+from itertools import product
+from math import isfinite, nan, prod
 from os import PathLike
 from typing import Any, Final
 
@@ -48,6 +49,8 @@ GAIN: Final = 0.05
 """Relative improvement of the first goal for which a constraint is relaxed."""
 ROUNDS: Final = 6
 """Largest number of searches, each with the worst conditions of the design found before."""
+ENUMERATED: Final = 4096
+"""Largest number of combinations of catalogue parts of which each is evaluated."""
 WORSE: Final = 1e-3
 """Smallest relative change of a goal or a limit that makes a condition worse."""
 
@@ -283,9 +286,12 @@ class _Optimisation:
         return found
 
     def _candidates(self, space: DesignSpace, motions: int) -> Population:
-        """The best of candidates that are spread over all that may vary."""
+        """The best of candidates that are spread over all that may vary; of few parts each."""
         size = max(self.effort.population, 8)
         count = max(size, motions // len(space.cases))
+        combinations = _combinations(space, min(count, ENUMERATED))
+        if combinations is not None:
+            return space.population(combinations)
         count = 1 << (count - 1).bit_length()  # a Sobol' sequence is even over powers of two
         sequence = qmc.Sobol(len(space.variables), scramble=True, rng=self.seed)
         kept, rough = None, replace(space, coarse=True)
@@ -459,6 +465,19 @@ class _Optimisation:
     @property
     def _condition_keys(self) -> set[str]:
         return {key for condition in self.space.conditions for key in condition.axes}
+
+
+def _combinations(space: DesignSpace, most: int) -> Array | None:
+    """Return all designs of a space of parts alone, shape (n, k); None of other spaces, or larger.
+
+    The rows are completed to four, which a search needs.
+    """
+    choices = [variable.choices for variable in space.variables]
+    if not choices or not all(choices) or prod(choices) > most:
+        return None
+    parts = [[v.part(row) for row in range(v.choices)] for v in space.variables]
+    found = np.array([*product(*parts)])
+    return np.resize(found, (max(4, len(found)), len(choices)))
 
 
 def choose(found: Population) -> int:
