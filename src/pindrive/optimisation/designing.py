@@ -39,7 +39,7 @@ from pindrive.optimisation.search import Population, non_dominated, search
 from pindrive.optimisation.tolerance import excess_as_built, reserves, share_of
 from pindrive.quantities.refusal import check_whole
 from pindrive.study.distributions import with_links
-from pindrive.study.outputs import Constraint
+from pindrive.study.outputs import Constraint, Share
 from pindrive.study.workers import Cluster, crew
 
 __all__ = ["optimise"]
@@ -49,6 +49,18 @@ GAIN: Final = 0.05
 """Relative improvement of the first goal for which a constraint is relaxed."""
 ROUNDS: Final = 6
 """Largest number of searches, each with the worst conditions of the design found before."""
+DRAWS: Final = 2000
+"""Devices of each design in a search with a counted yield."""
+YIELDED: Final = 32
+"""Designs of its population."""
+GENERATIONS: Final = 60
+"""Largest number of its generations."""
+PATIENCE: Final = 12
+"""Generations without progress after which it ends."""
+SPREAD: Final = 2048
+"""Designs over the whole ranges, of which some that meet the limits are among its first ones."""
+NEAR: Final = 0.05
+"""Scatter of its first designs about the one with tighter limits, a part of the ranges."""
 ENUMERATED: Final = 4096
 """Largest number of combinations of catalogue parts of which each is evaluated."""
 WORSE: Final = 1e-3
@@ -177,6 +189,8 @@ class _Optimisation:
             found, chosen = self._with_worst_conditions(
                 more
             )  # the smaller search found a better design
+        if self.problem.least_yield and not (self.space.scans or self.space.slow):
+            found, chosen = self._with_counted_yield(found, chosen, self.problem.least_yield)
         point, device, excess = self._as_built(found, chosen)
         self.space = replace(self.space, constraints=self.problem.constraints)  # original limits
         goals, required = self._reached(point, limits)
@@ -246,6 +260,58 @@ class _Optimisation:
             _, _, excess = self._as_built(found, chosen)
             part = 1.0 - 0.7 * (1.0 - part)
         return found, chosen, excess
+
+    def _with_counted_yield(
+        self, found: Population, chosen: int, least: float
+    ) -> tuple[Population, int]:
+        """Search with the yield of each design counted, at conditions that are worst for it."""
+        for attempt in range(ROUNDS):
+            found, chosen = self._counted(found, chosen, least)
+            worst = self._worse_cases(found.points[chosen], attempt)
+            if not len(worst):
+                break
+            cases = np.unique(np.concatenate([self.space.cases, worst]), axis=0)
+            self.space = replace(self.space, cases=cases)
+        return found, chosen
+
+    def _counted(self, found: Population, chosen: int, least: float) -> tuple[Population, int]:
+        """Search on from a design, with the yield of each design counted.
+
+        Tighter limits give away what a jump of a number allows: devices on its near side need no
+        margin. Limits are the original ones here, and all designs are built with the same draws.
+        """
+        start = found.points[[chosen]]
+        self.space = replace(self.space, constraints=self.problem.constraints)
+        free = self._again(self.space.population(found.points))
+        near = np.clip(start + NEAR * self.rng.normal(size=(YIELDED, start.shape[1])), 0.0, 1.0)
+        sequence = qmc.Sobol(start.shape[1], scramble=True, rng=self.seed)
+        spread = self.space.population(sequence.random(SPREAD))
+        met = spread.points[spread.violation <= 0.0][: 2 * YIELDED]
+        points = np.concatenate([start, near, free.points[:YIELDED], met])
+
+        def counted(points: Array) -> tuple[Array, Array]:
+            plain = self.space.population(points)
+            violation = plain.violation.copy()
+            for i in np.flatnonzero(violation <= 0.0):
+                share = self._share(points[i], DRAWS)
+                violation[i] = max(0.0, least - share.met / share.of)
+            return plain.goals, violation
+
+        first = Population(points, *counted(points)).best(YIELDED)
+        ends = search(counted, first, generations=GENERATIONS, patience=PATIENCE, rng=self.rng)
+        tried = ends
+        while (tried.violation <= 0.0).any():
+            best = choose(tried)
+            share = self._share(tried.points[best], self.effort.draws)
+            if share.met >= least * share.of:
+                return ends, int(np.flatnonzero((ends.points == tried.points[best]).all(axis=1))[0])
+            tried = tried[np.arange(len(tried.points)) != best]  # the few draws were lucky
+        return self.space.population(np.concatenate([start, ends.points])), 0
+
+    def _share(self, point: Array, draws: int) -> Share:
+        """Return the yield of a design."""
+        device = self.problem.study.device_at(self._values(point))
+        return share_of(excess_as_built(self.problem, self.space, device, point, draws, self.seed))
 
     # ---- the search ------------------------------------------------------------------------------
 
