@@ -15,7 +15,7 @@ from recordings import FREE, RELEASE, START, recorded
 
 @pytest.fixture(scope="module")
 def found() -> Fit:
-    return fit(recorded(rate=2e3, delay=0.008), START, RELEASE, free=[*FREE[:3], "time_offset"])
+    return fit(recorded(rate=2e3, delay=0.008), START, RELEASE, free=[*FREE, "time_offset"])
 
 
 def test_a_fit_is_drawn_with_what_it_was_made_of(found: Fit) -> None:

@@ -76,6 +76,7 @@ NO_RESULTS = {
         "Study",
         *("System", "SystemFile", "Body", "Spring", "ContactPair"),
         "DesignProblem",
+        "FitProblem",
         "Recording",
         "HandPath",
     ),  # they are given to what computes

@@ -151,18 +151,6 @@ class FrictionCurve(lazy.NotebookHtml):
                 "the same side: friction depends on more than the speed (wear or a load that "
                 "changes), or the curve has too few rows"
             )
-        if self.effective_size < WEAK * len(self.force) and not self.branches:
-            found.append(
-                f"{len(self.force)} samples tell as much as {self.effective_size:.0f} independent "
-                f"ones (neighbours correlate by {self.correlation:.2f})"
-            )
-        slope, error = self.slope
-        if slope < -2.0 * error and self.rows[-1][1] > 0.0:
-            ends = self.rows[-1][0] - self.rows[-1][1] / slope
-            found.append(
-                f"beyond the data the force falls by {-slope:.3g} N*s/m and would be zero at "
-                f"{ends:.3g} m/s: measure at higher speeds, or give a last row"
-            )
         return tuple(found)
 
     def __call__(self, speed: ArrayLike) -> Array:
@@ -247,8 +235,8 @@ def fit_friction(speed: ArrayLike, force: ArrayLike, *, rows: int | None = None)
             some speeds only.
 
     Warns:
-        UserWarning: each of `FrictionCurve.warnings`: two branches, as of hysteresis; neighbouring
-            samples that are alike; a force that falls beyond the data.
+        UserWarning: each of `FrictionCurve.warnings`: two branches, as of hysteresis, or
+            neighbouring samples that are alike and far from the curve.
     """
     u, f = (
         np.asarray(values, float).ravel() if not isinstance(values, str) else np.empty(0)
@@ -391,8 +379,6 @@ SMALL: Final = 0.1
 
 LEAST: Final = 20
 """Samples of which the correlation of neighbours is computed."""
-WEAK: Final = 0.1
-"""Part of independent samples below which a warning says so."""
 APART: Final = 4.0
 """Standard errors by which branches differ."""
 ROUNDS: Final = 4

@@ -24,6 +24,8 @@ TURNS: Final = 12
 """Iterations of the noise and of a Gauss-Newton step."""
 CLOSE: Final = 1e-3
 """Change of the deviance with which they end."""
+EXACT: Final = 1e-9
+"""Part of the extent of a channel by which residuals without noise may be off."""
 GRID: Final = 1e-6
 """Part of a step by which rounded samples may be off its multiples."""
 FEW: Final = 0.5
@@ -121,6 +123,8 @@ def chosen(at: Linearised, start: Noise, recorded: Array) -> tuple[Noise, dict[s
         start: Noise with what is known of it.
         recorded: Samples, SI, shape (n,), which tell if they are rounded.
     """
+    if float(np.abs(at.off).max()) <= EXACT * float(np.ptp(recorded)):
+        return start, {}  # there is no noise to choose
     step = step_of(recorded)
     if step is not None and start.size is None and float(np.std(at.off)) < step:
         start = replace(start, step=step)

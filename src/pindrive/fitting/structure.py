@@ -90,7 +90,7 @@ def moved(
     apart = off - u[:, seen] @ (u[:, seen].T @ off)
     more = int(np.count_nonzero(seen)) - across.shape[1]
     spare = len(off) - int(np.count_nonzero(seen))
-    if more < 1 or spare < 1:
+    if more < 1 or spare < 1 or not apart.any():
         return 1.0, {}
     variance = float(apart @ apart) / spare
     ratio = (float(joint @ joint) - float(apart @ apart)) / more / variance
@@ -154,7 +154,8 @@ class _Frame:
         before = float(self._rest @ self._rest)
         after = before - float(np.sum((across.T @ self._rest) ** 2))
         # The size of the noise is estimated anew with each law.
-        return self._size * log(before / max(after, 1e-300)) - self._at.criterion
+        gained = self._size * log(before / max(after, 1e-300)) if before else 0.0
+        return gained - self._at.criterion
 
 
 # ---- laws ----------------------------------------------------------------------------------------

@@ -16,6 +16,10 @@ Array = NDArray[np.float64]
 
 UNLIKELY: Final = 1e-3
 """Independent residuals whose tests have a lower p-value have structure."""
+SMALLEST: Final = 1e-150
+"""Least size of a noise, SI, where a fit hits each sample."""
+LEAST: Final = 1e-12
+"""Least variance of a residual that its neighbour leaves open, of samples close together."""
 FINEST: Final = 1.0 / 12.0
 """Least noise before a converter, a part of its step, with which the cost remains smooth."""
 MOST_CORRELATED: Final = 0.999
@@ -90,7 +94,7 @@ class Whitening:
         total = 2.0 * n * log(self.size)
         if self.decay is not None:
             found = uncorrelated(found, self.decay)
-            total += float(np.sum(np.log1p(-(self.decay**2))))
+            total += float(np.sum(np.log(np.maximum(1.0 - self.decay**2, LEAST))))
         if np.isfinite(self.degrees):
             return total + _student(found, self.degrees)
         return total + n * log(2.0 * pi) + float(found @ found)
@@ -126,7 +130,7 @@ def estimated(
     if noise.outliers and size is None:
         return _with_outliers(independent, decay, correlation, spare)
     if size is None:
-        size = float(np.sqrt(np.mean(independent**2) / spare))
+        size = max(float(np.sqrt(np.mean(independent**2) / spare)), SMALLEST)
     return Whitening(size, decay, correlation)
 
 
@@ -135,7 +139,7 @@ def uncorrelated(values: Array, decay: Array) -> Array:
     found = np.array(values, copy=True)
     shape = (slice(None), *([None] * (values.ndim - 1)))
     found[1:] -= decay[shape] * values[:-1]
-    found[1:] /= np.sqrt(1.0 - decay**2)[shape]
+    found[1:] /= np.sqrt(np.maximum(1.0 - decay**2, LEAST))[shape]
     return found
 
 
@@ -156,8 +160,8 @@ def _correlation(off: Array, slopes: Array, gaps: Array) -> float:
         rest = y - across[:, seen] @ (across[:, seen].T @ y)
         spare = len(y) - int(np.count_nonzero(seen))
         return float(
-            spare * np.log(rest @ rest)
-            + np.sum(np.log1p(-(decay**2)))
+            spare * np.log(max(float(rest @ rest), SMALLEST**2))
+            + np.sum(np.log(np.maximum(1.0 - decay**2, LEAST)))
             + 2.0 * np.sum(np.log(values[seen]))
         )
 
@@ -176,12 +180,13 @@ def _with_outliers(
     estimates' scatter (Huber, Robust Statistics, 1981, section 6.5).
     """
     size = 1.4826 * float(np.median(np.abs(independent))) or float(np.std(independent))
+    size = max(size, SMALLEST)
 
     def deviance(logarithm: float) -> tuple[float, float]:
         degrees, scale = float(np.exp(logarithm)), size
         for _ in range(TURNS):
             weights = (degrees + 1.0) / (degrees + (independent / scale) ** 2)
-            last, scale = scale, float(np.sqrt(np.mean(weights * independent**2)))
+            last, scale = scale, max(float(np.sqrt(np.mean(weights * independent**2))), SMALLEST)
             if abs(scale - last) < 1e-4 * scale:
                 break
         at = 2.0 * len(independent) * log(scale) + _student(independent / scale, degrees)

@@ -243,7 +243,11 @@ def plot_friction_curve(found: FrictionCurve) -> Figure:
             look_of = {"color": PALETTE["curve"], "ls": ":" if way > 0 else "-."}
             axes.plot(MM * speed, 1e3 * (force + above), **look_of, label=name, gid="branch")
         axes.set(xlabel="sliding speed (mm/s)", ylabel="friction force (mN)")
-        words = f"R² {found.r_squared:.2f}, {found.effective_size:.0f} independent samples"
+        slope, error = found.slope
+        words = (
+            f"R² {found.r_squared:.2f}, {found.effective_size:.0f} independent samples, "
+            f"slope beyond {slope:.2g} ± {error:.1g} N*s/m"
+        )
         axes.set_title(words, fontsize=SMALL, loc="left")
         axes.legend(frameon=False)
         counts = [*found.aicc]
