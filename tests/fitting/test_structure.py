@@ -58,7 +58,7 @@ def test_a_mass_of_the_mount_is_an_oscillation() -> None:
     given = Recording(t, position=clean.channels["position"] + ring)
     found = pd.fit(given, START, RELEASE, free=FREE, profiles=False)
     best = next(iter(found.misfit.explanations))
-    assert best.endswith("Hz, as of a mass of the mount,")
+    assert best.endswith("Hz (as of a mass of the mount)")
     assert float(best.split()[3]) == pytest.approx(210.0, rel=0.06)
 
 

@@ -259,7 +259,7 @@ class _Solved:
                 block=b,
                 noise=_noise_of(model, b),
                 rejected=self._rejected[i],
-                over=self._over(b),
+                over=model.over(theta, b),
                 parameters=len(theta),
                 added={
                     model.parameters[j].key.removeprefix(f"{b.channel}_"): float(theta[j])
@@ -268,11 +268,6 @@ class _Solved:
             )
             for i, b in enumerate(model.blocks)
         )
-
-    def _over(self, block: Block) -> dict[str, Array]:
-        """Return the quantities over which residuals are tested."""
-        x, v = self._model.motion(self.theta, block)
-        return {"time": block.times, "speed": v, "position": x}
 
     def _misfit(self) -> Misfit:
         """Look for laws that explain what the noise does not, and for parameters that move."""

@@ -132,11 +132,12 @@ class Model:
         i = self._times_offset[r]
         return 0.0 if i is None else theta[i]
 
-    def motion(self, theta: Array, block: Block) -> tuple[Array, Array]:
-        """Return position, m, and velocity, m/s, of the pin at the samples of a block."""
+    def over(self, theta: Array, block: Block) -> dict[str, Array]:
+        """Return "time", "speed" and "position" of the pin at the samples of a block, SI."""
         trace = _Trace(self.assembly.numbers(theta, block.recording))
         times = block.times - self.offset(theta, block.recording)
-        return trace.position(times), trace.velocity(times)
+        speed, position = trace.velocity(times), trace.position(times)
+        return {"time": block.times, "speed": speed, "position": position}
 
     def predict(self, theta: Array) -> Array:
         """All samples, shape (n,); NaN where the motion could not be followed."""

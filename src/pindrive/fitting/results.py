@@ -195,7 +195,7 @@ class Fit(lazy.NotebookHtml):
         if laws:
             others = f", {laws[1][0]} by {laws[1][1]:.0f}" if len(laws) > 1 else ""
             words = f"{laws[0][0]} explains more: BIC lower by {laws[0][1]:.0f}{others}"
-            parts.append(words.replace(",,", ","))
+            parts.append(words)
         for name, (change, errors) in [*self.misfit.moved.items()][:2]:
             unit, scale = self[name].parameter.scale
             size = f"{significant(change * scale, 3)} {unit}".rstrip()
@@ -272,8 +272,7 @@ class Fit(lazy.NotebookHtml):
         one = self.model.blocks[block]
         off = self.model.predict(self.theta)[one.place] - self.model.data[one.place]
         scores = -self.whitenings[block].scores(off)
-        x, v = self.model.motion(self.theta, one)
-        over = {"time": one.times, "speed": v, "position": x}
+        over = self.model.over(self.theta, one)
         return {name: binned(scores, values) for name, values in over.items()}
 
     @property

@@ -195,7 +195,7 @@ def _variants(drive: Drive, fastest: float) -> Iterator[tuple[str, Drive, list[s
         free = [f"{name}_curve[{i}].force" for i in range(len(ROWS))]
         words = f"friction over speed at the {name}"
         if name == "finger":
-            words += ", or damping that is not linear,"
+            words += " (or damping that is not linear)"
         yield words, _with(drive, name, curve), free, len(ROWS) - 1
     finger = drive.finger
     if finger.rigid and not finger.frictionless and not finger.curve:
@@ -219,7 +219,7 @@ def oscillations(times: Array, interval: float) -> Iterator[tuple[str, Array, in
         for decay in DECAYS:
             size = np.where(times >= 0.0, np.exp(-late / (decay * span)), 0.0)
             columns = np.column_stack([size * np.cos(angle), size * np.sin(angle)])
-            words = f"an oscillation of {pitch:.0f} Hz, as of a mass of the mount,"
+            words = f"an oscillation of {pitch:.0f} Hz (as of a mass of the mount)"
             yield words, columns, 4
 
 
@@ -227,6 +227,6 @@ def _fastest(model: Model, theta: Array) -> float:
     """The largest speed at which the pin slides, m/s."""
     fastest = 0.0
     for block in model.blocks:
-        _, v = model.motion(theta, block)
+        v = model.over(theta, block)["speed"]
         fastest = max(fastest, float(np.abs(v).max()))
     return fastest
