@@ -16,7 +16,7 @@ from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import partial
-from math import isfinite, pi
+from math import isfinite, pi, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,6 +60,11 @@ class Pin:
         return float(self.plate * (1.0 + falls))
 
 
+def _ahead(level: float, side: float) -> Callable[[float, Array], float]:
+    """Return the velocity by which a pin is ahead of a contact's on one side of it, m/s."""
+    return lambda _t, y: float((y[1] - level) * side)
+
+
 def position(pin: Pin, times: Array) -> Array:
     """Position in the housing, m; modes of slip and stick, whose ends solve_ivp finds."""
 
@@ -101,16 +106,14 @@ def position(pin: Pin, times: Array) -> Array:
             def ends(_t: float, y: Array, stuck: str = stuck) -> float:
                 return statics[stuck] - abs(need(y))
 
-            events = [ends]
+            events: list[Callable[[float, Array], float]] = [ends]
         else:
 
             def rate(_t: float, y: Array) -> tuple[float, ...]:
                 force = pulled(y) + sum(rubbed(name, y[1], sides[name]) for name in sides)
                 return y[1], force / pin.mass, y[3], mount(y)
 
-            events = [
-                lambda _t, y, name=name: (y[1] - levels[name]) * sides[name] for name in levels
-            ]
+            events = [_ahead(levels[name], sides[name]) for name in levels]
         for event in events:
             event.terminal, event.direction = True, -1.0  # type: ignore[attr-defined]
         out = solve_ivp(
@@ -169,17 +172,19 @@ def drawn(rng: np.random.Generator, **other: float) -> Pin:
 
 
 def _drift(x: Array, t: Array, rng: np.random.Generator) -> Array:
-    return x + 20e-6 * t / SPAN * rng.choice([-1, 1]) + 30e-6 * rng.choice([-1, 1])
+    drift, offset = rng.choice([-20e-6, 20e-6]), rng.choice([-30e-6, 30e-6])
+    return x + float(drift) / SPAN * t + float(offset)
 
 
 def _far_drift(x: Array, t: Array, rng: np.random.Generator) -> Array:
-    return x + 10.0 * NOISE * t / SPAN * rng.choice([-1, 1])
+    return x + float(10.0 * NOISE / SPAN * rng.choice([-1, 1])) * t
 
 
 def _coloured(x: Array, t: Array, rng: np.random.Generator) -> Array:
     rho = 0.8
     white = rng.normal(size=len(t) + 200)
-    return x + NOISE * np.sqrt(1.0 - rho**2) * lfilter([1.0], [1.0, -rho], white)[200:]
+    coloured: Array = lfilter([NOISE * sqrt(1.0 - rho**2)], [1.0, -rho], white)[200:]
+    return x + coloured
 
 
 def _steps(x: Array, t: Array, rng: np.random.Generator) -> Array:
@@ -323,5 +328,5 @@ def main(count: int, seed: int, kinds: list[str]) -> None:
 
 if __name__ == "__main__":
     words = sys.argv[1:]
-    numbers = [int(word) for word in words[:2]]
-    main(*numbers, *(COUNT, SEED)[len(numbers) :], words[2:] or [*DIRT, *LAWS])
+    count, seed = (*map(int, words[:2]), *(COUNT, SEED)[len(words) :])
+    main(count, seed, words[2:] or [*DIRT, *LAWS])

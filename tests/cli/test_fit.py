@@ -132,7 +132,7 @@ noise.position = "20 um"
     assert (problem.seed, problem.confidence) == (3, 0.9)
     assert problem.recordings[0].noise == {"position": Noise(drift="linear")}
     assert problem.recordings[0].time[0] == pytest.approx(1e-3)
-    assert problem.recordings[1].noise == {"position": Noise(pytest.approx(2e-5))}
+    assert problem.recordings[1].noise == {"position": Noise(2e-5)}
     done = run("fit", "fit.toml", *changes, "-o", "fitted.toml")
     assert done.exit_code == 0, done.output
     assert "90 % from" in done.stdout

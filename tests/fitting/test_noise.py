@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -42,12 +44,12 @@ def outlying(seed: int) -> Array:
     return white(seed) + np.where(hit, 40.0 * SIZE * rng.normal(size=len(TIMES)), 0.0)
 
 
-DIRT = {
-    "white": lambda seed: white(seed),
+DIRT: dict[str, Callable[[int], Array]] = {
+    "white": white,
     "linear drift": lambda seed: white(seed) + 4e-5 * TIMES / TIMES[-1] + 3e-5,
     "hum of 50 Hz": lambda seed: white(seed) + 1e-5 * np.sin(314.159 * TIMES + 1.0),
-    "correlated": lambda seed: coloured(seed),
-    "outliers": lambda seed: outlying(seed),
+    "correlated": coloured,
+    "outliers": outlying,
 }
 
 
@@ -177,8 +179,8 @@ def test_rounded_residuals_are_the_deviance_of_their_intervals() -> None:
 def test_correlation_is_not_lost_to_the_parameters_of_a_fit() -> None:
     """Twelve slow columns take up noise; its correlation is found nevertheless."""
     rng, n, rho = np.random.default_rng(3), 400, 0.9
-    times = np.arange(n) * 1.0
-    slopes = np.column_stack([np.cos(np.pi * k * (times + 0.5) / n) for k in range(12)])
+    times = np.arange(n, dtype=np.float64)
+    slopes: Array = np.column_stack([np.cos(np.pi * k * (times + 0.5) / n) for k in range(12)])
     found = []
     for _ in range(40):
         e = rng.normal(size=n)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -9,8 +10,8 @@ import pytest
 
 import pindrive as pd
 from pindrive import Contact, Drive, Recording, Stribeck
-from pindrive.fitting import estimation
 from pindrive.fitting.residuals import places
+from pindrive.fitting.search import search
 from pindrive.fitting.structure import moved
 from recordings import FREE, RELEASE, START, TRUTH, recorded
 
@@ -19,8 +20,7 @@ def with_law(contact: str) -> Drive:
     law = Stribeck(
         kinetic=0.034 if contact == "plate" else 0.011, breakaway=0.05, stribeck_velocity=0.04
     )
-    parts = {"plate": TRUTH.plate, "finger": TRUTH.finger} | {contact: law}
-    return Drive(mass=0.006, stiffness=160.0, damping=0.19, **parts)
+    return replace(TRUTH, plate=law) if contact == "plate" else replace(TRUTH, finger=law)
 
 
 def noisy(drive: Drive, seed: int = 1) -> Recording:
@@ -80,7 +80,7 @@ def test_a_parameter_that_moves_between_halves_is_named() -> None:
 
 def test_residuals_are_tested_where_the_pin_is() -> None:
     rng = np.random.default_rng(2)
-    scores, t = rng.normal(size=600), np.arange(600) * 1e-3
+    scores, t = rng.normal(size=600), 1e-3 * np.arange(600, dtype=np.float64)
     assert places(scores, {"time": t})["time"].p_value > 1e-3
     assert places(scores, {"time": np.zeros(600)})["time"].p_value == 1.0
     found = places(scores + 2.0 * (abs(t - 0.32) < 0.02), {"time": t})["time"]
@@ -98,14 +98,13 @@ def test_a_release_without_a_finger_has_no_law_to_try() -> None:
 
 
 def test_searches_go_on_while_residuals_keep_a_structure(monkeypatch: pytest.MonkeyPatch) -> None:
-    searched = estimation.search
     seeds = list[int]()
 
     def counted(model: Any, weights: Any, seed: int) -> Any:
         seeds.append(seed)
-        return searched(model, weights, seed)
+        return search(model, weights, seed)
 
-    monkeypatch.setattr(estimation, "search", counted)
+    monkeypatch.setattr("pindrive.fitting.estimation.search", counted)
     pd.fit(noisy(TRUTH), START, RELEASE, free=FREE, profiles=False)
     assert seeds == [1]
     pd.fit(noisy(with_law("plate")), START, RELEASE, free=FREE, profiles=False)
