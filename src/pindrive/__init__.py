@@ -10,5 +10,6 @@ def __getattr__(name: str) -> object:
     if name == "__version__":
         from importlib.metadata import version
 
-        return version(__name__)
+        globals()[name] = version(__name__)  # reading it takes milliseconds
+        return globals()[name]
     return _public_name(name)

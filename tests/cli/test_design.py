@@ -86,7 +86,7 @@ def test_tables_show_values_in_their_units() -> None:
     with text.open("w", encoding="utf-8") as file:
         Console(file=file, width=120).print(design_report(found))
     lines = [line.split() for line in text.read_text("utf-8").splitlines()]
-    rows = {words[0]: words for words in lines if words}
+    rows = {words[0]: words for words in reversed(lines) if words}  # the first of each key
     damping = found.values["drive.damping"]
     assert float(rows["drive.damping"][1]) == pytest.approx(damping, rel=1e-3)
     assert float(rows["finger.kinetic"][1]) == pytest.approx(

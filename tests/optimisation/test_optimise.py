@@ -164,7 +164,8 @@ def test_maps_hold_what_each_place_is_worth(paper: Design) -> None:
     assert both.any()
     assert drawn.goal.ravel()[both] == pytest.approx(longest[both], rel=0.05)
     assert drawn.share == drawn.met.mean()
-    assert drawn.design == (paper.values["drive.stiffness"], paper.values["finger.kinetic"])
+    chosen = paper.values["drive.stiffness"], paper.values["finger.kinetic"]
+    assert drawn.design == pytest.approx(chosen, rel=1e-14)
 
 
 # ---- no design -----------------------------------------------------------------------------------

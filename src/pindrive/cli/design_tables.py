@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import isfinite, isnan
+from math import isclose, isfinite, isnan
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,15 +11,18 @@ from rich.console import Group, RenderableType
 from pindrive.cli.tables import new_table, whole_lines
 from pindrive.files.keys import NUMERIC_KEYS
 from pindrive.optimisation.catalogue import short_keys
+from pindrive.optimisation.margins import WORSE
 from pindrive.optimisation.results import shown
 from pindrive.quantities.names import label
 from pindrive.quantities.quantity import counted, significant
+from pindrive.study.outputs import Constraint
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rich.table import Table
 
+    from pindrive.optimisation.margins import Limit
     from pindrive.optimisation.results import ConstraintResult, Design, Front
 
 MOST_OF_FRONT = 12
@@ -29,6 +32,8 @@ MOST_OF_FRONT = 12
 def design_report(found: Design) -> RenderableType:
     """The design, its goals and constraints, the front, the nearest parts, and what is doubtful."""
     tables: list[RenderableType] = [_values(found), _limits(found)]
+    if found.margins:
+        tables.append(_margins(found))
     if found.front:
         tables.append(_front(found, found.front))
     if found.alternatives:
@@ -55,8 +60,42 @@ def _values(found: Design) -> Table:
         else:
             how = f"at its {ends[key]} end" if key in ends else "free"
         was = quantity.digits(old) if isinstance(old, float) else "-"
-        table.add_row(key, quantity.digits(value), quantity.display_unit, was, how)
+        digits = _exact(key, value) if key in of else quantity.digits(value)
+        table.add_row(key, digits, quantity.display_unit, was, how)
     return table
+
+
+def _exact(key: str, value: float) -> str:
+    """Return a value in display units, with the digits that give it back, four at least."""
+    shown_ = NUMERIC_KEYS[key].display_scale * value
+    texts = (significant(shown_, digits) for digits in range(4, 18))
+    return next((text for text in texts if isclose(float(text), shown_, rel_tol=1e-12)), "-")
+
+
+def _margins(found: Design) -> Table:
+    """The way of each variable until a number changes, and what changes there."""
+    title = "How far each variable may move, all else unchanged"
+    table = new_table(title, "key", ">may move to", ">by", "what changes there")
+    for margin in found.margins:
+        key = next(iter(margin.variable.axes))
+        for name, end in ((key, margin.below), ("", margin.above)):
+            part = f"{100.0 * (end.value / margin.value - 1.0):+.2g} %" if margin.value else ""
+            table.add_row(name, NUMERIC_KEYS[key].text(end.value), part, _end(end))
+    return table
+
+
+def _end(end: Limit) -> str:
+    """Return what changes at the end of a way."""
+    if end.number is None:
+        return "the range ends"
+    name = end.number.name
+    if isnan(end.reached):
+        return f"no {label(name)}"
+    if end.jumps:
+        return f"{label(name)} jumps to {shown(name, end.reached)}"
+    if isinstance(end.number, Constraint):
+        return f"{end.number.text()} is violated"
+    return f"{label(name)} is {100.0 * WORSE:g} % worse"
 
 
 def _limits(found: Design) -> Table:
@@ -132,6 +171,28 @@ def _alternatives(found: Design) -> Table:
     return table
 
 
+def _steady(found: Design) -> list[str]:
+    """Return the design with a margin in words; nothing where the design has that margin itself."""
+    best = found.steady
+    if best is None:
+        return []
+    values = [
+        f"{short_keys((key,))} {_exact(key, best.values[key])} {NUMERIC_KEYS[key].display_unit}"
+        for v in found.problem.variables
+        if not v.catalogue
+        for key in v.axes
+    ]
+    parts = [f"{name} {part}" for name, part in best.parts.items()]
+    goals = (
+        f"{label(reached.goal.name)} {shown(reached.goal.name, value)}"
+        for reached, value in zip(found.goals, best.goals, strict=True)
+    )
+    return [
+        f"Best design with a margin of {100.0 * best.margin:g} % in each variable: "
+        f"{', '.join(x.rstrip() for x in (*values, *parts))}; {', '.join(goals)} at worst"
+    ]
+
+
 def _words(found: Design) -> list[str]:
     lines = []
     if not found.feasible:
@@ -147,6 +208,7 @@ def _words(found: Design) -> list[str]:
             lines.append(
                 'A constraint on the yield leaves a margin: yield = ">= 95 %" in [specification]'
             )
+    lines += _steady(found)
     binding = [d.constraint.text() for d in found.constraints if d.binds]
     if binding:
         lines.append(f"Binding: {', '.join(binding)}")

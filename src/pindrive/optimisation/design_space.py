@@ -38,6 +38,8 @@ SHORTER: Final = 0.02
 """Relative shortfall of a confirmed speed below its estimate that is accepted."""
 FAR: Final = 1e3
 """The most that a constraint counts in a violation, and what a missing number adds to it."""
+ALIKE: Final = 10
+"""Digits of a goal after the first that count."""
 MOST_CONDITIONS: Final = 32
 """With which a search begins."""
 
@@ -154,19 +156,38 @@ class DesignSpace:
             known = self.scanned.look_up(self.inputs(points, cases))
             found = {name: column.reshape(shape) for name, column in known.items()}
         else:
-            size = shape[0] * shape[1]
-            simulated = self._simulated(self.columns(points, cases), size)
+            simulated = self.simulated(self.columns(points, cases), shape[0] * shape[1])
             found = {name: column.reshape(shape) for name, column in simulated.items()}
-            self.count.motions += size if found else 0
-        if PRICE in self.names:
-            found[PRICE] = np.repeat(self.prices(points)[:, None], shape[1], axis=1)
+        return found | self.priced(points, shape)
+
+    def priced(self, points: Array, shape: tuple[int, ...]) -> dict[str, Array]:
+        """Return the price of points, shape (n, ...), by its name; nothing if it is not needed."""
+        if PRICE not in self.names:
+            return {}
+        prices = self.prices(points).reshape(-1, *(1 for _ in shape[1:]))
+        return {PRICE: np.broadcast_to(prices, shape)}
+
+    def simulated(self, columns: dict[str, Array], size: int) -> dict[str, Array]:
+        """Return the numbers of devices, SI, each of shape (size,), without prices.
+
+        Args:
+            columns: Values of keys, SI, each of shape (size,).
+            size: Number of devices.
+        """
+        found = self._simulated(columns, size)
+        if self.scans and SPEED in self.names:
+            found[SPEED] = self._speeds(columns, np.full(size, np.nan), self._beat(), False)
         return found
 
     def _simulated(self, columns: dict[str, Array], size: int) -> dict[str, Array]:
-        """The numbers of motions or of scans, each (size,)."""
+        """The numbers of motions or of scans, each (size,), without speeds."""
         requested = [name for name in self.names if name not in DESIGN_OUTPUTS]
         if not requested:
             return {}
+        if self.scans:
+            self.count.scans += size
+        else:
+            self.count.motions += size
         table = self._evaluated(columns, size, (*requested, "status"))
         exists = exist(table["status"])
         return {name: np.where(exists, table[name], np.nan) for name in requested}
@@ -194,7 +215,6 @@ class DesignSpace:
             return
         columns = {key: x[new] for key, x in self.columns(points, cases).items()}
         found = self._simulated(columns, len(new))
-        self.count.scans += len(new) if found else 0
         if SPEED in self.names:
             found[SPEED] = self._speeds(columns, self._guessed(inputs[new]), self._beat(), False)
         self.scanned.keep(inputs[new], found)
@@ -330,7 +350,7 @@ class DesignSpace:
         self, numbers: Mapping[str, Array], most: Mapping[str, Array] | None = None
     ) -> tuple[Array, Array]:
         """Goals (n, g) and violations (n,), by the worst case of each, as for `excess`."""
-        goals = self.minimised(numbers, most).max(axis=2).T
+        goals = _alike(self.minimised(numbers, most).max(axis=2).T)
         over = self.excess(numbers, most).max(axis=2).T / self.scales
         violation = np.clip(over, 0.0, FAR).sum(axis=1)
         violation += FAR * np.isinf(goals).sum(axis=1)
@@ -343,6 +363,14 @@ class DesignSpace:
     def population(self, points: Array) -> Population:
         """Points with what they are worth."""
         return Population(points, *self(points))
+
+
+def _alike(goals: Array) -> Array:
+    """Goals without their last digits, so that equal ones are equal whatever their rounding."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        unit = 10.0 ** (np.floor(np.log10(np.abs(goals))) - ALIKE)
+        shorter = unit * np.round(goals / unit)
+    return np.where(np.isfinite(shorter), shorter, goals)
 
 
 def _evaluate(

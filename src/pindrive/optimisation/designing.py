@@ -24,6 +24,7 @@ from pindrive.optimisation.design_space import (
 from pindrive.optimisation.effort import Count, Effort, usual_effort
 from pindrive.optimisation.goals import PRICE, DesignProblem, Goal
 from pindrive.optimisation.line_speed import speeds
+from pindrive.optimisation.margins import Margin, margins
 from pindrive.optimisation.problem import problem_of, read_problem
 from pindrive.optimisation.results import (
     ConstraintResult,
@@ -34,12 +35,14 @@ from pindrive.optimisation.results import (
     at_ends,
     maps,
 )
+from pindrive.optimisation.rounding import rounded
 from pindrive.optimisation.scan_search import search_scans
 from pindrive.optimisation.search import Population, non_dominated, search
-from pindrive.optimisation.tolerance import excess_as_built, reserves, share_of
+from pindrive.optimisation.steady import Steady, SteadyDesign
+from pindrive.optimisation.tolerance import Built, reserves, share_of
 from pindrive.quantities.refusal import check_whole
 from pindrive.study.distributions import with_links
-from pindrive.study.outputs import Constraint, Share
+from pindrive.study.outputs import Constraint
 from pindrive.study.workers import Cluster, crew
 
 __all__ = ["optimise"]
@@ -59,10 +62,20 @@ PATIENCE: Final = 12
 """Generations without progress after which it ends."""
 SPREAD: Final = 2048
 """Designs over the whole ranges, of which some that meet the limits are among its first ones."""
+TRIALS: Final = 3
+"""Largest number of its repetitions, each with a larger yield of few draws."""
+FEW: Final = 4
+"""Designs with the yield of few draws and not of many, of which the lack is counted."""
+FAR: Final = 16
+"""Designs for each variable, over the whole ranges, of a search before."""
 NEAR: Final = 0.05
 """Scatter of its first designs about the one with tighter limits, a part of the ranges."""
 ENUMERATED: Final = 4096
 """Largest number of combinations of catalogue parts of which each is evaluated."""
+BESIDE: Final = 12
+"""Designs beside the best that are tried where searches found worse conditions to the last."""
+MARGIN: Final = 0.01
+"""Margin of the design that is offered where the best one has less, a part of each value."""
 WORSE: Final = 1e-3
 """Smallest relative change of a goal or a limit that makes a condition worse."""
 
@@ -172,11 +185,9 @@ class _Optimisation:
     def run(self) -> Design:
         """Return the whole result."""
         found, chosen = self._with_worst_conditions(self._screened())
-        point, device, excess = self._as_built(found, chosen)
-        if self.problem.least_yield:
-            found, chosen, excess = self._with_yield(
-                found, chosen, excess, self.problem.least_yield
-            )
+        least = self.problem.least_yield
+        if least:
+            found, chosen = self._with_tighter_limits(found, chosen, least)
         limits = [nan] * len(self.problem.constraints)
         for _ in range(ROUNDS):
             if found.violation[chosen] > 0.0:
@@ -189,23 +200,33 @@ class _Optimisation:
             found, chosen = self._with_worst_conditions(
                 more
             )  # the smaller search found a better design
-        if self.problem.least_yield and not (self.space.scans or self.space.slow):
-            found, chosen = self._with_counted_yield(found, chosen, self.problem.least_yield)
-        point, device, excess = self._as_built(found, chosen)
+        if least and not (self.space.scans or self.space.slow):
+            found, chosen = self._with_counted_yield(found, chosen, least)
         self.space = replace(self.space, constraints=self.problem.constraints)  # original limits
+        point = found.points[chosen]
+        if found.violation[chosen] <= 0.0:
+            holds = self._holds(point, least)
+            point = rounded(self.space, self.space, self._cheaper(point, holds), holds)
+            others = np.delete(np.arange(len(found.points)), chosen)
+            found, chosen = self.space.population(point[None]) + found[others], 0
+        built = self._built(self.effort.draws).share(point) if self._toleranced else None
         goals, required = self._reached(point, limits)
         feasible = all(d.excess <= 0.0 for d in required) and all(isfinite(r.value) for r in goals)
-        built = share_of(excess) if excess is not None else None
-        if built and self.problem.least_yield:
-            feasible &= built.met >= self.problem.least_yield * built.of
+        if built and least:
+            feasible &= built.met >= least * built.of
+        if len(self._worse_cases(point, 0)):
+            self.warnings.append(
+                f"worse conditions were found in each of {ROUNDS} searches; there may be others yet"
+            )
+        beside = margins(self.space, point) if feasible and not self.space.scans else ()
         self.step()
         drawn = maps(self.space, point, self.effort.resolution)
         self.step()
-        beside = alternatives(self.space, point)
+        parts = alternatives(self.space, point)
         self.progress(self.total, self.total)
         return Design(
             problem=self.problem,
-            device=device,
+            device=self.problem.study.device_at(self._values(point)),
             values=self._values(point),
             parts=self._parts(point),
             feasible=feasible,
@@ -213,7 +234,9 @@ class _Optimisation:
             constraints=required,
             front=self._front(found, chosen),
             maps=drawn,
-            alternatives=beside,
+            alternatives=parts,
+            margins=beside,
+            steady=self._steady(found, beside, least),
             built=built,
             gain=GAIN,
             at_ends=at_ends(self.space, point),
@@ -222,44 +245,54 @@ class _Optimisation:
             warnings=tuple(self.warnings),
         )
 
-    def _as_built(self, found: Population, chosen: int) -> tuple[Array, DeviceFile, Array | None]:
-        """Return the chosen design, its device file, and the excess of toleranced devices."""
-        point = found.points[chosen]
-        device = self.problem.study.device_at(self._values(point))
-        if not self.problem.tables.get("tolerances") or not self.problem.constraints:
-            return point, device, None
-        space = replace(self.space, constraints=self.problem.constraints)
-        draws = self.effort.draws
-        return point, device, excess_as_built(self.problem, space, device, point, draws, self.seed)
+    @property
+    def _toleranced(self) -> bool:
+        """True for a problem with a yield."""
+        return bool(self.problem.tables.get("tolerances") and self.problem.constraints)
 
-    def _with_yield(
-        self, found: Population, chosen: int, excess: Array | None, least: float
-    ) -> tuple[Population, int, Array | None]:
+    def _built(self, draws: int) -> Built:
+        """Return devices at random, under the original limits and the present conditions."""
+        space = replace(self.space, constraints=self.problem.constraints, goals=())
+        return Built.drawn(space, self.problem.tables["tolerances"], draws, self.seed)
+
+    def _with_tighter_limits(
+        self, found: Population, chosen: int, least: float
+    ) -> tuple[Population, int]:
         """Repeat the search with tighter limits until the yield is reached.
 
         Each limit is tightened by the scatter of toleranced devices beyond the design, as in
-        sequential optimisation and reliability assessment (Du and Chen 2004).
+        sequential optimisation and reliability assessment (Du and Chen 2004). Limits that gave the
+        yield are relaxed again, halfway to those that did not, where no counted search follows.
         """
-        part = least
+        tight = np.zeros(len(self.problem.constraints))
+        too_little, part = tight, least
+        reached: tuple[Population, int] | None = None
+        enough = tight
         for _ in range(ROUNDS):
-            assert excess is not None
-            share = share_of(excess)
-            if share.met >= least * share.of:
-                break
-            original = replace(self.space, constraints=self.problem.constraints)
-            own = original.excess(original.numbers(found.points[[chosen]]))[:, 0].max(axis=1)
-            room = reserves(excess, own, part)
+            point = found.points[[chosen]]
+            built = self._built(self.effort.draws)
+            excess = built.excess(point)[:, 0]
+            if share_of(excess).met >= least * excess.shape[1]:
+                reached, enough = (found, chosen), tight
+                if not (tight.any() and (self.space.scans or self.space.slow)):
+                    break
+            else:
+                too_little = tight
+            if reached:
+                tight = 0.5 * (too_little + enough)
+            else:
+                own = built.space.excess(built.space.numbers(point))[:, 0].max(axis=1)
+                tight = reserves(excess, own, part)
+                part = 1.0 - 0.7 * (1.0 - part)
             self.space = replace(
                 self.space,
                 constraints=tuple(
                     replace(d, limit=d.limit - r if d.at_most else d.limit + r)
-                    for d, r in zip(self.problem.constraints, room.tolist(), strict=True)
+                    for d, r in zip(self.problem.constraints, tight.tolist(), strict=True)
                 ),
             )
             found, chosen = self._with_worst_conditions(self._again(found))
-            _, _, excess = self._as_built(found, chosen)
-            part = 1.0 - 0.7 * (1.0 - part)
-        return found, chosen, excess
+        return reached or (found, chosen)
 
     def _with_counted_yield(
         self, found: Population, chosen: int, least: float
@@ -285,33 +318,38 @@ class _Optimisation:
         free = self._again(self.space.population(found.points))
         near = np.clip(start + NEAR * self.rng.normal(size=(YIELDED, start.shape[1])), 0.0, 1.0)
         sequence = qmc.Sobol(start.shape[1], scramble=True, rng=self.seed)
-        spread = self.space.population(sequence.random(SPREAD))
-        met = spread.points[spread.violation <= 0.0][: 2 * YIELDED]
-        points = np.concatenate([start, near, free.points[:YIELDED], met])
+        points = np.concatenate([start, near, free.points[:YIELDED], sequence.random(SPREAD)])
+        few, many = self._built(DRAWS), self._built(self.effort.draws)
+        required = least
 
         def counted(points: Array) -> tuple[Array, Array]:
-            plain = self.space.population(points)
-            violation = plain.violation.copy()
-            for i in np.flatnonzero(violation <= 0.0):
-                share = self._share(points[i], DRAWS)
-                violation[i] = max(0.0, least - share.met / share.of)
-            return plain.goals, violation
+            goals, violation = self.space(points)
+            meets = violation <= 0.0
+            violation = np.where(meets, 0.0, 1.0 + violation)  # more than any yield may lack
+            violation[meets] = few.shortfall(points[meets], required)
+            return goals, violation
 
-        first = Population(points, *counted(points)).best(YIELDED)
-        ends = search(counted, first, generations=GENERATIONS, patience=PATIENCE, rng=self.rng)
-        tried = ends
-        while (tried.violation <= 0.0).any():
-            best = choose(tried)
-            share = self._share(tried.points[best], self.effort.draws)
-            if share.met >= least * share.of:
-                return ends, int(np.flatnonzero((ends.points == tried.points[best]).all(axis=1))[0])
-            tried = tried[np.arange(len(tried.points)) != best]  # the few draws were lucky
+        def searched(first: Population) -> Population:
+            return search(counted, first, generations=GENERATIONS, patience=PATIENCE, rng=self.rng)
+
+        size = YIELDED * len(self.space.goals)
+        far = sequence.random(FAR * start.shape[1])  # not the best ones, which may all be alike
+        ends = searched(Population(far, *counted(far))) + Population(points, *counted(points))
+        proven = ends[:0]
+        for _ in range(TRIALS):
+            ends = searched(ends.best(size))
+            meets = ends[ends.violation <= 0.0]
+            front = meets[non_dominated(meets.goals)]
+            reached = many.shortfall(front.points, least) <= 0.0
+            proven = proven + front[reached]
+            lucky = [many.share(point) for point in front.points[~reached][:FEW]]
+            if not lucky:
+                break
+            required += max(least - share.met / share.of for share in lucky)
+            ends = Population(ends.points, *counted(ends.points))
+        if len(proven.points):
+            return proven, self._choose(proven)
         return self.space.population(np.concatenate([start, ends.points])), 0
-
-    def _share(self, point: Array, draws: int) -> Share:
-        """Return the yield of a design."""
-        device = self.problem.study.device_at(self._values(point))
-        return share_of(excess_as_built(self.problem, self.space, device, point, draws, self.seed))
 
     # ---- the search ------------------------------------------------------------------------------
 
@@ -347,7 +385,7 @@ class _Optimisation:
             rng=self.rng,
             progress=progress,
         )
-        while not space.confirm(found.points[[choose(found)]]):
+        while not space.confirm(found.points[[self._choose(found)]]):
             found = space.known().best(len(first.points))
         return found
 
@@ -374,7 +412,7 @@ class _Optimisation:
         A cutting-set method (Mutapcic and Boyd 2009).
         """
         for attempt in range(ROUNDS):
-            chosen = choose(found)
+            chosen = self._choose(found)
             worst = self._worse_cases(found.points[chosen], attempt)
             if not len(worst):
                 return found, chosen
@@ -382,13 +420,14 @@ class _Optimisation:
                 self.space, cases=np.unique(np.concatenate([self.space.cases, worst]), axis=0)
             )
             found = self._again(found)
-        for i in np.argsort(found.goals[:, 0], kind="stable"):  # a little beside the best, then
+        for i in np.argsort(found.goals[:, 0], kind="stable")[:BESIDE]:
             if found.violation[i] <= 0.0 and not len(self._worse_cases(found.points[i], ROUNDS)):
                 return found, int(i)
-        self.warnings.append(
-            f"worse conditions were found in each of {ROUNDS} searches; there may be others yet"
-        )
-        return found, choose(found)
+        return found, self._choose(found)
+
+    def _choose(self, found: Population) -> int:
+        """The place of the best design."""
+        return choose(found, self.space.prices(found.points))
 
     def _again(self, found: Population) -> Population:
         """The search continued, after conditions or limits have changed."""
@@ -453,6 +492,61 @@ class _Optimisation:
             for goal, value in zip(self.space.goals, wanted, strict=True)
         )
 
+    # ---- digits and margins ----------------------------------------------------------------------
+
+    def _holds(self, point: Array, least: float | None) -> Callable[[Array], bool]:
+        """Return a function that verifies a design near another by conditions and yield."""
+        sure = not len(self._worse_cases(point, ROUNDS))
+
+        def holds(near: Array) -> bool:
+            if sure and len(self._worse_cases(near, ROUNDS)):
+                return False
+            return not least or not self._built(self.effort.draws).shortfall(near[None], least)[0]
+
+        return holds
+
+    def _cheaper(self, point: Array, holds: Callable[[Array], bool]) -> Array:
+        """Return the design with the cheapest parts that change neither goals nor feasibility."""
+        space = self.space
+        if space.scans or any(goal.name == PRICE for goal in space.goals):
+            return point
+        for i, variable in enumerate(space.variables):
+            if not (variable.catalogue and variable.catalogue.priced):
+                continue
+            others = np.tile(point, (variable.choices, 1))
+            others[:, i] = [variable.part(row) for row in range(variable.choices)]
+            goals, violation = space(np.concatenate([point[None], others]))
+            alike = (violation[1:] <= 0.0) & (goals[1:] == goals[0]).all(axis=1)
+            prices = space.prices(others)
+            for row in np.argsort(prices, kind="stable"):
+                if prices[row] >= space.prices(point[None])[0]:
+                    break
+                if alike[row] and holds(others[row]):
+                    point = others[row]
+        return point
+
+    def _steady(
+        self, found: Population, beside: tuple[Margin, ...], least: float | None
+    ) -> SteadyDesign | None:
+        """Return the best design with a margin, where the chosen one has less."""
+        if self.space.slow or all(margin.part >= MARGIN for margin in beside):
+            return None
+        built = self._built(DRAWS) if least else None
+        within = Steady(self.space, MARGIN, built, least)
+        point = within.best(found.points, self.rng, self.seed)
+        if point is None:
+            return None
+        goals = within(point[None])[0][0]
+        values = self._values(point)
+        signs = [-1.0 if goal.maximise else 1.0 for goal in self.space.goals]
+        return SteadyDesign(
+            MARGIN,
+            values,
+            self._parts(point),
+            self.problem.study.device_at(values),
+            tuple(float(sign * goal) for sign, goal in zip(signs, goals, strict=True)),
+        )
+
     # ---- what comes back -------------------------------------------------------------------------
 
     def _reached(
@@ -488,7 +582,9 @@ class _Optimisation:
         """Return the value of every key of a design, SI, with the linked keys."""
         found: dict[str, Array] = {}
         for variable, part in zip(self.space.variables, point, strict=True):
-            found |= variable.columns(np.asarray(part))
+            for key, value in variable.columns(np.asarray(part)).items():
+                digits = 17 if variable.choices else 15  # the last ones are those of its place
+                found[key] = np.asarray(float(f"{float(value):.{digits}g}"))
         study = self.problem.study
         linked = with_links(study.device, found, study.links)
         return {key: float(value) for key, value in linked.items()}
@@ -520,6 +616,7 @@ class _Optimisation:
         keep = np.flatnonzero(all_cases.violation <= WORSE)
         keep = np.union1d(keep, [chosen])
         keep = keep[non_dominated(all_cases.goals[keep]) | (keep == chosen)]
+        keep = keep[_distinct(all_cases.goals[keep], int(np.flatnonzero(keep == chosen)[0]))]
         members = all_cases[keep]
         order = np.argsort(members.goals[:, 0], kind="stable")
         signs = np.array([-1.0 if goal.maximise else 1.0 for goal in space.goals])
@@ -546,11 +643,24 @@ def _combinations(space: DesignSpace, most: int) -> Array | None:
     return np.resize(found, (max(4, len(found)), len(choices)))
 
 
-def choose(found: Population) -> int:
+def _distinct(goals: Array, chosen: int) -> NDArray[np.int64]:
+    """Return the designs of a front whose goals differ by more than a thousandth from others.
+
+    The chosen one comes first, and others follow in their order.
+    """
+    kept = [chosen]
+    for i in range(len(goals)):
+        near = np.abs(goals[kept] - goals[i]) <= WORSE * np.abs(goals[i])
+        if not near.all(axis=1).any():
+            kept.append(i)
+    return np.array(sorted(kept), np.int64)
+
+
+def choose(found: Population, prices: Array) -> int:
     """Return the best design; of a front the one nearest to the best of all goals at once.
 
-    Each goal is measured by its range over the front. If no design meets the constraints, return
-    the design with the smallest violation.
+    Each goal is measured by its range over the front; of equal designs the cheapest is taken. If no
+    design meets the constraints, return the design with the smallest violation.
     """
     meets = np.flatnonzero(found.violation <= 0.0)
     if not len(meets):
@@ -559,4 +669,4 @@ def choose(found: Population) -> int:
     front = np.flatnonzero(non_dominated(goals))
     low, high = goals[front].min(axis=0), goals[front].max(axis=0)
     far = ((goals[front] - low) / np.where(high > low, high - low, 1.0)) ** 2
-    return int(meets[front[far.sum(axis=1).argmin()]])
+    return int(meets[front[np.lexsort((prices[meets[front]], far.sum(axis=1)))[0]]])

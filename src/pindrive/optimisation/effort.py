@@ -29,7 +29,7 @@ class Effort:
     patience: int = 25
 
 
-BATCHED: Final = Effort(1 << 20, 128, 400, 1024, 41, 20_000)
+BATCHED: Final = Effort(1 << 17, 128, 400, 1024, 41, 20_000)
 """Size of a search with motions of `simulate_batch`."""
 SINGLE: Final = Effort(1 << 11, 24, 60, 64, 9, 500, 12)
 """Size of a search with motions that are simulated one by one."""

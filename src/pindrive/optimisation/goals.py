@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import nan
+from math import log, nan
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
@@ -79,6 +79,14 @@ class Variable:
             key: axis.ppf(parts) if isinstance(axis, Distribution) else axis.at(self.index(parts))
             for key, axis in self.axes.items()
         }
+
+    def place(self, value: float) -> float:
+        """The part of a range that stands for a value of its key, SI."""
+        (axis,) = self.axes.values()
+        assert isinstance(axis, Distribution)
+        if axis.kind == "loguniform":
+            return log(value / axis.first) / log(axis.second / axis.first)
+        return (value - axis.first) / (axis.second - axis.first)
 
     def part(self, row: int) -> float:
         """The part that stands for a row."""

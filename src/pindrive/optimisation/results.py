@@ -30,6 +30,8 @@ from pindrive.study.outputs import NUMBERS, Constraint, Share, attributes
 
 if TYPE_CHECKING:
     from pindrive.optimisation.design_space import DesignSpace
+    from pindrive.optimisation.margins import Margin
+    from pindrive.optimisation.steady import SteadyDesign
 
 __all__ = ["Alternative", "ConstraintResult", "Design", "Front", "Map", "Reached"]
 
@@ -171,6 +173,10 @@ class Design(lazy.NotebookHtml):
         front: Pareto front, with two or three goals.
         maps: Maps of the feasible region around the design.
         alternatives: The nearest parts of each catalogue.
+        margins: Ends of the way of each variable with a range, all others unchanged; empty of
+            scans, and where no design meets the constraints.
+        steady: The best design whose variables may all move by a margin; None where the design has
+            that margin itself, or where none was found.
         built: The part of the designs built within the tolerances that meets all constraints; None
             where there are no tolerances.
         gain: The part by which the first goal gets better where a constraint is relaxed.
@@ -190,6 +196,8 @@ class Design(lazy.NotebookHtml):
     front: Front | None
     maps: tuple[Map, ...]
     alternatives: tuple[Alternative, ...]
+    margins: tuple[Margin, ...]
+    steady: SteadyDesign | None
     built: Share | None
     gain: float
     at_ends: tuple[tuple[str, str], ...]
@@ -249,7 +257,8 @@ class Design(lazy.NotebookHtml):
 
         Returns:
             The varied keys and the goals of the design, SI; over `limit` the value, the excess and
-            the relaxed limit of each constraint; over `front` the keys and goals of the front; over
+            the relaxed limit of each constraint; over `margin`, by the first key of a variable, the
+            values between which nothing changes; over `front` the keys and goals of the front; over
             the axes of each map its goal and whether the constraints are met.
         """
         data: dict[str, Any] = {
@@ -273,6 +282,9 @@ class Design(lazy.NotebookHtml):
             ("relaxed", [d.relaxed for d in self.constraints]),
         ):
             data[f"limit_{name}"] = ("limit", np.array(values, np.float64))
+        for side in ("below", "above"):
+            ends = [getattr(margin, side).value for margin in self.margins]
+            data[f"margin_{side}"] = ("margin", np.array(ends, np.float64))
         if self.front:
             for key, column in self.front.columns.items():
                 data[f"front_{variable(key)}"] = ("front", column, NUMERIC_KEYS[key].attributes)
@@ -287,6 +299,7 @@ class Design(lazy.NotebookHtml):
             for dim, key, along in zip(reversed(dims), drawn.keys, drawn.along, strict=True):
                 data[dim] = (dim, along, {**NUMERIC_KEYS[key].attributes, "key": key})
         coords = {
+            "margin": [next(iter(margin.variable.axes)) for margin in self.margins],
             "limit": [d.constraint.text() for d in self.constraints],
             "limit_unit": ("limit", [NUMBERS[d.constraint.name].unit for d in self.constraints]),
         }

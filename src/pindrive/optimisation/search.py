@@ -39,7 +39,7 @@ class Population:
     goals: Array
     violation: Array
 
-    def __getitem__(self, which: NDArray[np.int64] | NDArray[np.bool_]) -> Population:
+    def __getitem__(self, which: NDArray[np.int64] | NDArray[np.bool_] | slice) -> Population:
         """Return some members."""
         return Population(self.points[which], self.goals[which], self.violation[which])
 
@@ -171,13 +171,15 @@ def _ranked(goals: Array, count: int) -> NDArray[np.int64]:
     if goals.shape[1] == 1 or not len(goals):
         return np.argsort(goals[:, 0], kind="stable")[:count]
     left = _spread(goals, 4 * count) if len(goals) > 4 * count else np.arange(len(goals))
-    order: list[int] = []
+    first = np.unique(goals[left], axis=0, return_index=True)[1]
+    repeated = np.delete(left, first)
+    left, order = left[np.sort(first)], list[int]()
     while len(left) and len(order) < count:
         front = non_dominated(goals[left])
         members = left[front]
         order += [*members[np.argsort(-_loneliness(goals[members]), kind="stable")]]
         left = left[~front]
-    return np.array(order[:count], np.int64)
+    return np.array([*order, *repeated][:count], np.int64)
 
 
 def _spread(goals: Array, count: int) -> NDArray[np.int64]:

@@ -267,11 +267,14 @@ def implied_links(
 
 
 def with_links(
-    device: pindrive.DeviceFile, columns: Columns, links: Mapping[str, Linked]
+    device: pindrive.DeviceFile,
+    columns: Columns,
+    links: Mapping[str, Linked],
+    ratios: Columns | None = None,
 ) -> Columns:
     """Return the columns with the columns of linked keys.
 
-    The links have no circle (see `circle`).
+    The links have no circle (see `circle`). `ratios` replace the factors of links.
     """
 
     def value(key: str) -> NDArray[np.float64]:
@@ -280,7 +283,8 @@ def with_links(
         if key in links:
             link = links[key]
             leader = value(link.of) / value(link.over) if link.over else value(link.of)
-            return link.times * leader
+            times = ratios[key] if ratios else np.asarray(link.times)
+            return times * leader
         if key in COEFFICIENT_OF and key in device.derived:
             return np.asarray(friction_force(key, lambda name: value(QUANTITIES[name].key)))
         if key in LEFT_OUT and device.values()[key] is None:
