@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import product
 from math import isclose
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,10 @@ from numpy.typing import NDArray
 import pindrive as pd
 from design_problems import MOUSE, SMALL
 from pindrive.optimisation import Design, Effort
+from pindrive.optimisation.goals import Variable
 from pindrive.optimisation.margins import WORSE
+from pindrive.optimisation.rounding import rounded
+from pindrive.study.distributions import Distribution
 
 Array = NDArray[np.float64]
 PROBLEM: dict[str, Any] = {
@@ -132,6 +136,24 @@ def test_printed_digits_give_the_printed_goal(found: Design, tmp_path: Path) -> 
     assert device.drive.stiffness == k
     settled = pd.simulate(device.drive, device.release).transient.settling_time
     assert isclose(float(settled), value, rel_tol=1e-9)
+
+
+@pytest.mark.parametrize(("slope", "digits"), [(0.0, 3), (2.0, 4), (300.0, 6)])
+def test_digits_are_as_many_as_the_goal_needs(slope: float, digits: int) -> None:
+    """A goal that grows with the distance from its best place."""
+    axis = Distribution("uniform", 50.0, 200.0)
+    variable = Variable("drive.stiffness", {"drive.stiffness": axis})
+    space: Any = SimpleNamespace(variables=(variable,), scans=False, slow=False)
+    best = (123.456789 - 50.0) / 150.0
+
+    def worth(points: Array) -> tuple[Array, Array]:
+        return 1.0 + slope * abs(points - best), np.zeros(len(points))
+
+    (part,) = rounded(space, worth, np.array([best]), lambda _: True)
+    value = float(variable.columns(part)["drive.stiffness"])
+    assert float(f"{value:.{digits}g}") == pytest.approx(value, rel=1e-14)
+    assert float(f"{value:.{digits - 1}g}") != pytest.approx(value, rel=1e-14)
+    assert rounded(space, worth, np.array([best]), lambda _: False) == best
 
 
 def test_equal_parts_fall_to_the_second_goal_or_to_the_price(tmp_path: Path) -> None:

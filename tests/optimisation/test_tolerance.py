@@ -44,6 +44,7 @@ def test_a_built_device_is_the_design_with_its_values_off() -> None:
         "axes": {
             "drive.stiffness": {"uniform": ["50 N/m", "200 N/m"]},
             "plate.kinetic": {"uniform": ["10 mN", "20 mN"]},
+            "plate.static": {"uniform": ["30 mN", "40 mN"]},
             "finger.static": {"times": 1.3, "of": "finger.kinetic"},
         },
         "conditions": {"finger.kinetic": {"uniform": ["3 mN", "9 mN"]}},
@@ -58,9 +59,10 @@ def test_a_built_device_is_the_design_with_its_values_off() -> None:
     device = pd.load_device(MOUSE)
     space, problem = space_of(device, tables)
     built = Built.drawn(space, problem.tables["tolerances"], 4, 7)
-    points = np.random.default_rng(1).random((3, 2))
+    points = np.random.default_rng(1).random((3, 3))
     numbers = built.numbers(points)
     stiffness, plate = 50.0 + 150.0 * points[:, 0], 0.01 + 0.01 * points[:, 1]
+    static = 0.03 + 0.01 * points[:, 2]
     places = dict(zip(built.tolerances, built.parts.T, strict=True))
     for i in range(3):
         for draw in range(4):
@@ -72,7 +74,7 @@ def test_a_built_device_is_the_design_with_its_values_off() -> None:
                     normal.tolerances["plate.kinetic"].ppf(places["plate.kinetic"][draw])
                 ),
             }
-            at["plate.static"] = 0.0265 / 0.022 * at["plate.kinetic"]
+            at["plate.static"] = static[i] / plate[i] * at["plate.kinetic"]
             for case, touch in enumerate((0.003, 0.006, 0.009)):
                 own = at | {"finger.kinetic": touch, "finger.static": 1.3 * touch}
                 file = problem.study.device_at(own)
@@ -108,7 +110,7 @@ def test_a_yield_that_is_reached_is_counted_from_all_draws() -> None:
 
 def test_devices_without_a_number_count_as_the_worst() -> None:
     excess = np.array([[0.1, 0.3, 0.2, np.inf, np.inf], [0.0, 0.0, 0.0, 0.0, 0.0]])
-    assert reserves(excess, np.array([0.05, -1.0]), 0.9) == pytest.approx([0.25, 1.0])
+    assert reserves(excess, np.array([0.05, -1.0]), 0.7) == pytest.approx([0.25, 1.0])
     none = np.full((1, 3), np.inf)
     assert reserves(none, np.array([0.05]), 0.9) == pytest.approx([0.0])
 
@@ -116,7 +118,7 @@ def test_devices_without_a_number_count_as_the_worst() -> None:
 def test_tighter_limits_give_the_yield_of_scans_and_no_more(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """The stroke grows with the stiffness, which scatters by 10 %; the smear is least at zero."""
+    """The stroke jumps down where it is small: limits as tight as the scatter are too tight."""
     low, high = np.array([100.0, 0.1]), np.array([1000.0, 1.0])
 
     def evaluated(
@@ -126,7 +128,7 @@ def test_tighter_limits_give_the_yield_of_scans_and_no_more(
         ratio = (columns["drive.damping_ratio"] - low[1]) / (high[1] - low[1])
         return {
             "worst_smear": 0.1 + stiffness**2 + ratio**2,
-            "worst_stroke": stiffness + ratio,
+            "worst_stroke": np.where(stiffness + ratio < 1.3, 0.5, stiffness + ratio),
             "status": np.full(size, int(Status.ok)),
         }
 
@@ -148,9 +150,9 @@ def test_tighter_limits_give_the_yield_of_scans_and_no_more(
     )
 
     def lacking(parts: Array) -> float:
-        """Stroke beyond its limit of a device 8 % below, which one in ten are."""
+        """Stroke beyond the jump of a device 8 % below, which one in ten are."""
         stiffness = low[0] + (high[0] - low[0]) * parts[0]
-        return float((0.92 * stiffness - low[0]) / (high[0] - low[0]) + parts[1] - 1.0)
+        return float((0.92 * stiffness - low[0]) / (high[0] - low[0]) + parts[1] - 1.3)
 
     best = optimize.minimize(
         lambda parts: 0.1 + float(parts @ parts),
@@ -159,4 +161,4 @@ def test_tighter_limits_give_the_yield_of_scans_and_no_more(
     )
     assert found.feasible and found.built is not None
     assert found.built.met >= 0.9 * found.built.of
-    assert 0.99 * best.fun <= found.goals[0].value <= 1.03 * best.fun
+    assert 0.99 * best.fun <= found.goals[0].value <= 1.08 * best.fun  # 1.19 without relaxation

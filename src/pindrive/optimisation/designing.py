@@ -298,8 +298,10 @@ class _Optimisation:
         self, found: Population, chosen: int, least: float
     ) -> tuple[Population, int]:
         """Search with the yield of each design counted, at conditions that are worst for it."""
-        for attempt in range(ROUNDS):
-            found, chosen = self._counted(found, chosen, least)
+        self.space = replace(self.space, constraints=self.problem.constraints)
+        self.space = replace(self.space, cases=self._decisive(found.points))
+        for attempt in range(TRIALS):
+            found, chosen = self._counted(found, chosen, least, wide=not attempt)
             worst = self._worse_cases(found.points[chosen], attempt)
             if not len(worst):
                 break
@@ -307,18 +309,29 @@ class _Optimisation:
             self.space = replace(self.space, cases=cases)
         return found, chosen
 
-    def _counted(self, found: Population, chosen: int, least: float) -> tuple[Population, int]:
+    def _decisive(self, points: Array) -> Array:
+        """Return the conditions that are worst for a number of some designs."""
+        sequence = qmc.Sobol(points.shape[1], scramble=True, rng=self.seed)
+        numbers = self.space.numbers(np.concatenate([points, sequence.random(SPREAD)]))
+        bad = np.concatenate([self.space.excess(numbers), self.space.minimised(numbers)])
+        found: Array = self.space.cases[np.unique(bad.argmax(axis=2))]
+        return found
+
+    def _counted(
+        self, found: Population, chosen: int, least: float, *, wide: bool
+    ) -> tuple[Population, int]:
         """Search on from a design, with the yield of each design counted.
 
         Tighter limits give away what a jump of a number allows: devices on its near side need no
         margin. Limits are the original ones here, and all designs are built with the same draws.
         """
         start = found.points[[chosen]]
-        self.space = replace(self.space, constraints=self.problem.constraints)
-        free = self._again(self.space.population(found.points))
         near = np.clip(start + NEAR * self.rng.normal(size=(YIELDED, start.shape[1])), 0.0, 1.0)
         sequence = qmc.Sobol(start.shape[1], scramble=True, rng=self.seed)
-        points = np.concatenate([start, near, free.points[:YIELDED], sequence.random(SPREAD)])
+        points = np.concatenate([start, near, found.points])
+        if wide:
+            free = self._again(self.space.population(found.points))
+            points = np.concatenate([points, free.points[:YIELDED], sequence.random(SPREAD)])
         few, many = self._built(DRAWS), self._built(self.effort.draws)
         required = least
 
@@ -333,8 +346,10 @@ class _Optimisation:
             return search(counted, first, generations=GENERATIONS, patience=PATIENCE, rng=self.rng)
 
         size = YIELDED * len(self.space.goals)
-        far = sequence.random(FAR * start.shape[1])  # not the best ones, which may all be alike
-        ends = searched(Population(far, *counted(far))) + Population(points, *counted(points))
+        ends = Population(points, *counted(points))
+        if wide:
+            far = sequence.random(FAR * start.shape[1])  # not the best ones, which may be alike
+            ends = searched(Population(far, *counted(far))) + ends
         proven = ends[:0]
         for _ in range(TRIALS):
             ends = searched(ends.best(size))

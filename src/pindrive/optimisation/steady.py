@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import product
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -21,8 +20,6 @@ if TYPE_CHECKING:
     from pindrive.optimisation.design_space import DesignSpace
 
 Array = NDArray[np.float64]
-CORNERS: Final = 5
-"""Largest number of variables of which all corners are tried."""
 MEMBERS: Final = 32
 """Designs of the search."""
 GENERATIONS: Final = 60
@@ -31,7 +28,7 @@ PATIENCE: Final = 10
 """Generations without progress after which it ends."""
 SPREAD: Final = 1024
 """Designs over all ranges that it begins with, and devices that verify its result."""
-SEARCHES: Final = 4
+SEARCHES: Final = 6
 """Largest number of searches, each with the places that were worse than expected."""
 ADDED: Final = 16
 """Such places that the next search considers."""
@@ -66,7 +63,7 @@ class Steady:
     def __init__(
         self, space: DesignSpace, margin: float, built: Built | None, least: float | None
     ) -> None:
-        """Take the corners of the box within the margin, and the middle of each face.
+        """Begin with the middle of the margin and of its faces.
 
         Args:
             space: Space of the designs, with its conditions, constraints and goals.
@@ -76,16 +73,11 @@ class Steady:
         """
         self._space, self._built, self._least = space, built, least or 0.0
         keys = [key for v in space.variables if not v.choices for key in v.axes]
-        corners = (
-            np.array([*product((0.0, 1.0), repeat=len(keys))])
-            if len(keys) <= CORNERS
-            else np.round(qmc.Sobol(len(keys), rng=1).random(1 << CORNERS))
-        )
         faces = np.full((2 * len(keys) + 1, len(keys)), 0.5)
         for i in range(len(keys)):
             faces[2 * i, i], faces[2 * i + 1, i] = 0.0, 1.0
         self._tolerances = {key: f"{100.0 * margin:g} %" for key in keys}
-        self._places = np.concatenate([corners, faces])
+        self._places = faces
 
     def __call__(self, points: Array) -> tuple[Array, Array]:
         """Goals (n, g) and violations (n,) at worst, of designs (n, k)."""
