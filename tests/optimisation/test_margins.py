@@ -26,7 +26,7 @@ PROBLEM: dict[str, Any] = {
         "drive.stiffness": {"uniform": ["50 N/m", "200 N/m"]},
         "drive.damping_ratio": {"uniform": [0.05, 0.6]},
     },
-    "specification": {"peak_displacement": ">= 2.05 mm"},
+    "specification": {"peak_displacement": ">= 2.1 mm"},
     "goals": {"minimise": "settling_time"},
 }
 
@@ -57,7 +57,7 @@ def well(found: Design, key: str, value: float) -> bool:
     time, peak = numbers(values["drive.stiffness"], values["drive.damping_ratio"])
     return bool(
         time <= (1.0 + WORSE) * found.goals[0].value * (1.0 + 1e-9)
-        and peak >= 2.05e-3 * (1.0 - 1e-9)
+        and peak >= 2.1e-3 * (1.0 - 1e-9)
     )
 
 
@@ -83,7 +83,7 @@ def test_a_variable_may_move_to_its_margins_and_no_further(found: Design) -> Non
                 )
             )
             reached = time if end.number.name == "transient_settling_time" else peak
-            assert end.reached == pytest.approx(float(reached), rel=1e-3)
+            assert end.reached == pytest.approx(float(reached), rel=5e-3)
             if end.number.name == "transient_settling_time":
                 assert end.jumps == (not end.reached <= 1.055 * found.goals[0].value)
     assert ended >= 2
@@ -96,7 +96,7 @@ def test_the_design_with_a_margin_is_as_good_wherever_its_variables_are(found: D
     k, z = (steady.values[key] for key in PROBLEM["axes"])
     off = np.random.default_rng(4).uniform(-steady.margin, steady.margin, (2, 4000))
     time, peak = numbers(k * (1.0 + off[0]), z * (1.0 + off[1]))
-    assert peak.min() >= 2.05e-3
+    assert peak.min() >= 2.1e-3
     assert time.max() <= 1.01 * steady.goals[0]
     assert steady.goals[0] >= found.goals[0].value
     assert steady.device.drive.stiffness == k
@@ -109,7 +109,7 @@ def test_the_design_with_a_margin_is_the_best_of_a_grid(found: Design) -> None:
     for a, b in product(np.linspace(-0.01, 0.01, 5), repeat=2):
         time, peak = numbers(k * (1.0 + a), z * (1.0 + b))
         longest, least = np.maximum(longest, time), np.minimum(least, peak)
-    best = longest[least >= 2.05e-3].min()
+    best = longest[least >= 2.1e-3].min()
     assert found.steady.goals[0] <= 1.01 * best
 
 
@@ -128,7 +128,7 @@ def test_printed_digits_give_the_printed_goal(found: Design, tmp_path: Path) -> 
     k, z = (float(printed[key]) for key in PROBLEM["axes"])
     time, peak = numbers(k, z)
     name, value = "transient_settling_time", found.goals[0].value
-    assert shown(name, float(time)) == shown(name, value) and peak >= 2.05e-3
+    assert shown(name, float(time)) == shown(name, value) and peak >= 2.1e-3
     assert max(len(printed[key].replace(".", "").lstrip("0")) for key in PROBLEM["axes"]) <= 6
     path = tmp_path / "device.toml"
     path.write_text(designed_file(found, path), "utf-8")

@@ -20,7 +20,7 @@ from pindrive.fitting.recording import Recording
 from pindrive.fitting.residuals import Residuals, first_noise, tested
 from pindrive.fitting.results import Estimate, Fit
 from pindrive.fitting.search import polished, search
-from pindrive.fitting.structure import Misfit, explained, laws, moved, oscillations
+from pindrive.fitting.structure import Misfit, misfit
 from pindrive.fitting.whitening import Whitening, estimated
 from pindrive.lazy import stats
 from pindrive.motion.drive import Drive
@@ -271,41 +271,12 @@ class _Solved:
 
     def _misfit(self) -> Misfit:
         """Look for laws that explain what the noise does not, and for parameters that move."""
-        model, theta = self._model, self.theta
-        off, _ = self._problem.linearised(theta)
-        tried = [*laws(model, theta)]
-        found: dict[str, float] = {}
-        for i, block in enumerate(model.blocks):
-            others = [(n, b) for n, b in zip(self._noise, model.blocks, strict=True) if b != block]
-            rows = [
-                (
-                    words,
-                    columns[block.place],
-                    np.concatenate(
-                        [np.empty((0, columns.shape[1]))]
-                        + [n.slopes(off[b.place], columns[b.place]) for n, b in others]
-                    ),
-                    count,
-                )
-                for words, columns, count in tried
-            ]
-            m = len(off) - block.size
-            recording = model.recordings[block.recording]
-            times = block.times - float(model.offset(theta, block.recording))
-            rows += [
-                (words, columns, np.zeros((m, columns.shape[1])), count)
-                for words, columns, count in oscillations(times, recording.interval)
-            ]
-            noise = _noise_of(model, block)
-            start = replace(self._asked(block), step=noise.step)
-            gains = explained(self._linearised(i), start, noise, rows)
-            found = {key: max(found.get(key, 0.0), gains.get(key, 0.0)) for key in found | gains}
-        times = np.concatenate([block.times for block in model.blocks])
-        names = [p.name for p in model.parameters if not p.of_noise]
-        scores = self._problem.residuals(theta)
-        halves, changes = moved(scores, self._problem.slopes(theta), times, names)
-        order = sorted(found.items(), key=lambda item: -item[1])
-        return Misfit(dict(order), halves, changes)
+        steps = (_noise_of(self._model, block).step for block in self._model.blocks)
+        least = [
+            replace(self._asked(b), step=s) for b, s in zip(self._model.blocks, steps, strict=True)
+        ]
+        channels = [self._linearised(i) for i in range(len(self._model.blocks))]
+        return misfit(self._model, self.theta, self._problem, self._noise, channels, least)
 
     def _take(self, noises: Sequence[Noise]) -> None:
         """Take noises for the channels: with other parameters of the sensors."""

@@ -15,8 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pindrive import _core
+from pindrive.fitting.assembly import Assembly
 from pindrive.fitting.noise import Noise, column
-from pindrive.fitting.parameters import Assembly, Parameter
+from pindrive.fitting.parameters import Parameter
 from pindrive.fitting.recording import Recording
 from pindrive.motion.drive import Drive
 from pindrive.motion.motion import Motion

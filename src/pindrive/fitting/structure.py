@@ -10,11 +10,12 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from pindrive.fitting.least_squares import Problem
 from pindrive.fitting.model import Model
 from pindrive.fitting.noise import Noise
 from pindrive.fitting.noise_choice import Linearised, Solved
 from pindrive.fitting.parameters import parameters
-from pindrive.fitting.whitening import UNLIKELY
+from pindrive.fitting.whitening import UNLIKELY, Whitening
 from pindrive.lazy import stats
 from pindrive.motion.drive import Contact, Drive, Stribeck
 
@@ -58,6 +59,56 @@ class Misfit:
     def found(self) -> bool:
         """True if a law explains what noise does not, or if parameters move."""
         return bool(self.explanations) or self.halves < UNLIKELY
+
+
+def misfit(
+    model: Model,
+    theta: Array,
+    problem: Problem,
+    noise: Sequence[Whitening],
+    channels: Sequence[Linearised],
+    least: Sequence[Noise],
+) -> Misfit:
+    """Look for laws that explain what the noise does not, and for parameters that move.
+
+    Args:
+        model: Fitted model.
+        theta: Values of its parameters, SI, shape (k,).
+        problem: Problem of the fit, with its noise.
+        noise: Noise of each channel.
+        channels: Residuals of each channel.
+        least: Noise of each channel that is known, with nothing chosen.
+    """
+    off, _ = problem.linearised(theta)
+    tried, found = [*laws(model, theta)], dict[str, float]()
+    for i, block in enumerate(model.blocks):
+        others = [(n, b) for n, b in zip(noise, model.blocks, strict=True) if b != block]
+        rows = [
+            (
+                words,
+                columns[block.place],
+                np.concatenate(
+                    [np.empty((0, columns.shape[1]))]
+                    + [n.slopes(off[b.place], columns[b.place]) for n, b in others]
+                ),
+                count,
+            )
+            for words, columns, count in tried
+        ]
+        recording = model.recordings[block.recording]
+        times = block.times - float(model.offset(theta, block.recording))
+        unseen = sum(b.size for _, b in others)  # one channel alone has the oscillation
+        rows += [
+            (words, columns, np.zeros((unseen, columns.shape[1])), count)
+            for words, columns, count in oscillations(times, recording.interval)
+        ]
+        chosen = recording.noise.get(block.channel, Noise())
+        gains = explained(channels[i], least[i], chosen, rows)
+        found = {key: max(found.get(key, 0.0), gains.get(key, 0.0)) for key in found | gains}
+    times = np.concatenate([block.times for block in model.blocks])
+    names = [p.name for p in model.parameters if not p.of_noise]
+    halves, changes = moved(problem.residuals(theta), problem.slopes(theta), times, names)
+    return Misfit(dict(sorted(found.items(), key=lambda item: -item[1])), halves, changes)
 
 
 def moved(
