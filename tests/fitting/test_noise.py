@@ -112,7 +112,7 @@ def test_given_noise_is_taken() -> None:
     assert left.rejected == {}
     assert [e.name for e in found.estimates] == FREE
     (left,) = fitted(x, "choose, white", profiles=False).residuals
-    assert left.model.drift == "linear"
+    assert left.model.drift == "linear" and not left.model.choose
     assert fitted(x, "white", profiles=False).residuals[0].structured
 
 

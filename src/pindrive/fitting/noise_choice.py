@@ -123,6 +123,7 @@ def chosen(at: Linearised, start: Noise, recorded: Array) -> tuple[Noise, dict[s
         start: Noise with what is known of it.
         recorded: Samples, SI, shape (n,), which tell if they are rounded.
     """
+    start = replace(start, choose=False)
     if float(np.abs(at.off).max()) <= EXACT * float(np.ptp(recorded)):
         return start, {}  # there is no noise to choose
     step = step_of(recorded)
