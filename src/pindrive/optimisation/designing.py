@@ -204,11 +204,10 @@ class _Optimisation:
             found, chosen = self._with_counted_yield(found, chosen, least)
         self.space = replace(self.space, constraints=self.problem.constraints)  # original limits
         point = found.points[chosen]
-        if found.violation[chosen] <= 0.0:
-            holds = self._holds(point, least)
-            point = rounded(self.space, self.space, self._cheaper(point, holds), holds)
-            others = np.delete(np.arange(len(found.points)), chosen)
-            found, chosen = self.space.population(point[None]) + found[others], 0
+        holds = self._holds(point, least)
+        point = rounded(self.space, self._confirmed, self._cheaper(point, holds), holds)
+        others = np.delete(np.arange(len(found.points)), chosen)
+        found, chosen = self.space.population(point[None]) + found[others], 0
         built = self._built(self.effort.draws).share(point) if self._toleranced else None
         goals, required = self._reached(point, limits)
         feasible = all(d.excess <= 0.0 for d in required) and all(isfinite(r.value) for r in goals)
@@ -511,14 +510,23 @@ class _Optimisation:
 
     def _holds(self, point: Array, least: float | None) -> Callable[[Array], bool]:
         """Return a function that verifies a design near another by conditions and yield."""
-        sure = not len(self._worse_cases(point, ROUNDS))
+        meets = self.space(point[None])[1][0] <= 0.0
+        sure = meets and not len(self._worse_cases(point, ROUNDS))
 
         def holds(near: Array) -> bool:
             if sure and len(self._worse_cases(near, ROUNDS)):
                 return False
-            return not least or not self._built(self.effort.draws).shortfall(near[None], least)[0]
+            return (
+                not (least and meets)
+                or not self._built(self.effort.draws).shortfall(near[None], least)[0]
+            )
 
         return holds
+
+    def _confirmed(self, points: Array) -> tuple[Array, Array]:
+        """Goals and violations of designs, with hand speeds over the whole grid."""
+        self.space.confirm(points)
+        return self.space(points)
 
     def _cheaper(self, point: Array, holds: Callable[[Array], bool]) -> Array:
         """Return the design with the cheapest parts that change neither goals nor feasibility."""

@@ -33,21 +33,23 @@ def rounded(
 ) -> Array:
     """Return the design near another whose values have the fewest digits.
 
-    It meets the constraints, and no goal is worse by more than a thousandth. The other itself is
-    returned where there is none.
+    No goal is worse by more than a thousandth, nor the violation, which is 0 where the constraints
+    are met. The other itself is returned where there is none.
 
     Args:
         space: Space of the designs.
         worth: Function of designs that gives their goals and violations.
-        point: Design that meets the constraints.
+        point: Design to be rounded.
         holds: Function of a design that verifies it further.
     """
     alone = space.scans or space.slow
-    goals, _ = worth(point[None])
+    goals, least = worth(point[None])
     for digits in DIGITS:
         near = _near(space, point, digits, 1 if alone else COMBINATIONS)
         found, violation = worth(near)
-        kept = (violation <= 0.0) & (found <= goals + KEPT * np.abs(goals)).all(axis=1)
+        kept = violation <= (1.0 + KEPT) * least
+        if not least[0]:
+            kept &= (found <= goals + KEPT * np.abs(goals)).all(axis=1)
         best = np.flatnonzero(kept)[np.argsort(found[kept, 0], kind="stable")]
         for i in best[:TRIED]:
             if holds(near[i]):
