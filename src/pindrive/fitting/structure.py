@@ -143,7 +143,7 @@ def moved(
     spare = len(off) - int(np.count_nonzero(seen))
     if more < 1 or spare < 1 or not apart.any():
         return 1.0, {}
-    variance = float(apart @ apart) / spare
+    variance = max(float(apart @ apart) / spare, 1.0)  # it is less of rounded samples
     ratio = (float(joint @ joint) - float(apart @ apart)) / more / variance
     theta = -(v[seen].T / values[seen]) @ (u[:, seen].T @ off)
     spread = np.sqrt(variance * np.sum((v[seen].T / values[seen]) ** 2, axis=1))
@@ -204,8 +204,10 @@ class _Frame:
         across = across[:, values > SEEN * values.max(initial=0.0)]
         before = float(self._rest @ self._rest)
         after = before - float(np.sum((across.T @ self._rest) ** 2))
-        # The size of the noise is estimated anew with each law.
-        gained = self._size * log(before / max(after, 1e-300)) if before else 0.0
+        if self._at.whitening.half:  # many rounded samples tell nothing of the size of the noise
+            gained = before - after
+        else:  # the size is estimated anew with each law
+            gained = self._size * log(before / max(after, 1e-300)) if before else 0.0
         return gained - self._at.criterion
 
 
