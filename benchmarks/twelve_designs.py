@@ -9,7 +9,7 @@ conditions, draws and yields are computed here. Brute force tries `TRIED` design
 best by their goal first, until one has the yield, and then searches around it.
 
 Each result is judged alike: at `JUDGED` values of each condition, and by a yield of 100 000 draws
-of its own seed. Printed are the goal, the yield, the seconds and the motions that each took.
+of its own seed, designs of a front by `FRONT`. Printed are the goal, the yield, the seconds and the motions that each took.
 `apart` is the part by which the goal of `optimise` is behind the best result that keeps the limits;
 of two goals the part by which its front dominates less.
 """
@@ -48,8 +48,8 @@ STEPS = (200, 2000, DRAWS)
 """Draws after which brute force drops a design that fails too often."""
 FEW = 500
 """Draws of each design of SciPy and pymoo."""
-SHOWN = 40
-"""Designs of a front that are judged."""
+FRONT = 10_000
+"""Draws by which each design of a front is judged."""
 SLACK = 1e-9
 """Part of a limit by which rounding may exceed it."""
 
@@ -454,7 +454,7 @@ def judged(judge: Model, points: Array) -> tuple[Array, Array, Array]:
     goals, violation = judge.nominal(points)
     shares = np.full(len(points), nan)
     if judge.problem.least:
-        every = range(0, 5 * DRAWS, 2000)
+        every = range(0, 5 * DRAWS if len(points) == 1 else FRONT, 2000)
         for i, point in enumerate(points):
             shares[i] = np.mean([judge.share(point, slice(b, b + 2000)) for b in every])
     return goals, violation, shares
@@ -482,8 +482,6 @@ def row_of(name: str, problem: Problem) -> float:
     print(name)
     best = {}
     for solver, (points, took, motions) in runs.items():
-        if len(points) > SHOWN:
-            points = points[np.linspace(0, len(points) - 1, SHOWN).round().astype(int)]
         goals, violation, shares = judged(judge, points)
         noise = 3.0 * np.sqrt(problem.least * (1.0 - problem.least) / DRAWS)  # of its own draws
         keeps = (violation <= 1e-3) & ~(shares < problem.least - noise)

@@ -143,7 +143,7 @@ def moved(
     spare = len(off) - int(np.count_nonzero(seen))
     if more < 1 or spare < 1 or not apart.any():
         return 1.0, {}
-    variance = max(float(apart @ apart) / spare, 1.0)  # it is less of rounded samples
+    variance = max(float(apart @ apart) / spare, 1.0)  # rounded samples have less
     ratio = (float(joint @ joint) - float(apart @ apart)) / more / variance
     theta = -(v[seen].T / values[seen]) @ (u[:, seen].T @ off)
     spread = np.sqrt(variance * np.sum((v[seen].T / values[seen]) ** 2, axis=1))
