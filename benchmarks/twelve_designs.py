@@ -9,9 +9,9 @@ conditions, draws and yields are computed here. Brute force tries `TRIED` design
 best by their goal first, until one has the yield, and then searches around it.
 
 Each result is judged alike: at `JUDGED` values of each condition, and by a yield of 100 000 draws
-of its own seed, designs of a front by `FRONT`. Printed are the goal, the yield, the seconds and the motions that each took.
-`apart` is the part by which the goal of `optimise` is behind the best result that keeps the limits;
-of two goals the part by which its front dominates less.
+of its own seed, designs of a front by `FRONT`. Printed are the goal, the yield, the seconds and the
+motions that each took. `apart` is the part by which the goal of `optimise` is behind the best
+result that keeps the limits; of two goals the part by which its front dominates less.
 """
 
 from __future__ import annotations

@@ -554,7 +554,7 @@ class _Optimisation:
         """Return the best design with a margin, where the chosen one has less."""
         if self.space.slow or all(margin.part >= MARGIN for margin in beside):
             return None
-        built = self._built(DRAWS) if least else None
+        built = self._built(DRAWS // 4) if least else None
         within = Steady(self.space, MARGIN, built, least)
         point = within.best(found.points, self.rng, self.seed)
         if point is None:
