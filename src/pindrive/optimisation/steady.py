@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -76,12 +76,12 @@ class Steady:
         faces = np.full((2 * len(keys) + 1, len(keys)), 0.5)
         for i in range(len(keys)):
             faces[2 * i, i], faces[2 * i + 1, i] = 0.0, 1.0
-        self._tolerances = {key: f"{100.0 * margin:g} %" for key in keys}
-        self._places = faces
+        tolerances = {key: f"{100.0 * margin:g} %" for key in keys}
+        self._within = Built(space=space, tolerances=tolerances, parts=faces)
 
     def __call__(self, points: Array) -> tuple[Array, Array]:
         """Goals (n, g) and violations (n,) at worst, of designs (n, k)."""
-        numbers = self._within(self._places, points)
+        numbers = self._within.numbers(points)
         flat = {name: values.reshape(len(points), -1) for name, values in numbers.items()}
         goals, violation = self._space.worth(flat)
         if self._built is not None:
@@ -118,14 +118,13 @@ class Steady:
 
     def _holds(self, point: Array, goals: Array, seed: int) -> bool:
         """Return True if no place within the margin is worse; worse ones count from then on."""
-        inside = np.random.default_rng(seed).random((SPREAD, self._places.shape[1]))
-        numbers = self._within(inside, point[None])
+        within = self._within
+        inside = np.random.default_rng(seed).random((SPREAD, within.parts.shape[1]))
+        numbers = replace(within, parts=inside).numbers(point[None])
         misses = self._space.excess(numbers)[:, 0].max(axis=2) > 0.0
         worst = self._space.minimised(numbers)[:, 0].max(axis=2)
         worse = misses.any(axis=0) | (worst > (goals + WORSE * np.abs(goals))[:, None]).any(axis=0)
-        self._places = np.concatenate([self._places, inside[worse][:ADDED]])
+        if worse.any():
+            parts = np.concatenate([within.parts, inside[worse][:ADDED]])
+            self._within = replace(within, parts=parts)
         return not worse.any()
-
-    def _within(self, places: Array, points: Array) -> dict[str, Array]:
-        """The numbers of designs at places within the margin, each of shape (n, places, cases)."""
-        return Built(space=self._space, tolerances=self._tolerances, parts=places).numbers(points)
