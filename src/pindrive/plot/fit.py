@@ -233,6 +233,8 @@ def plot_friction_curve(found: FrictionCurve) -> Figure:
         look = {"color": PALETTE["curve"], "marker": "o", "mfc": "white"}
         errors = 1e3 * np.array(found.standard_errors)
         axes.plot(MM * speed, 1e3 * force, **look, label="curve and its rows", gid="curve")
+        if len(speed) == 1:
+            axes.axhline(1e3 * force[0], color=PALETTE["curve"], lw=1.0)
         if found.best != "table":
             law = found.laws[found.best]
             at = np.linspace(0.0, float(found.speed[-1]), 300)
@@ -241,13 +243,14 @@ def plot_friction_curve(found: FrictionCurve) -> Figure:
         for way, branch in zip((1.0, -1.0), found.branches.items(), strict=False):
             name, above = branch
             look_of = {"color": PALETTE["curve"], "ls": ":" if way > 0 else "-."}
-            axes.plot(MM * speed, 1e3 * (force + above), **look_of, label=name, gid="branch")
+            along = np.append(speed, found.speed.max())  # a curve of one row is a level
+            level = np.interp(along, speed, force) + above
+            axes.plot(MM * along, 1e3 * level, **look_of, label=name, gid="branch")
         axes.set(xlabel="sliding speed (mm/s)", ylabel="friction force (mN)")
         slope, error = found.slope
-        words = (
-            f"R² {found.r_squared:.2f}, {found.effective_size:.0f} independent samples, "
-            f"slope beyond {slope:.2g} ± {error:.1g} N*s/m"
-        )
+        words = f"R² {found.r_squared:.2f}, {found.effective_size:.0f} independent samples"
+        if len(speed) > 1:
+            words += f", slope beyond {slope:.2g} ± {error:.1g} N*s/m"
         axes.set_title(words, fontsize=SMALL, loc="left")
         axes.legend(frameon=False)
         counts = [*found.aicc]
