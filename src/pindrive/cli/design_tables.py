@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from rich.table import Table
 
-    from pindrive.optimisation.margins import Limit
+    from pindrive.optimisation.goals import Limit
     from pindrive.optimisation.results import ConstraintResult, Design, Front
 
 MOST_OF_FRONT = 12

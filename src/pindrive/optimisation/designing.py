@@ -22,15 +22,16 @@ from pindrive.optimisation.design_space import (
     worst_cases,
 )
 from pindrive.optimisation.effort import Count, Effort, usual_effort
-from pindrive.optimisation.goals import PRICE, DesignProblem, Goal
+from pindrive.optimisation.goals import PRICE, DesignProblem, Goal, Margin
 from pindrive.optimisation.line_speed import speeds
-from pindrive.optimisation.margins import Margin, margins
+from pindrive.optimisation.margins import margins
 from pindrive.optimisation.problem import problem_of, read_problem
 from pindrive.optimisation.results import (
     ConstraintResult,
     Design,
     Front,
     Reached,
+    SteadyDesign,
     alternatives,
     at_ends,
     maps,
@@ -38,7 +39,7 @@ from pindrive.optimisation.results import (
 from pindrive.optimisation.rounding import rounded
 from pindrive.optimisation.scan_search import search_scans
 from pindrive.optimisation.search import Population, non_dominated, search
-from pindrive.optimisation.steady import Steady, SteadyDesign
+from pindrive.optimisation.steady import Steady
 from pindrive.optimisation.tolerance import Built, reserves, share_of
 from pindrive.quantities.refusal import check_whole
 from pindrive.study.distributions import with_links

@@ -1,4 +1,4 @@
-"""Data of a design problem: variables, conditions, constraints and goals."""
+"""Data of a design problem: variables, conditions, goals, and margins of its designs."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from pindrive.optimisation.catalogue import Catalogue
 from pindrive.quantities.names import label
-from pindrive.quantities.value import concise
+from pindrive.quantities.value import concise, equal_by_value
 from pindrive.study.distributions import Distribution, Grid
 from pindrive.study.outputs import Constraint
 from pindrive.study.study import Study
@@ -143,3 +143,47 @@ class DesignProblem:
         """Return the variables and goals in a line."""
         what = ", ".join(variable.name for variable in self.variables)
         return f"<DesignProblem {' and '.join(goal.text() for goal in self.goals)} over {what}>"
+
+
+@equal_by_value
+@concise
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """End of the way of a variable from a design.
+
+    Attributes:
+        value: Value of the first key, SI: the last one at which all is well.
+        number: Goal or constraint that ends the way; None: the end of the range.
+        reached: The number just beyond, SI; NaN for a missing number.
+        jumps: True if the number changes abruptly there.
+    """
+
+    value: float
+    number: Goal | Constraint | None
+    reached: float
+    jumps: bool
+
+
+@equal_by_value
+@concise
+@dataclass(frozen=True, slots=True)
+class Margin:
+    """How far a variable may move until a goal is 5 % worse or a constraint is violated.
+
+    Attributes:
+        variable: Variable with a range; all others stay as they are.
+        value: Value of its first key in the design, SI.
+        below: End of the way to smaller values.
+        above: End of the way to larger values.
+    """
+
+    variable: Variable
+    value: float
+    below: Limit
+    above: Limit
+
+    @property
+    def part(self) -> float:
+        """The smaller of both ways, a part of the value; ends of the range do not count."""
+        ways = [abs(e.value - self.value) for e in (self.below, self.above) if e.number is not None]
+        return min(ways, default=np.inf) / abs(self.value) if self.value else np.inf

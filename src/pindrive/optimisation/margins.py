@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pindrive.optimisation.goals import Goal, Variable
-from pindrive.quantities.value import concise, equal_by_value
+from pindrive.optimisation.goals import Goal, Limit, Margin, Variable
 from pindrive.study.outputs import Constraint
 
 if TYPE_CHECKING:
@@ -28,50 +26,6 @@ NEAREST: Final = 1e-7
 """Part of a range between a design and the first place beside it."""
 NARROW: Final = 1e-10
 """Part of a range to which the end of a way is found."""
-
-
-@equal_by_value
-@concise
-@dataclass(frozen=True, slots=True)
-class Limit:
-    """End of the way of a variable from a design.
-
-    Attributes:
-        value: Value of the first key, SI: the last one at which all is well.
-        number: Goal or constraint that ends the way; None: the end of the range.
-        reached: The number just beyond, SI; NaN for a missing number.
-        jumps: True if the number changes abruptly there.
-    """
-
-    value: float
-    number: Goal | Constraint | None
-    reached: float
-    jumps: bool
-
-
-@equal_by_value
-@concise
-@dataclass(frozen=True, slots=True)
-class Margin:
-    """How far a variable may move until a goal is 5 % worse or a constraint is violated.
-
-    Attributes:
-        variable: Variable with a range; all others stay as they are.
-        value: Value of its first key in the design, SI.
-        below: End of the way to smaller values.
-        above: End of the way to larger values.
-    """
-
-    variable: Variable
-    value: float
-    below: Limit
-    above: Limit
-
-    @property
-    def part(self) -> float:
-        """The smaller of both ways, a part of the value; ends of the range do not count."""
-        ways = [abs(e.value - self.value) for e in (self.below, self.above) if e.number is not None]
-        return min(ways, default=np.inf) / abs(self.value) if self.value else np.inf
 
 
 def margins(space: DesignSpace, point: Array) -> tuple[Margin, ...]:

@@ -20,7 +20,7 @@ from pindrive.files.keys import NUMERIC_KEYS, variable
 from pindrive.lazy import mpl_figure, xr
 from pindrive.motion.motion import Motion
 from pindrive.optimisation.effort import Count
-from pindrive.optimisation.goals import DesignProblem, Goal, Variable
+from pindrive.optimisation.goals import DesignProblem, Goal, Margin, Variable
 from pindrive.quantities.names import label
 from pindrive.quantities.status import Status
 from pindrive.quantities.value import concise, equal_by_value
@@ -30,8 +30,6 @@ from pindrive.study.outputs import NUMBERS, Constraint, Share, attributes
 
 if TYPE_CHECKING:
     from pindrive.optimisation.design_space import DesignSpace
-    from pindrive.optimisation.margins import Margin
-    from pindrive.optimisation.steady import SteadyDesign
 
 __all__ = ["Alternative", "ConstraintResult", "Design", "Front", "Map", "Reached"]
 
@@ -155,6 +153,27 @@ class Map:
     def share(self) -> float:
         """Part of the map in which all constraints are met."""
         return float(self.met.mean())
+
+
+@equal_by_value
+@concise
+@dataclass(frozen=True, slots=True)
+class SteadyDesign:
+    """Design that meets all constraints wherever its variables are within a margin.
+
+    Attributes:
+        margin: Part of its value by which each variable with a range may move.
+        values: Every key that may vary, SI.
+        parts: The part chosen from each catalogue.
+        device: Device file of the design.
+        goals: Goals at the worst place within the margin, SI.
+    """
+
+    margin: float
+    values: Mapping[str, float]
+    parts: Mapping[str, str]
+    device: DeviceFile
+    goals: tuple[float, ...]
 
 
 @equal_by_value

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pindrive.files.device import DeviceFile
 from pindrive.lazy import qmc
 from pindrive.optimisation.rounding import rounded
 from pindrive.optimisation.search import Population, search
 from pindrive.optimisation.tolerance import Built
-from pindrive.quantities.value import concise, equal_by_value
 
 if TYPE_CHECKING:
     from pindrive.optimisation.design_space import DesignSpace
@@ -34,27 +31,6 @@ ADDED: Final = 16
 """Such places that the next search considers."""
 WORSE: Final = 0.01
 """Relative worsening of a goal, within the margin, that is worse than expected."""
-
-
-@equal_by_value
-@concise
-@dataclass(frozen=True, slots=True)
-class SteadyDesign:
-    """Design that meets all constraints wherever its variables are within a margin.
-
-    Attributes:
-        margin: Part of its value by which each variable with a range may move.
-        values: Every key that may vary, SI.
-        parts: The part chosen from each catalogue.
-        device: Device file of the design.
-        goals: Goals at the worst place within the margin, SI.
-    """
-
-    margin: float
-    values: Mapping[str, float]
-    parts: Mapping[str, str]
-    device: DeviceFile
-    goals: tuple[float, ...]
 
 
 class Steady:
