@@ -105,6 +105,9 @@ def test_a_yield_that_is_reached_is_counted_from_all_draws() -> None:
     taken = space.count.motions - before
     assert (lacks == 0.0).tolist() == (shares >= 0.9).tolist()
     assert (lacks[shares < 0.9] > 0.0).all()
+    few = Built.drawn(space, problem.tables["tolerances"], 50, 3)
+    shares_of_few = (few.excess(points) <= 0.0).all(axis=0).mean(axis=1)
+    assert (few.shortfall(points, 0.9) == 0.0).tolist() == (shares_of_few >= 0.9).tolist()
     assert taken <= 1000 * (shares >= 0.9).sum() + 512 * (shares < 0.9).sum()
 
 

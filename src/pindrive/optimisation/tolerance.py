@@ -185,12 +185,13 @@ class Built:
         estimated. So a yield that is reached is counted from all draws, and others take few.
         """
         count = len(self.parts)
+        first = min(FIRST, count)
         allowed = floor((1.0 - least) * count + 1e-9)
         failed, lacks = np.zeros(len(points), np.int64), np.zeros(len(points))
-        order = np.concatenate([np.arange(FIRST), FIRST + np.argsort(-self.failures[FIRST:])])
+        order = np.concatenate([np.arange(first), first + np.argsort(-self.failures[first:])])
         left, begin = np.arange(len(points)), 0
         while begin < count and len(left):
-            draws = order[begin : max(FIRST, 4 * begin)]
+            draws = order[begin : max(first, 4 * begin)]
             fails = (self.excess(points[left], draws) > 0.0).any(axis=0)
             self.failures[draws] += fails.sum(axis=0)
             failed[left] += fails.sum(axis=1)
