@@ -198,9 +198,8 @@ class _Optimisation:
                 break
             more = (found + self.space.population(better[None])).best(len(found.points))
             more = self._again(more) if self.space.scans else more
-            found, chosen = self._with_worst_conditions(
-                more
-            )  # the smaller search found a better design
+            # The smaller search found a better design.
+            found, chosen = self._with_worst_conditions(more)
         if least and not (self.space.scans or self.space.slow):
             found, chosen = self._with_counted_yield(found, chosen, least)
         self.space = replace(self.space, constraints=self.problem.constraints)  # original limits
@@ -247,7 +246,7 @@ class _Optimisation:
 
     @property
     def _toleranced(self) -> bool:
-        """True for a problem with a yield."""
+        """True if devices are built within tolerances."""
         return bool(self.problem.tables.get("tolerances") and self.problem.constraints)
 
     def _built(self, draws: int) -> Built:
@@ -337,10 +336,7 @@ class _Optimisation:
 
         def counted(points: Array) -> tuple[Array, Array]:
             goals, violation = self.space(points)
-            meets = violation <= 0.0
-            violation = np.where(meets, 0.0, 1.0 + violation)  # more than any yield may lack
-            violation[meets] = few.shortfall(points[meets], required)
-            return goals, violation
+            return goals, few.with_yield(points, violation, required)
 
         def searched(first: Population) -> Population:
             return search(counted, first, generations=GENERATIONS, patience=PATIENCE, rng=self.rng)

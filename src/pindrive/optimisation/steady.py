@@ -61,9 +61,7 @@ class Steady:
         flat = {name: values.reshape(len(points), -1) for name, values in numbers.items()}
         goals, violation = self._space.worth(flat)
         if self._built is not None:
-            meets = violation <= 0.0
-            violation = np.where(meets, 0.0, 1.0 + violation)
-            violation[meets] = self._built.shortfall(points[meets], self._least)
+            violation = self._built.with_yield(points, violation, self._least)
         return goals, violation
 
     def best(self, starts: Array, rng: np.random.Generator, seed: int) -> Array | None:

@@ -144,7 +144,7 @@ class Built:
 
     @cached_property
     def _example(self) -> Any:
-        """Device file of one design; files of other designs have the same keys."""
+        """Device file of one design, with the keys of all others."""
         middle = np.full((1, len(self.space.variables)), 0.5)
         return self.space.study.device_at({k: float(x[0]) for k, x in self._own(middle).items()})
 
@@ -201,6 +201,21 @@ class Built:
             left = left[failed[left] <= allowed]
         lacks[left] = 0.0
         return lacks
+
+    def with_yield(self, points: Array, violation: Array, least: float) -> Array:
+        """Return violations of designs, what a yield lacks among them.
+
+        A design that violates a constraint itself counts as worse than any yield.
+
+        Args:
+            points: Designs, shape (n, variables).
+            violation: Violations of the designs as they are, shape (n,).
+            least: The yield that is demanded.
+        """
+        meets = violation <= 0.0
+        found = np.where(meets, 0.0, 1.0 + violation)
+        found[meets] = self.shortfall(points[meets], least)
+        return found
 
 
 def share_of(excess: Array) -> Share:
