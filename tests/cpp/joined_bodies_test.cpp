@@ -25,9 +25,20 @@ bodies::System<double> hand_and_pins() {
   return system;
 }
 
+struct Share {
+  int contact;
+  double limit;
+};
+Joined joined_by(const bodies::System<double>& system, const std::vector<Share>& shares) {
+  Joined joined(system);
+  for (const Share& share : shares) joined.add(share.contact, share.limit);
+  joined.join();
+  return joined;
+}
+
 void a_free_group() {
   const auto system = hand_and_pins();
-  const Joined joined(system, {0, 2}, {1, 1});
+  const Joined joined = joined_by(system, {{0, 1}, {2, 1}});
   Joined::Order<double> order(3, 4);
   order.force = {12, 0, 0};
   order.surface = {0, 0, 0.5, 0};
@@ -42,7 +53,7 @@ void a_free_group() {
 
 void a_group_on_the_ground() {
   const auto system = hand_and_pins();
-  const Joined joined(system, {0, 1}, {1, 3});
+  const Joined joined = joined_by(system, {{0, 1}, {1, 3}});
   Joined::Order<double> order(3, 4);
   order.force = {6, 2, 9};
   joined.solve(order);
@@ -56,7 +67,7 @@ void friction_that_is_not_unique() {
   bodies::System<double> system;
   system.bodies = {{1}};
   for (int i = 0; i < 2; ++i) system.contacts.push_back({0, bodies::ground, 1, 1});
-  const Joined joined(system, {0, 1}, {1, 3});
+  const Joined joined = joined_by(system, {{0, 1}, {1, 3}});
   Joined::Order<double> order(1, 2);
   order.force = {-2};
   joined.solve(order);

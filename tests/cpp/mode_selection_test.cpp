@@ -19,8 +19,10 @@ Mode selected(double displacement, double plate, double finger) {
   system.links.push_back({0, bodies::ground, 100, 0.4});
   system.contacts = {{0, bodies::ground, plate, plate}, {0, bodies::ground, finger, finger}};
   pindrive::detail::ModeSelection<double> selection(system);
+  bodies::InputsAt<double> inputs;
+  inputs.read(system, 0);
   Mode mode{Slip::forward, Slip::forward};
-  const bool found = selection.select({0, {displacement}, {0}, {0, 0}}, {0, 1}, 1e-3, mode);
+  const bool found = selection.select({0, {displacement}, {0}, {0, 0}}, inputs, {0, 1}, 1e-3, mode);
   expect(found, "a mode is found");
   return mode;
 }

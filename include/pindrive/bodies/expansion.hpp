@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "pindrive/bodies/inputs_at.hpp"
 #include "pindrive/bodies/joined_bodies.hpp"
 #include "pindrive/bodies/system.hpp"
 #include "pindrive/flow/polynomial.hpp"
@@ -24,10 +25,11 @@ class Expansion {
   using Real = detail::Real<T>;
   using Series = std::array<N, series_order + 2>;
   using Mode = std::vector<bodies::Slip>;
+  using Inputs = bodies::InputsAt<T>;
 
   explicit Expansion(const bodies::System<T>& system)
       : system_(&system),
-        joined_(system, {}, {}),
+        joined_(system),
         order_(system.bodies.size(), system.modes()),
         position_(system.bodies.size()),
         velocity_(system.bodies.size()),
@@ -39,35 +41,32 @@ class Expansion {
         approach_(system.stops.size()),
         push_(system.stops.size()),
         control_(system.feedbacks.size()),
-        integral_(system.feedbacks.size()) {}
+        integral_(system.feedbacks.size()),
+        pushes_(system.bodies.size()),
+        lengths_(system.links.size()),
+        loads_(system.contacts.size()),
+        surfaces_(system.contacts.size()),
+        references_(system.feedbacks.size()) {}
 
-  /// Takes a mode, from a time on, s. Of contacts whose surfaces move apart `late` ones hold no body that another holds.
-  void set(const Mode& mode, const T& time, const std::vector<int>& late = {}) {
+  /// Takes a mode under inputs. Of contacts whose surfaces move apart `late` ones hold no body that another holds.
+  void set(const Mode& mode, const Inputs& inputs, const std::vector<int>& late = {}) {
     mode_ = mode;
-    const auto is_late = [&](int j) {
-      return std::find(late.begin(), late.end(), j) != late.end();
-    };
-    std::vector<int> stuck;
-    std::vector<T> limits;
-    for (std::size_t j = 0; j < contacts(); ++j) {
-      if (mode[j] != bodies::Slip::stick || !contact(j).rigid()) continue;
-      if (limit_of(j, time) == 0) continue;  // cannot hold
-      stuck.push_back(static_cast<int>(j));
-    }
-    std::stable_partition(stuck.begin(), stuck.end(), [&](int j) { return !is_late(j); });
-    limits.reserve(stuck.size());
-    for (const int j : stuck) limits.push_back(limit_of(j, time));
+    joined_.clear();
     // Beside friction a stop takes almost all of a force, since it has no limit.
     T most{0};
-    for (const T& limit : limits) most = std::max(most, limit);
+    for (std::size_t j = 0; j < contacts(); ++j)
+      if (holds(j, inputs)) most = std::max(most, limit_of(j, inputs));
     const T share = most > 0 ? 1000 * most : T(1);
     // Stops come first: bodies that they join do not part, and a contact there has to slip.
-    for (std::size_t s = system_->stops.size(); s-- > 0;) {
-      if (mode[contacts() + s] != bodies::Slip::stick || !system_->stops[s].rigid()) continue;
-      stuck.insert(stuck.begin(), static_cast<int>(contacts() + s));
-      limits.insert(limits.begin(), share);
-    }
-    joined_ = JoinedBodies<T>(*system_, std::move(stuck), std::move(limits));
+    for (std::size_t s = 0; s < system_->stops.size(); ++s)
+      if (mode[contacts() + s] == bodies::Slip::stick && system_->stops[s].rigid())
+        joined_.add(static_cast<int>(contacts() + s), share);
+    for (const bool is_late : {false, true})
+      for (std::size_t j = 0; j < contacts(); ++j)
+        if (holds(j, inputs) &&
+            (std::find(late.begin(), late.end(), static_cast<int>(j)) != late.end()) == is_late)
+          joined_.add(static_cast<int>(j), limit_of(j, inputs));
+    joined_.join();
   }
 
   /// True of a contact in stick whose surfaces may move apart.
@@ -77,19 +76,15 @@ class Expansion {
   }
 
   /// True of skin that slips under a constant load and whose stretch, at rest to rounding, follows no more.
-  bool is_settled(std::size_t j, const bodies::State<T>& state) const {
+  bool is_settled(std::size_t j, const bodies::State<T>& state, const Inputs& inputs) const {
     using std::abs;
     const bodies::Contact<T>& c = contact(j);
     if (mode_[j] == bodies::Slip::stick || c.rigid() || c.damping == 0) return false;
     if (c.pressed_by >= 0 && is_stop(c.pressed_by)) return false;
-    const auto constant = [&](const Profile<T>& load) {
-      const Curve<T> now = load.from(state.time);
-      return now.straight() && now.rate == 0;
-    };
-    if (!constant(c.load) || (c.pressed_by >= 0 && !constant(contact(c.pressed_by).load)))
+    if (!inputs.load[j].steady() || (c.pressed_by >= 0 && !inputs.load[c.pressed_by].steady()))
       return false;
-    T load = c.load.from(state.time).value;
-    if (c.pressed_by >= 0) load += c.share * contact(c.pressed_by).load.from(state.time).value;
+    T load = inputs.load[j].value;
+    if (c.pressed_by >= 0) load += c.share * inputs.load[c.pressed_by].value;
     const T kinetic = T(static_cast<int>(mode_[j])) * c.kinetic * load;
     return abs(plain(kinetic - c.stiffness * state.stretch[j])) <=
            2 * rounding<Real> * abs(plain(kinetic));
@@ -98,12 +93,28 @@ class Expansion {
   /// True if rigid contacts hold each body to the ground.
   bool all_held() const { return joined_.all_grounded(); }
 
-  /// Computes the orders up to one from a state on, in the time τ/step.
-  void expand(const bodies::State<T>& state, Real step, int order) {
-    begin(state, step);
+  /// Computes the inputs from a time on, in the time τ/step, for orders up to one.
+  void read(const Inputs& inputs, const T& time, Real step, int order) {
+    using std::abs;
+    const auto fill = [&](std::vector<InputSeries<T>>& series, const std::vector<Curve<T>>& of) {
+      for (std::size_t i = 0; i < of.size(); ++i)
+        series[i] = InputSeries<T>(of[i], step,
+                                   order + 2);  // rates take one more order, their errors another
+    };
+    fill(pushes_, inputs.force);
+    fill(lengths_, inputs.length);
+    fill(loads_, inputs.load);
+    fill(surfaces_, inputs.surface);
+    fill(references_, inputs.reference);
+    step_ = step;
+    late_ = rounding<Real> * abs(plain(time)) / step;
+  }
+  /// Computes the orders up to one from a state on, under the inputs that were read.
+  void expand(const bodies::State<T>& state, const Inputs& inputs, int order) {
+    begin(state, inputs);
     order_count_ = order;
     for (int n = 0; n <= order; ++n) {
-      const T next = T(step) / T(n + 1);
+      const T next = T(step_) / T(n + 1);
       for (std::size_t i = 0; i < position_.size(); ++i)
         order_.force[i] = n <= pushes_[i].degree() ? given(pushes_[i], n) : N(T(0));
       for (std::size_t l = 0; l < system_->links.size(); ++l) pull(l, n);
@@ -125,7 +136,7 @@ class Expansion {
         velocity_[i][n + 1] = next * order_.acceleration[i];
       }
     }
-    for (std::size_t j = 0; j < contacts(); ++j) slide(j, step);
+    for (std::size_t j = 0; j < contacts(); ++j) slide(j);
   }
 
   int order() const { return order_count_; }
@@ -150,28 +161,20 @@ class Expansion {
   /// Order n of the largest friction force of a contact that sticks, N.
   N limit(std::size_t j, int n) const { return contact(j).static_limit * load(j, n); }
 
-  /// Longest step over which the terms of the inputs are their Taylor polynomials, s.
-  Real input_reach(T time) const {
-    Real least = std::numeric_limits<Real>::infinity();
-    system_->each_input([&](const Profile<T>& input) {
-      const Curve<T> curve = input.from(time);
-      if (!curve.straight())
-        least = std::min(least, curve.reach(T(0), series_order, Real(longest_input)));
-    });
-    return least;
-  }
-
  private:
   const bodies::Contact<T>& contact(std::size_t j) const { return system_->contacts[j]; }
   std::size_t contacts() const { return system_->contacts.size(); }
   T side(std::size_t stop) const { return T(system_->stops[stop].side); }
-  /// Static friction at a time, N; that of a contact which a stop may press is as under 1 N.
-  T limit_of(std::size_t j, const T& time) const {
+  /// True of a rigid contact that sticks and has friction to hold with.
+  bool holds(std::size_t j, const Inputs& inputs) const {
+    return mode_[j] == bodies::Slip::stick && contact(j).rigid() && limit_of(j, inputs) != 0;
+  }
+  /// Static friction, N; that of a contact which a stop may press is as under 1 N.
+  T limit_of(std::size_t j, const Inputs& inputs) const {
     const bodies::Contact<T>& c = contact(j);
-    T load = c.load.from(time).value;
+    T load = inputs.load[j].value;
     if (c.pressed_by >= 0)
-      load +=
-          c.share * (is_stop(c.pressed_by) ? T(1) : contact(c.pressed_by).load.from(time).value);
+      load += c.share * (is_stop(c.pressed_by) ? T(1) : inputs.load[c.pressed_by].value);
     return c.static_limit * load;
   }
   /// Order n of the load of a contact.
@@ -190,22 +193,7 @@ class Expansion {
     return rate_of(loads_[j], n) + c.share * rate_of(loads_[c.pressed_by], n);
   }
 
-  void begin(const bodies::State<T>& state, Real step) {
-    pushes_.clear();
-    lengths_.clear();
-    loads_.clear();
-    surfaces_.clear();
-    references_.clear();
-    const T time = state.time;
-    late_ = rounding<Real> * std::abs(plain(time)) / step;
-    for (const auto& body : system_->bodies) pushes_.emplace_back(body.force.from(time), step);
-    for (const auto& link : system_->links) lengths_.emplace_back(link.length.from(time), step);
-    for (const auto& each : system_->contacts) {
-      loads_.emplace_back(each.load.from(time), step);
-      surfaces_.emplace_back(each.velocity.from(time), step);
-    }
-    for (const auto& each : system_->feedbacks)
-      references_.emplace_back(each.reference.from(time), step);
+  void begin(const bodies::State<T>& state, const Inputs& inputs) {
     for (std::size_t i = 0; i < position_.size(); ++i) {
       position_[i][0] = known(state.position[i], error(state.errors.position, i));
       velocity_[i][0] = known(state.velocity[i], error(state.errors.velocity, i));
@@ -217,7 +205,7 @@ class Expansion {
       control_[f][0] = known(state.held[f]);
     }
     find_acting();
-    for (std::size_t j = 0; j < contacts(); ++j) settled_[j] = is_settled(j, state);
+    for (std::size_t j = 0; j < contacts(); ++j) settled_[j] = is_settled(j, state, inputs);
   }
   /// Contact whose friction acts on bodies as a force, up to an order.
   struct Acting {
@@ -304,7 +292,7 @@ class Expansion {
     return n <= surfaces_[j].degree() ? speed - given(surfaces_[j], n) : speed;
   }
   /// Sliding speed of a contact, and the stretch of skin that slips, which no body feels.
-  void slide(std::size_t j, Real step) {
+  void slide(std::size_t j) {
     const bodies::Contact<T>& c = contact(j);
     const bool sticks = mode_[j] == bodies::Slip::stick;
     for (int n = 0; n <= order_count_; ++n)
@@ -317,7 +305,7 @@ class Expansion {
         stretch_[j][n] = kinetic / c.stiffness;
       } else if (c.damping != 0) {
         rate = (kinetic - c.stiffness * stretch_[j][n]) / c.damping;
-        stretch_[j][n + 1] = (T(step) / T(n + 1)) * rate;
+        stretch_[j][n + 1] = (T(step_) / T(n + 1)) * rate;
       } else {
         rate = T(static_cast<int>(mode_[j])) * (c.kinetic / c.stiffness * load_rate(j, n));
         stretch_[j][n] = kinetic / c.stiffness;
@@ -349,6 +337,7 @@ class Expansion {
   std::vector<Series> friction_, depth_, approach_, push_, control_, integral_;
   std::vector<Acting> acting_;
   int order_count_{0};
+  Real step_{1};  ///< s
   Real late_{0};  ///< resolution of the time over the step
   std::vector<InputSeries<T>> pushes_, lengths_, loads_, surfaces_, references_;
 };

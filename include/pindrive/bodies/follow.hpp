@@ -108,6 +108,7 @@ class Following {
         selection_(system),
         rates_(system),
         fastest_(rates_.largest()) {
+    inputs_.read(system, state_.time);
     std::vector<int> active;
     for (std::size_t j = 0; j < system.contacts.size(); ++j) {
       const T speed = speed_of(static_cast<int>(j));
@@ -151,34 +152,29 @@ class Following {
       if (!step(until, sink, cut)) return;
   }
   /// Selects the mode under inputs that the caller has changed.
-  void resume() { settle({}); }
+  void resume() {
+    inputs_.read(*system_, state_.time);
+    settle({});
+  }
   /// The same, but ends where all bodies rest.
   void advance_to_rest(T until, Sink sink = {}) {
     while (status_ == Status::ok && state_.time < until && !resting()) step(until, sink);
   }
   /// True if rigid contacts hold all bodies at rest and no input changes any more: nothing moves from now on.
   bool resting() const {
-    const auto constant = [&](const Profile<T>& input, bool zero) {
-      const Curve<T> now = input.from(state_.time);
-      return now.straight() && now.rate == 0 && (!zero || now.value == 0);
-    };
     const auto& s = *system_;
     const auto holds = [&](const Feedback<T>& feedback) {
       const auto [error, rate] = error_of(feedback);
       const T held = state_.held[&feedback - s.feedbacks.data()];
-      return constant(feedback.reference, false) && (feedback.integral == 0 || error == 0) &&
+      return inputs_.reference[&feedback - s.feedbacks.data()].steady() &&
+             (feedback.integral == 0 || error == 0) &&
              (!feedback.sampled() || held == feedback.force(error, rate, T(0)));
     };
     return series_.all_held() &&
            !(s.next_breakpoint(state_.time) < std::numeric_limits<Real>::infinity()) &&
            std::all_of(s.feedbacks.begin(), s.feedbacks.end(), holds) &&
-           std::all_of(s.bodies.begin(), s.bodies.end(),
-                       [&](const Body<T>& body) { return constant(body.force, false); }) &&
-           std::all_of(s.links.begin(), s.links.end(),
-                       [&](const Link<T>& link) { return constant(link.length, false); }) &&
-           std::all_of(s.contacts.begin(), s.contacts.end(), [&](const Contact<T>& c) {
-             return constant(c.load, false) && constant(c.velocity, true);
-           });
+           all_of(inputs_.force, &Curve<T>::steady) && all_of(inputs_.length, &Curve<T>::steady) &&
+           all_of(inputs_.load, &Curve<T>::steady) && all_of(inputs_.surface, &Curve<T>::is_zero);
   }
 
  private:
@@ -206,6 +202,10 @@ class Following {
     }
     return false;
   }
+  static bool all_of(const std::vector<Curve<T>>& curves, bool (Curve<T>::*holds)() const) {
+    return std::all_of(curves.begin(), curves.end(),
+                       [&](const Curve<T>& curve) { return (curve.*holds)(); });
+  }
   bool is_rigid(std::size_t j) const {
     const std::size_t contacts = system_->contacts.size();
     return j < contacts ? system_->contacts[j].rigid() : system_->stops[j - contacts].rigid();
@@ -213,19 +213,31 @@ class Following {
   T speed_of(int contact) const {
     const Contact<T>& c = system_->contacts[contact];
     const T other = c.other == ground ? T(0) : state_.velocity[c.other];
-    return state_.velocity[c.one] - other - c.velocity.from(state_.time).value;
+    return state_.velocity[c.one] - other - inputs_.surface[contact].value;
   }
 
+  /// Longest step over which the terms of the inputs are their Taylor polynomials, s.
+  Real input_reach() const {
+    Real least = std::numeric_limits<Real>::infinity();
+    inputs_.each([&](const Curve<T>& curve) {
+      if (!curve.straight())
+        least =
+            std::min(least, curve.reach(T(0), detail::series_order, Real(detail::longest_input)));
+    });
+    return least;
+  }
   /// False if the step was cut.
   bool step(T until, Sink sink, Cut cut = {}) {
     T breakpoint = std::min(system_->next_breakpoint(state_.time), until);
     for (const T& due : due_) breakpoint = std::min(breakpoint, due);
     const Real rest = plain(breakpoint - state_.time);
-    const Real rate =
-        std::max(rates_.in(mode_, [&](std::size_t j) { return series_.is_settled(j, state_); }),
-                 Real(detail::longest_input) / series_.input_reach(state_.time));
+    const Real rate = std::max(
+        rates_.in(mode_, [&](std::size_t j) { return series_.is_settled(j, state_, inputs_); }),
+        Real(detail::longest_input) / input_reach());
     const Real span = std::min(rest, longest / rate);
-    series_.expand(state_, span, order_over(rate * span));
+    const int order = order_over(rate * span);
+    series_.read(inputs_, state_.time, span, order);
+    series_.expand(state_, inputs_, order);
     if (++steps_ > event_limit) status_ = Status::too_many_events;
     T tau = span == rest ? breakpoint - state_.time : T(span);
     std::vector<int> active;
@@ -271,7 +283,7 @@ class Following {
   }
   /// Error of a feedback and its rate, m and m/s.
   std::pair<T, T> error_of(const Feedback<T>& feedback) const {
-    const Curve<T> reference = feedback.reference.from(state_.time);
+    const Curve<T>& reference = inputs_.reference[&feedback - system_->feedbacks.data()];
     const auto part = [&](int body, const std::vector<T>& of) {
       return body == ground ? T(0) : of[body];
     };
@@ -375,6 +387,7 @@ class Following {
       if (!system_->feedbacks[f].sampled())
         move_to(series_.integral(f), state_.integral[f], errors.integral[f]);
     state_.time = time;
+    inputs_.read(*system_, time);
   }
 
   /// Selects the mode after an event; a rigid contact whose sliding came to zero then has exactly none.
@@ -392,8 +405,8 @@ class Following {
     const std::vector<int> hit = strike(active);
     if (!hit.empty()) slip_after_impact(active);
     const Real step = fastest_ > 0 ? 1 / fastest_ : Real(1);
-    if (!selection_.select(state_, active, step, mode_)) status_ = Status::inconsistent;
-    series_.set(mode_, state_.time);
+    if (!selection_.select(state_, inputs_, active, step, mode_)) status_ = Status::inconsistent;
+    series_.set(mode_, inputs_);
     for (std::size_t j = 0; j < mode_.size(); ++j)
       if (mode_[j] != before[j] ||
           std::find(hit.begin(), hit.end(), static_cast<int>(j)) != hit.end())
@@ -516,6 +529,7 @@ class Following {
 
   const System<T>* system_;
   State<T> state_;
+  InputsAt<T> inputs_;
   Mode mode_;
   detail::Expansion<T> series_;
   detail::ModeSelection<T> selection_;

@@ -16,18 +16,29 @@ namespace pindrive::detail {
 template <class T>
 class JoinedBodies {
  public:
-  /// Contacts that stick and are rigid, and rigid stops that push, by their indices, with the share of each in forces that
-  /// are not unique: static friction, N.
-  JoinedBodies(const bodies::System<T>& system, std::vector<int> stuck, std::vector<T> limits)
-      : system_(&system),
-        stuck_(std::move(stuck)),
-        limits_(std::move(limits)),
-        root_(system.bodies.size()),
-        mass_(system.bodies.size()) {
+  explicit JoinedBodies(const bodies::System<T>& system)
+      : system_(&system), root_(system.bodies.size()), mass_(system.bodies.size()) {
+    join();
+  }
+
+  /// Forgets what holds the bodies.
+  void clear() {
+    stuck_.clear();
+    limits_.clear();
+  }
+  /// Adds a rigid contact that sticks, or a rigid stop that pushes, with its share in forces that are not unique: static
+  /// friction, N.
+  void add(int contact, const T& limit) {
+    stuck_.push_back(contact);
+    limits_.push_back(limit);
+  }
+  /// Joins the bodies by what was added.
+  void join() {
     for (std::size_t i = 0; i < root_.size(); ++i) root_[i] = static_cast<int>(i);
     walk();
+    std::fill(mass_.begin(), mass_.end(), T(0));
     for (std::size_t i = 0; i < root_.size(); ++i)
-      if (root_[i] != bodies::ground) mass_[root_[i]] += system.bodies[i].mass;
+      if (root_[i] != bodies::ground) mass_[root_[i]] += system_->bodies[i].mass;
     factorise();
   }
 
@@ -101,55 +112,50 @@ class JoinedBodies {
     }
   }
 
-  /// Contacts that join two bodies which no earlier one joins.
-  std::vector<int> joining() const {
-    std::vector<int> group(root_.size() + 1), found;  // the ground is the last
-    for (std::size_t i = 0; i < group.size(); ++i) group[i] = static_cast<int>(i);
+  /// Finds the contacts that join two bodies which no earlier one joins.
+  void find_joining() {
+    group_.resize(root_.size() + 1);  // the ground is the last
+    for (std::size_t i = 0; i < group_.size(); ++i) group_[i] = static_cast<int>(i);
     const auto group_of = [&](int body) {
       int i = body == bodies::ground ? static_cast<int>(root_.size()) : body;
-      while (group[i] != i) i = group[i];
+      while (group_[i] != i) i = group_[i];
       return i;
     };
+    left_.clear();
     for (const int contact : stuck_) {
       const bodies::Pair c = system_->pair(contact);
       const int one = group_of(c.one), other = group_of(c.other);
       if (one == other) continue;
-      group[one] = other;
-      found.push_back(contact);
+      group_[one] = other;
+      left_.push_back(contact);
     }
-    return found;
   }
   /// Grows a tree of joining contacts through each group, from the ground if that is in the group.
   void walk() {
-    std::vector<int> left = joining();
-    std::vector<bool> seen(root_.size(), false);
-    const auto grow = [&](int start) {
-      std::vector<int> reached{start};
-      for (std::size_t k = 0; k < reached.size(); ++k) {
-        const int from = reached[k];
-        const auto leads_on = [&](int contact) {
-          const bodies::Pair c = system_->pair(contact);
-          if (c.one != from && c.other != from) return false;
-          const int to = c.other == from ? c.one : c.other;
-          seen[to] = true;
-          root_[to] = start;
-          tree_.push_back({from, to, contact, c.other == from ? 1 : -1});
-          reached.push_back(to);
-          return true;
-        };
-        left.erase(std::remove_if(left.begin(), left.end(), leads_on), left.end());
-      }
-    };
-    grow(bodies::ground);
-    for (std::size_t i = 0; i < root_.size(); ++i) {
-      if (seen[i]) continue;
-      seen[i] = true;
-      grow(static_cast<int>(i));
-    }
+    find_joining();
+    tree_.clear();
     place_.assign(root_.size(), -1);
-    for (const Edge& edge : tree_) {
-      place_[edge.to] = static_cast<int>(free_.size());
-      free_.push_back(edge.to);
+    free_.clear();
+    grow(bodies::ground);
+    for (std::size_t i = 0; i < root_.size() && !left_.empty(); ++i)
+      if (root_[i] == static_cast<int>(i) && place_[i] < 0) grow(static_cast<int>(i));
+  }
+  void grow(int start) {
+    reached_.assign(1, start);
+    for (std::size_t k = 0; k < reached_.size(); ++k) {
+      const int from = reached_[k];
+      const auto leads_on = [&](int contact) {
+        const bodies::Pair c = system_->pair(contact);
+        if (c.one != from && c.other != from) return false;
+        const int to = c.other == from ? c.one : c.other;
+        root_[to] = start;
+        tree_.push_back({from, to, contact, c.other == from ? 1 : -1});
+        place_[to] = static_cast<int>(free_.size());
+        free_.push_back(to);
+        reached_.push_back(to);
+        return true;
+      };
+      left_.erase(std::remove_if(left_.begin(), left_.end(), leads_on), left_.end());
     }
   }
   template <class N>
@@ -208,6 +214,7 @@ class JoinedBodies {
   std::vector<Edge> tree_;
   std::vector<int> free_,
       place_;  ///< bodies whose level is sought, and where each stands among them
+  std::vector<int> group_, left_, reached_;  ///< of the walk
   std::vector<T> factor_;
   std::vector<std::size_t> begin_;  ///< first column of each row of the factor
 };

@@ -22,14 +22,19 @@ class ModeSelection {
  public:
   using Real = detail::Real<T>;
   using Mode = std::vector<bodies::Slip>;
+  using Inputs = bodies::InputsAt<T>;
 
   explicit ModeSelection(const bodies::System<T>& system)
       : system_(&system), series_(system), zero_(system.modes()) {}
 
   /// Changes the mode of `active` contacts, and of all that contradict it; false if no mode is consistent.
-  bool select(const bodies::State<T>& state, const std::vector<int>& active, Real step,
-              Mode& mode) {
+  bool select(const bodies::State<T>& state, const Inputs& inputs, const std::vector<int>& active,
+              Real step, Mode& mode) {
     const Mode before = mode;
+    state_ = &state;
+    inputs_ = &inputs;
+    step_ = step;
+    read(few_orders);
     trials_.clear();
     met_ = active;
     for (const int contact : active) {
@@ -40,9 +45,9 @@ class ModeSelection {
     bool several = false;  // contacts that changed
     for (int last = -1;;) {
       bodies::Slip instead{};
-      const int wrong = first_wrong(state, step, mode, instead);
+      const int wrong = first_wrong(mode, instead);
       if (wrong < 0) {
-        if (several) hold_on(state, step, before, mode);
+        if (several) hold_on(before, mode);
         return true;
       }
       several = several || (last >= 0 && wrong != last);
@@ -68,7 +73,7 @@ class ModeSelection {
   };
 
   /// Lets contacts stick that stuck or were met, and were found to slip before others changed.
-  void hold_on(const bodies::State<T>& state, Real step, const Mode& before, Mode& mode) {
+  void hold_on(const Mode& before, Mode& mode) {
     bodies::Slip instead{};
     for (std::size_t j = 0; j < system_->contacts.size(); ++j) {
       const bool was_met = std::find(met_.begin(), met_.end(), static_cast<int>(j)) != met_.end();
@@ -76,13 +81,17 @@ class ModeSelection {
         continue;
       Mode tried = mode;
       tried[j] = bodies::Slip::stick;
-      if (first_wrong(state, step, tried, instead) < 0)
+      if (first_wrong(tried, instead) < 0)
         mode = std::move(tried);
       else
-        first_wrong(state, step, mode, instead);
+        first_wrong(mode, instead);
     }
   }
 
+  void read(int orders) {
+    series_.read(*inputs_, state_->time, step_, orders);
+    read_ = orders;
+  }
   int body_of(int contact) const {
     const bodies::Pair c = system_->pair(contact);
     if (c.other == bodies::ground) return c.one;
@@ -162,11 +171,11 @@ class ModeSelection {
 
   /// First contact with a guard that becomes negative, and what to try instead; −1 without any. Most are decided by their
   /// first orders.
-  int first_wrong(const bodies::State<T>& state, Real step, const Mode& mode,
-                  bodies::Slip& instead) {
-    series_.set(mode, state.time, met_);
+  int first_wrong(const Mode& mode, bodies::Slip& instead) {
+    series_.set(mode, *inputs_, met_);
     for (orders_ = few_orders;; orders_ = all_orders) {
-      series_.expand(state, step, orders_);
+      if (orders_ > read_) read(orders_);
+      series_.expand(*state_, *inputs_, orders_);
       undecided_ = false;
       std::fill(zero_.begin(), zero_.end(), std::array<bool, 2>{});
       for (std::size_t j = 0; j < mode.size(); ++j)
@@ -250,6 +259,10 @@ class ModeSelection {
 
   const bodies::System<T>* system_;
   Expansion<T, Number> series_;
+  const bodies::State<T>* state_{nullptr};  ///< state, inputs and unit of time of a selection
+  const Inputs* inputs_{nullptr};
+  Real step_{1};
+  int read_{0};  ///< orders of the inputs that were read
   std::vector<Trial> trials_;
   std::vector<int> met_;  ///< contacts that may begin to stick, while others do already
   int orders_{all_orders};

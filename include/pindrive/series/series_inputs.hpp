@@ -19,9 +19,11 @@ class InputSeries {
   static constexpr int N = series_order;
 
   InputSeries() = default;
-  InputSeries(const Curve<T>& curve, Real step) : curve_(curve), step_(step) {
+  /// A function has the orders up to one at most.
+  InputSeries(const Curve<T>& curve, Real step, int order = N + 1) : curve_(curve), step_(step) {
     if (!curve.straight()) {
-      degree_ = curve.raised || curve.terms() > 0 ? N + 1 : InputPiece<T>::degree;
+      degree_ =
+          std::min(order, curve.raised || curve.terms() > 0 ? N + 1 : int{InputPiece<T>::degree});
       curve.expand(T(0), T(step), c_, degree_);
     }
     c_[0] = curve.value;

@@ -1,0 +1,33 @@
+/// Inputs of a system from a time on.
+#pragma once
+
+#include <vector>
+
+#include "pindrive/bodies/system.hpp"
+
+namespace pindrive::bodies {
+
+/// Curves of all inputs at a time, in the order of the parts of the system.
+template <class T>
+struct InputsAt {
+  std::vector<Curve<T>> force, length, load, surface, reference;
+
+  void read(const System<T>& system, const T& time) {
+    const auto fill = [&](std::vector<Curve<T>>& curves, const auto& parts, auto input) {
+      curves.resize(parts.size());
+      for (std::size_t i = 0; i < parts.size(); ++i) curves[i] = (parts[i].*input).from(time);
+    };
+    fill(force, system.bodies, &Body<T>::force);
+    fill(length, system.links, &Link<T>::length);
+    fill(load, system.contacts, &Contact<T>::load);
+    fill(surface, system.contacts, &Contact<T>::velocity);
+    fill(reference, system.feedbacks, &Feedback<T>::reference);
+  }
+  template <class Look>
+  void each(Look&& look) const {
+    for (const auto* curves : {&force, &length, &load, &surface, &reference})
+      for (const Curve<T>& curve : *curves) look(curve);
+  }
+};
+
+}  // namespace pindrive::bodies
