@@ -2,6 +2,7 @@
 #include "pindrive/bodies/expansion.hpp"
 
 #include <cmath>
+#include <vector>
 
 #include "check.hpp"
 #include "pindrive/bodies/uncertain.hpp"
@@ -20,13 +21,23 @@ double end_of(const Series& series) {
   return sum;
 }
 
+/// Expands a system in a mode from a state on.
+template <class Series>
+void expand(Series& series, const bodies::System<double>& system, const std::vector<Slip>& mode,
+            const bodies::State<double>& state, double step, int order) {
+  bodies::InputsAt<double> inputs;
+  inputs.read(system, state.time);
+  series.set(mode, inputs);
+  series.read(inputs, state.time, step, order);
+  series.expand(state, inputs, order);
+}
+
 void an_oscillator() {
   bodies::System<double> system;
   system.bodies = {{0.01}};
   system.links.push_back({0, bodies::ground, 100, 0});
   pd::detail::Expansion<double> series(system);
-  series.set({}, 0);
-  series.expand({0, {1e-3}, {0}, {}}, 0.02, pd::detail::series_order);
+  expand(series, system, {}, {0, {1e-3}, {0}, {}}, 0.02, pd::detail::series_order);
   expect(check::near(end_of(series.position(0)), 1e-3 * std::cos(2.0), 1e-15),
          "a mass on a spring swings");
 }
@@ -40,14 +51,12 @@ void skin() {
   system.contacts = {finger};
   pd::detail::Expansion<double> series(system);
   const bodies::State<double> state{0, {0}, {0.06}, {2e-5}};
-  series.set({Slip::stick}, 0);
-  series.expand(state, 1e-3, pd::detail::series_order);
+  expand(series, system, {Slip::stick}, state, 1e-3, pd::detail::series_order);
   expect(check::near(end_of(series.stretch(0)), 8e-5, 1e-12) && end_of(series.sliding(0)) == 0,
          "skin that sticks stretches with the body");
   expect(check::near(series.friction(0)[0], -(300 * 2e-5 + 0.3 * 0.06), 1e-15),
          "and pulls by spring and damper");
-  series.set({Slip::forward}, 0);
-  series.expand(state, 1e-3, pd::detail::series_order);
+  expand(series, system, {Slip::forward}, state, 1e-3, pd::detail::series_order);
   expect(check::near(end_of(series.stretch(0)), 1e-4 - 8e-5 * std::exp(-1.0), 1e-15),
          "skin that slips relaxes to kinetic friction over stiffness");
   expect(check::near(series.sliding(0)[0], 0.06 - 0.08, 1e-14) && series.friction(0)[0] == -0.03,
@@ -64,8 +73,7 @@ void a_plate_that_accelerates() {
   system.contacts = {plate};
   using Number = pd::detail::Uncertain<double>;
   pd::detail::Expansion<double, Number> series(system);
-  series.set({Slip::stick}, 0);
-  series.expand({0, {1e-3}, {0.1}, {0}}, 0.01, 8);
+  expand(series, system, {Slip::stick}, {0, {1e-3}, {0.1}, {0}}, 0.01, 8);
   expect(check::near(series.velocity(0)[1].value, 0.02, 1e-15) &&
              std::abs(series.sliding(0)[1].value) <= series.sliding(0)[1].radius,
          "a body on a plate moves as the plate");

@@ -100,6 +100,9 @@ void zeros() {
   expect(changes(with_zeros({0.0, 0.5}, -1), 1).size() == 1,
          "a start at zero is left to the side that is given, and is none");
   expect(pd::detail::first_zero(with_zeros({0.25, 0.75}, 1, 4)) == 1, "the first zero of a guard");
+  expect(
+      near(pd::detail::first_zero(with_zeros({0.500001, -0.7, -0.7, -0.7}, -1)), 0.500001, 1e-15),
+      "and so it is close to the middle of a step, where iterations begin");
   expect(std::isinf(pd::detail::first_zero(with_zeros({1.5}, -1))),
          "... is never where it stays positive");
 }

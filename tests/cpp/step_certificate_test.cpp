@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <deque>
 #include <functional>
+#include <numeric>
 #include <random>
 #include <vector>
 
@@ -133,7 +134,11 @@ void random_systems() {
   double worst = 0;
   int unfinished = 0;
   long steps = 0;
-  for (int seed = 0; seed < count; ++seed) {
+  // Last: an impact close to the middle of a step, and forces at their limits to rounding.
+  std::vector<int> seeds(static_cast<std::size_t>(count));
+  std::iota(seeds.begin(), seeds.end(), 0);
+  seeds.insert(seeds.end(), {11842, 34591, 86651, 88741});
+  for (const int seed : seeds) {
     const RandomSystem given(static_cast<unsigned>(seed));
     bodies::Following<double> following(given.system, given.state);
     bodies::StepCertificate<double> certificate(given.system);

@@ -180,6 +180,7 @@ class Following {
  private:
   static constexpr Real longest{
       2.5};  ///< step times the fastest rate: the rest of a series is below rounding
+  static constexpr Real summed{16};  ///< roundings of the sum of a series
   static constexpr int fewest =
       InputPiece<T>::degree + 3;  ///< orders, of a force that is a polynomial
 
@@ -360,16 +361,19 @@ class Following {
   }
 
   void move(T tau, T time, Real span) {
+    using std::abs;
     const Real late = detail::rounding<Real> * std::abs(plain(time));
     const auto move_to = [&](const auto& series, T& value, Real& error) {
       const T s = tau / span;
       T sum = series[series_.order()], rate{0};
+      Real size = abs(plain(sum));  // of all terms together, whose sum may be smaller
       for (int n = series_.order(); n-- > 0;) {
         rate = rate * s + sum;
         sum = sum * s + series[n];
+        size = size * plain(s) + abs(plain(series[n]));
       }
       value = sum;
-      error = late * std::abs(plain(rate)) / span;
+      error = late * abs(plain(rate)) / span + summed * detail::rounding<Real> * size;
     };
     auto& errors = state_.errors;
     errors.position.resize(state_.position.size());
@@ -454,8 +458,8 @@ class Following {
       if (body == ground) return T(0);
       const T x = state_.position[body];
       const auto& errors = state_.errors.position;
-      known += 16 * detail::rounding<Real> * abs(plain(x)) +
-               (errors.empty() ? Real(0) : 16 * errors[body]);
+      known +=
+          16 * detail::rounding<Real> * abs(plain(x)) + (errors.empty() ? Real(0) : errors[body]);
       return x;
     };
     const T depth = T(stop.side) * (place(stop.one) - place(stop.other) - stop.position);

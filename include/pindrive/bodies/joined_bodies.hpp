@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pindrive/bodies/system.hpp"
+#include "pindrive/bodies/uncertain.hpp"
 
 namespace pindrive::detail {
 
@@ -185,23 +186,30 @@ class JoinedBodies {
       }
     }
     using std::sqrt;
+    lost_.resize(n);
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t j = begin_[i]; j <= i; ++j) {
         T sum = factor_[i * n + j];
+        const T whole = sum;
         for (std::size_t k = std::max(begin_[i], begin_[j]); k < j; ++k)
           sum -= factor_[i * n + k] * factor_[j * n + k];
+        if (i == j) lost_[i] = plain(whole / sum);
         factor_[i * n + j] = i == j ? sqrt(sum) : sum / factor_[j * n + j];
       }
   }
   template <class N>
   void substitute(std::vector<N>& x) const {
     const std::size_t n = free_.size();
+    const auto divide = [&](std::size_t i) {
+      x[i] = x[i] / factor_[i * n + i];
+      widen(x[i], lost_[i]);
+    };
     for (std::size_t i = 0; i < n; ++i) {
       for (std::size_t k = begin_[i]; k < i; ++k) x[i] -= factor_[i * n + k] * x[k];
-      x[i] = x[i] / factor_[i * n + i];
+      divide(i);
     }
     for (std::size_t i = n; i-- > 0;) {
-      x[i] = x[i] / factor_[i * n + i];
+      divide(i);
       for (std::size_t k = begin_[i]; k < i; ++k) x[k] -= factor_[i * n + k] * x[i];
     }
   }
@@ -216,7 +224,8 @@ class JoinedBodies {
       place_;  ///< bodies whose level is sought, and where each stands among them
   std::vector<int> group_, left_, reached_;  ///< of the walk
   std::vector<T> factor_;
-  std::vector<std::size_t> begin_;  ///< first column of each row of the factor
+  std::vector<std::size_t> begin_;     ///< first column of each row of the factor
+  std::vector<detail::Real<T>> lost_;  ///< roundings of each pivot, which is a difference
 };
 
 }  // namespace pindrive::detail

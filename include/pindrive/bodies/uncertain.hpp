@@ -51,4 +51,13 @@ struct Uncertain {
   }
 };
 
+/// Widens the error of a number by a count of roundings.
+template <class T>
+void widen(Uncertain<T>& number, Real<T> roundings) {
+  using std::abs;
+  number.radius += roundings * rounding<Real<T>> * abs(plain(number.value));
+}
+template <class T>
+void widen(T&, Real<T>) {}
+
 }  // namespace pindrive::detail

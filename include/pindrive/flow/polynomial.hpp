@@ -232,6 +232,7 @@ class SignIsolation {
   /// Zero in a bracket, by Newton's iteration; by bisection where that leaves the bracket or does not halve its steps.
   Real root(Real low, Real high) const {
     Real s = low + (high - low) / 2, last = high - low;  // last step
+    bool newton_before = false;
     for (int tries = 0; tries < 200 && low < s && s < high; ++tries) {
       Real sum = powers_[degree_], rate{0};
       for (int n = degree_; n-- > 0;) {
@@ -243,9 +244,10 @@ class SignIsolation {
       const Real newton = s - sum / rate, step = std::abs(newton - s);
       const bool inside = newton > low && newton < high && step < last / 2;
       const Real next = inside ? newton : low + (high - low) / 2;
-      const Real ratio = inside ? step / last : Real(1);
+      const Real ratio = inside && newton_before ? step / last : Real(1);
+      newton_before = inside;
       last = inside ? step : high - low;
-      // Each ratio of two steps is the square of that before: the step that is left is below the last digit.
+      // Each ratio of two steps of Newton is the square of that before: the step that is left is below the last digit.
       const bool close = last <= Real(near_root) * next;
       if (close && last * ratio * ratio <= last_digit<Real> * next) return next;
       s = next;
