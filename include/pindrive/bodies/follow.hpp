@@ -366,7 +366,7 @@ class Following {
     const auto move_to = [&](const auto& series, T& value, Real& error) {
       const T s = tau / span;
       T sum = series[series_.order()], rate{0};
-      Real size = abs(plain(sum));  // of all terms together, whose sum may be smaller
+      Real size = abs(plain(sum));  // sum of the sizes of all terms
       for (int n = series_.order(); n-- > 0;) {
         rate = rate * s + sum;
         sum = sum * s + series[n];
