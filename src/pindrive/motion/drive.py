@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from functools import partial
 from math import inf, isinf, nan, sqrt
-from typing import Any, Final
+from typing import Any, Final, TypedDict, Unpack
 
 from pindrive.motion.friction import (
     COEFFICIENTS,
@@ -210,19 +210,22 @@ class Contact:
         return isinf(self.stiffness)
 
 
-def Stribeck(
-    *,
-    kinetic: float | str | None = None,
-    breakaway: float | str | None = None,
-    stribeck_velocity: float | str,
-    exponent: float | str | None = None,
-    viscous: float | str | None = None,
-    static: float | str | None = None,
-    coefficient: float | str | None = None,
-    breakaway_coefficient: float | str | None = None,
-    viscous_coefficient: float | str | None = None,
-    static_coefficient: float | str | None = None,
-) -> Contact:
+class FallingLaw(TypedDict, total=False):
+    """Parameters of a law under which friction falls with the sliding speed: those of `Contact`."""
+
+    kinetic: float | str | None
+    breakaway: float | str | None
+    stribeck_velocity: float | str
+    exponent: float | str | None
+    viscous: float | str | None
+    static: float | str | None
+    coefficient: float | str | None
+    breakaway_coefficient: float | str | None
+    viscous_coefficient: float | str | None
+    static_coefficient: float | str | None
+
+
+def Stribeck(**law: Unpack[FallingLaw]) -> Contact:
     """Return a rigid contact under Stribeck's law.
 
     Kinetic friction is kinetic + (breakaway - kinetic) exp(-(|u|/stribeck_velocity)^exponent) +
@@ -230,16 +233,8 @@ def Stribeck(
     30:1083).
 
     Args:
-        kinetic: Friction force far above the Stribeck velocity, without its viscous part, N.
-        breakaway: Friction force as sliding begins, N, at least `kinetic`.
-        stribeck_velocity: Sliding speed over which friction falls, m/s, above 0.
-        exponent: 1 or 2; 1 if None.
-        viscous: Viscous part, N*s/m; none if None.
-        static: Largest friction force without sliding, N; `breakaway` if None.
-        coefficient: Coefficient far above that velocity, in place of `kinetic`.
-        breakaway_coefficient: Coefficient as sliding begins, in place of `breakaway`.
-        viscous_coefficient: Viscous part of the coefficient, s/m, in place of `viscous`.
-        static_coefficient: Largest coefficient without sliding, in place of `static`.
+        **law: `kinetic`, `breakaway`, `stribeck_velocity`, `exponent`, `viscous` and `static` as
+            for `Contact`, or the coefficients in place of the forces.
 
     Returns:
         A `Contact` of the law.
@@ -252,48 +247,18 @@ def Stribeck(
         >>> pd.Stribeck(kinetic=0.020, breakaway=0.026, stribeck_velocity="30 mm/s").law
         'stribeck'
     """
-    return Contact(
-        kinetic,
-        static,
-        law="stribeck",
-        breakaway=breakaway,
-        stribeck_velocity=stribeck_velocity,
-        exponent=exponent,
-        viscous=viscous,
-        coefficient=coefficient,
-        breakaway_coefficient=breakaway_coefficient,
-        viscous_coefficient=viscous_coefficient,
-        static_coefficient=static_coefficient,
-    )
+    return Contact(law="stribeck", **law)
 
 
-def HessSoom(
-    *,
-    kinetic: float | str | None = None,
-    breakaway: float | str | None = None,
-    stribeck_velocity: float | str,
-    viscous: float | str | None = None,
-    static: float | str | None = None,
-    coefficient: float | str | None = None,
-    breakaway_coefficient: float | str | None = None,
-    viscous_coefficient: float | str | None = None,
-    static_coefficient: float | str | None = None,
-) -> Contact:
+def HessSoom(**law: Unpack[FallingLaw]) -> Contact:
     """Return a rigid contact under the law of Hess and Soom.
 
     Kinetic friction is kinetic + (breakaway - kinetic) / (1 + (|u|/stribeck_velocity)^2) +
     viscous |u| at a sliding speed |u| (Hess, Soom 1990, J. Tribology 112:147).
 
     Args:
-        kinetic: Friction force far above the Stribeck velocity, without its viscous part, N.
-        breakaway: Friction force as sliding begins, N, at least `kinetic`.
-        stribeck_velocity: Sliding speed at which half of the difference is left, m/s, above 0.
-        viscous: Viscous part, N*s/m; none if None.
-        static: Largest friction force without sliding, N; `breakaway` if None.
-        coefficient: Coefficient far above that velocity, in place of `kinetic`.
-        breakaway_coefficient: Coefficient as sliding begins, in place of `breakaway`.
-        viscous_coefficient: Viscous part of the coefficient, s/m, in place of `viscous`.
-        static_coefficient: Largest coefficient without sliding, in place of `static`.
+        **law: `kinetic`, `breakaway`, `stribeck_velocity`, `viscous` and `static` as for
+            `Contact`, or the coefficients in place of the forces.
 
     Returns:
         A `Contact` of the law.
@@ -301,18 +266,7 @@ def HessSoom(
     Raises:
         ValueError: A value is invalid, as for `Contact`.
     """
-    return Contact(
-        kinetic,
-        static,
-        law="hess-soom",
-        breakaway=breakaway,
-        stribeck_velocity=stribeck_velocity,
-        viscous=viscous,
-        coefficient=coefficient,
-        breakaway_coefficient=breakaway_coefficient,
-        viscous_coefficient=viscous_coefficient,
-        static_coefficient=static_coefficient,
-    )
+    return Contact(law="hess-soom", **law)
 
 
 @concise
