@@ -133,18 +133,19 @@ def print_study(count: int) -> None:
 
 def print_stream() -> None:
     """A millisecond of the reader under a live hand, by `stream.c`."""
-    sources = ("scan", "contradictions", "device", "device_parameters", "drive", "stepper")
+    sources = ("scan", "device", "device_parameters", "drive", "stepper")
     with TemporaryDirectory() as folder:
         c, program = Path(folder, "stream.o"), Path(folder, "stream")
-        capi = f"-I{ROOT / 'capi'}"
+        capi, bindings = f"-I{ROOT / 'capi'}", ROOT / "bindings"
         subprocess.run(
             ["cc", "-std=c99", "-O2", capi, "-c", ROOT / "benchmarks" / "stream.c", "-o", c],
             check=True,
         )
         options = ("-std=c++17", "-O3", "-DNDEBUG", "-ffp-contract=off", "-fno-tree-slp-vectorize")
-        files = [ROOT / "capi" / f"{name}.cpp" for name in sources]
-        include = f"-I{ROOT / 'include'}"
-        subprocess.run(["c++", *options, include, capi, *files, c, "-o", program], check=True)
+        files = [bindings / "contradictions.cpp"]
+        files += [ROOT / "capi" / f"{name}.cpp" for name in sources]
+        headers = [f"-I{ROOT / 'include'}", f"-I{bindings}", capi]
+        subprocess.run(["c++", *options, *headers, *files, c, "-o", program], check=True)
         print("a millisecond of sixteen pins under a live hand:")
         print(subprocess.run([program], check=True, capture_output=True, text=True).stdout, end="")
 

@@ -77,8 +77,8 @@ def core() -> Path:
     call(
         *(*compiler, "-mexec-model=reactor", "-std=c++17", "-DNDEBUG", "-DPINDRIVE_SMALL", "-s"),
         "-Os",  # a fifth slower than -O2, and 60 kB of the page smaller
-        *("-fno-exceptions", "-fno-rtti", "-ffp-contract=off", "-Iinclude", "-Icapi"),
-        *sorted((ROOT / "capi").glob("*.cpp")),
+        *("-fno-exceptions", "-fno-rtti", "-ffp-contract=off", "-Iinclude", "-Ibindings", "-Icapi"),
+        *(path for of in ("bindings", "capi") for path in sorted((ROOT / of).glob("*.cpp"))),
         *("-o", str(target)),
         *(f"-Wl,--export=pindrive_{name}" for name in sorted(called)),
         *(f"-Wl,--export={name}" for name in BESIDE),

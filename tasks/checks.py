@@ -21,7 +21,10 @@ ACTIONLINT = "github.com/rhysd/actionlint/cmd/actionlint@v1.7.12"
 
 def cpp_files() -> list[Path]:
     """The C++ of the project."""
-    folders = ("include", "engine", "src/pindrive", "capi", "fmu", "tests", "benchmarks")
+    folders = (
+        *("include", "engine", "src/pindrive", "bindings", "capi", "fmu"),
+        *("tests", "benchmarks"),
+    )
     found = (p for folder in folders for p in (ROOT / folder).rglob("*.[ch]pp"))
     return sorted(p.relative_to(ROOT) for p in found)
 
@@ -32,7 +35,7 @@ def checked_by_clang_tidy(files: set[str] | None) -> list[Path]:
     A header of the core is checked as its test instantiates it, another header as the programs of
     its folder do.
     """
-    folders = ("engine", "capi", "fmu", "tests")
+    folders = ("engine", "bindings", "capi", "fmu", "tests")
     programs = [p for p in cpp_files() if p.suffix == ".cpp" and p.parts[0] in folders]
     if files is None:
         return programs
@@ -46,7 +49,7 @@ def clang_tidy(files: set[str] | None) -> int:
     """Check the core's headers as the programs that use them instantiate them, on all cores."""
     programs = checked_by_clang_tidy(files)
     print(f"{len(programs)} programs", flush=True)
-    headers = ("-Iinclude", "-Isrc/pindrive", "-Icapi", "-Ifmu")
+    headers = ("-Iinclude", "-Isrc/pindrive", "-Ibindings", "-Icapi", "-Ifmu")
 
     def check(program: Path) -> int:
         return run("clang-tidy", "--quiet", program, "--", "-std=c++17", *headers)

@@ -19,7 +19,10 @@ VENV = ROOT / ".venv"
 BIN = VENV / ("Scripts" if os.name == "nt" else "bin")
 STAMP = VENV / "pindrive.json"
 WHEELS = ROOT / "build" / "installed"
-SOURCES = ("pyproject.toml", "CMakeLists.txt", "include", "engine", "capi", "fmu", "src")
+SOURCES = (
+    *("pyproject.toml", "CMakeLists.txt"),
+    *("include", "engine", "bindings", "capi", "fmu", "src"),
+)
 
 
 def requirements(extras: set[str], *, runs: bool = True) -> list[str]:

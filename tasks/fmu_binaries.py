@@ -10,7 +10,10 @@ from pathlib import Path
 from tasks.environment import BIN, ROOT, STAMP, install, quietly, write_stamp
 from tasks.machine import stop
 
-FMU_OF_CAPI = ("contradictions.cpp", "device_parameters.cpp", "drive.cpp", "stepper.cpp")
+BESIDE_FMU = (
+    "bindings/contradictions.cpp",
+    *("capi/device_parameters.cpp", "capi/drive.cpp", "capi/stepper.cpp"),
+)
 
 # What FMI 3 calls a platform, what the compiler does, and how its libraries end.
 FMU_PLATFORMS = {
@@ -66,8 +69,8 @@ def fmu_binaries(platforms: list[str]) -> int:
 def fmu_binary(name: str) -> Path:
     """The library that an FMU carries for a platform, compiled here."""
     target, suffix = FMU_PLATFORMS[name]
-    sources = [*sorted((ROOT / "fmu").glob("*.cpp")), *(ROOT / "capi" / n for n in FMU_OF_CAPI)]
-    headers = [f"-I{ROOT / folder}" for folder in ("include", "capi", "fmu")]
+    sources = [*sorted((ROOT / "fmu").glob("*.cpp")), *(ROOT / n for n in BESIDE_FMU)]
+    headers = [f"-I{ROOT / folder}" for folder in ("include", "bindings", "capi", "fmu")]
     library = ROOT / "build" / "fmu" / name / f"pindrive.{suffix}"
     library.parent.mkdir(parents=True, exist_ok=True)
     zig = [str(BIN / "python"), "-m", "ziglang"]

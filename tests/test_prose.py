@@ -91,12 +91,13 @@ PYTHON = sorted(
 )
 CPP = [
     path
-    for folder in ("include", "engine", "capi", "fmu", "src", "tests")
+    for folder in ("include", "engine", "bindings", "capi", "fmu", "src", "tests")
     for path in sorted((ROOT / folder).rglob("*.[ch]pp"))
 ]
 SOURCES = {
     "src": {".py", ".cpp", ".hpp"},
     "include": {".hpp"},
+    "bindings": {".cpp", ".hpp"},
     "capi": {".cpp", ".hpp"},
     "fmu": {".cpp", ".hpp"},
     "studio/src": {".ts"},

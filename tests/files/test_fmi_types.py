@@ -16,7 +16,7 @@ FMU = ROOT / "fmu"
 STANDARD = Path(fmpy.__file__).parent / "c-code"
 COMPILER = shutil.which(os.environ.get("CXX", "c++"))
 COMPILES = pytest.mark.skipif(COMPILER is None, reason="there is no C++ compiler")
-FOLDERS = [FMU, ROOT / "capi", ROOT / "include"]
+FOLDERS = [FMU, ROOT / "bindings", ROOT / "capi", ROOT / "include"]
 
 
 def compiled(text: str, folder: Path) -> subprocess.CompletedProcess[str]:
