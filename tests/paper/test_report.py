@@ -11,10 +11,11 @@ from pindrive import Contact, Drive, Profile, Release, simulate, simulate_batch
 from pindrive.paper import as_printed, formulas, maps, population
 from pindrive.paper.claims_of_analysis import has_closed_form
 from pindrive.paper.equations import damping_ratio, where_good
-from pindrive.paper.exhibit import at_most, by_case, listed, share, trend
+from pindrive.paper.exhibit import at_most, by_case, trend
 from pindrive.paper.population import Claim
 from pindrive.paper.report import Report
 from pindrive.paper.sensitivity import PARAMETERS
+from pindrive.paper.wording import listed, share
 
 # ---- what it says --------------------------------------------------------------------------------
 

@@ -15,7 +15,7 @@ from pindrive.motion.release import Release
 from pindrive.paper import as_printed, formulas
 from pindrive.paper.baseline import FACTORS
 from pindrive.paper.equations import GOOD
-from pindrive.paper.exhibit import Exhibit, by_case, listed, page, trend
+from pindrive.paper.exhibit import Exhibit, by_case, exhibit, page, trend
 from pindrive.paper.formulas import UNIT_DRIVE, UNIT_RELEASE, Array, Releases
 from pindrive.plot.style import CURVES, GREY, PALETTE, SMALL
 
@@ -86,20 +86,14 @@ def phase_and_amplitude() -> Exhibit:
             found[case.format(value).replace("= 0 x_0", "= 0")] = trend(curve)
         return by_case(found)
 
-    return Exhibit(
+    return exhibit(
         "phase-and-amplitude",
-        "Initial phase (8) and amplitude (7)",
-        "In units of x_0 and 1/ω_0. Above, against the mouse's speed at ζ = 0.16, for three "
-        "friction offsets x_d; below, against x_d at v_p = 0.3 ω_0 x_0, for three damping ratios. "
-        "Curves begin where the pin breaks away at once.",
         data,
         _draw_phase_and_amplitude,
-        (
-            f"With the mouse's speed the phase {over('speed', 'phase', 'place', 'x_d = {:g} x_0')}"
-            f"; the amplitude {over('speed', 'amplitude', 'place', 'x_d = {:g} x_0')}.",
-            f"With x_d the phase {over('offset', 'phase', 'ratio', 'ζ = {:g}')}; the amplitude "
-            f"{over('offset', 'amplitude', 'ratio', 'ζ = {:g}')}.",
-        ),
+        phase_by_speed=over("speed", "phase", "place", "x_d = {:g} x_0"),
+        amplitude_by_speed=over("speed", "amplitude", "place", "x_d = {:g} x_0"),
+        phase_by_offset=over("offset", "phase", "ratio", "ζ = {:g}"),
+        amplitude_by_offset=over("offset", "amplitude", "ratio", "ζ = {:g}"),
     )
 
 
@@ -171,22 +165,16 @@ def first_reversal() -> Exhibit:
     foretold = fine[:, None] < limit
     below = (data.angle < data.printed_bound) & data.angle.notnull()
     slow = [float(data.speed[b].max()) if b.any() else 0.0 for b in below.values[1:]]
-    return Exhibit(
+    return exhibit(
         "first-reversal",
-        "When the pin first reaches the plate's velocity (21), and where it never does (26)",
-        "In units of x_0 − x_d and 1/ω_0, the finger frictionless. Left: the exact root, the "
-        "paper's bound π + 2φ_0 (dashed) and the right one π + 2(φ_0 − φ′_0) (dotted). Right: "
-        f"{found.sizes['ratio_of_map']} × {found.sizes['speed_of_map']} exact simulations, and "
-        "the limit case (26) as a line.",
         data,
         _draw_first_reversal,
-        (
-            "The paper's bound, below which ωt_1 should never be, is above it for mouse speeds up "
-            f"to {slow[0]:.2g} at ζ = 0.04 and {slow[1]:.2g} at ζ = 0.16 (in units of "
-            "ω_0 (x_0 − x_d)).",
-            "The line from (26) parts the simulations that reach it from those that do not: "
-            f"{int((reverses == foretold).sum())} of {reverses.size} lie on its right side.",
-        ),
+        ratios=found.sizes["ratio_of_map"],
+        speeds=found.sizes["speed_of_map"],
+        slow=slow[0],
+        slower=slow[1],
+        right=int((reverses == foretold).sum()),
+        count=reverses.size,
     )
 
 
@@ -262,24 +250,15 @@ def steady_and_rest() -> Exhibit:
     exact = np.abs(data.simulated_rest - data.rest_after)
     beyond = data.sel(place=slice(1.001, None))
     ratio_of_times = beyond.steady_after / beyond.printed_steady
-    return Exhibit(
+    return exhibit(
         "steady-and-rest",
-        "Without damping: until the oscillation is steady, and until finger friction ends it",
-        "Left, finger frictionless: the time until the steady oscillation begins, for three mouse "
-        "speeds, the reversals of friction until then, and the paper's 0.5 (x_0 / x_d + 1). "
-        "Right: the time from the last break-away from the plate to rest, and the paper's "
-        "v_p / 4 x_f ω_0; x_f = F_f / k.",
         data,
         _draw_steady_and_rest,
-        (
-            "The whole part of the paper's number counts the reversals of friction. As periods it "
-            f"is wrong: the exact time is {float(ratio_of_times.min()):.2g} to "
-            f"{float(ratio_of_times.max()):.2g} times as long here, and depends on the mouse's "
-            "speed, which the paper's number leaves out.",
-            f"Its time to rest is right to {float(off.max()):.2f} periods, the steps of the exact "
-            f"one; {exact.size} simulations agree with the steps to "
-            f"{'rounding' if float(exact.max()) < 1e-10 else f'{float(exact.max()):.1e}'}.",
-        ),
+        least=float(ratio_of_times.min()),
+        most=float(ratio_of_times.max()),
+        off=float(off.max()),
+        count=exact.size,
+        error="rounding" if float(exact.max()) < 1e-10 else f"{float(exact.max()):.1e}",
     )
 
 
@@ -344,19 +323,15 @@ def printed_forms() -> Exhibit:
     good = [
         f"{label.split()[0]} {_spans(ratios, off[name] <= GOOD)}" for name, label in SLIPS.items()
     ]
-    return Exhibit(
+    return exhibit(
         "printed-forms",
-        "How far the printed extremes are off, without the factor cos φ′",
-        "Largest deviation from the corrected forms over mouse speeds of 0 to 3 ω_0 x_0, as a part "
-        "of X_m,0 (of ω_0 X_m,0 for the velocity); x_d = 0.1 x_0.",
         data,
         _draw_printed_forms,
-        (
-            f"At the paper's damping factors 0.04, 0.16 and 0.32, read as ratios, the worst of the "
-            f"four is off by {worst[0]:.2g} %, {worst[1]:.2g} % and {worst[2]:.2g} % of the "
-            "amplitude.",
-            f"They are good to {100 * GOOD:g} %: {listed(good)}.",
-        ),
+        light=worst[0],
+        middle=worst[1],
+        heavy=worst[2],
+        good=100 * GOOD,
+        forms=good,
     )
 
 

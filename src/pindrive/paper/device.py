@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.patches import Ellipse, FancyArrowPatch, Rectangle
 
-from pindrive.paper.exhibit import Exhibit, page
+from pindrive.paper.exhibit import Exhibit, exhibit, page
 from pindrive.plot.style import GREY, PALETTE, SMALL
 
 if TYPE_CHECKING:
@@ -68,29 +68,11 @@ def device() -> Exhibit:
         {"across": ("part", places[:, 0], plain), "up": ("part", places[:, 1], plain)},
         coords={"part": list(PARTS)},
     )
-    return Exhibit(
+    return exhibit(
         "figure-1-device",
-        "Figure 1: the device, its parts and its frame",
-        "Drawn anew, not to scale; numbers 1 to 5 as in the paper. The mouse, 3, lies on a steel "
-        "plate, 4. In it the electromagnet, 1, with the pin, 5, hangs on a spring, 2, and a "
-        "damper; the fingertip rests on the mouse and touches the pin.",
         data,
         _draw,
-        (
-            "Over information (a black line, a letter) the control block energises the magnet, "
-            "which clamps to the plate: the pin is carried at v_p, as the mouse moves on, and "
-            "drags the skin. Where the information ends, the pull falls and the spring brings the "
-            "pin back: the transitional process.",
-            "Frame: x and all velocities are seen from the mouse. Positive is the way in which "
-            "the plate passes under it, against the mouse's own motion. The pin is released at "
-            "x_0 with the plate's velocity v_p.",
-            "All forces drawn act on the moving body, electromagnet and pin. From the plate: its "
-            "normal force N_p, which carries weight, preload, touch and the magnet's pull, and its "
-            "friction F_p, against ẋ − v_p. From the fingertip: the touch force N_f and its "
-            "friction F_f, against ẋ; the arrows of friction show the pin as it returns, ẋ < 0. "
-            "Plate and finger feel the opposite of each.",
-        ),
-        (("symbol", "meaning", "unit", "in the paper"), *SYMBOLS),
+        table=(("symbol", "meaning", "unit", "in the paper"), *SYMBOLS),
     )
 
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from io import BytesIO
 from math import ceil, log10
-from typing import Final
+from typing import Any, Final
 
 import matplotlib.style
 import numpy as np
@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
 from pindrive.lazy import stats, xr
+from pindrive.paper.wording import TEXTS, listed, worded
 from pindrive.plot.style import STYLE, new_figure
 
 WIDTH: Final = 180.0
@@ -69,6 +70,28 @@ class Exhibit:
         return file.getvalue()
 
 
+def exhibit(
+    name: str,
+    data: xr.Dataset,
+    draw: Callable[[xr.Dataset], Figure],
+    *,
+    readings: Iterable[str] = (),
+    table: tuple[tuple[str, ...], ...] = (),
+    **slots: Any,
+) -> Exhibit:
+    """Return a figure with its texts, whose slots are filled; `readings` follow those."""
+    texts = TEXTS["exhibits"][name]
+    return Exhibit(
+        name,
+        texts["title"],
+        worded(texts["caption"], **slots),
+        data,
+        draw,
+        (*(worded(each, **slots) for each in texts.get("readings", ())), *readings),
+        table,
+    )
+
+
 def summary(data: xr.Dataset) -> dict[str, list[float]]:
     """Return for each variable the counts of values and finite values, minimum, mean, maximum."""
     found = {}
@@ -103,12 +126,6 @@ def trend(values: ArrayLike) -> str:
     )
 
 
-def listed(words: list[str]) -> str:
-    """A, b and c."""
-    *first, last = words
-    return f"{', '.join(first)} and {last}" if first else last
-
-
 def by_case(found: dict[str, str]) -> str:
     """Return the results of all cases, equal ones merged: "rises at 1 and 2, falls at 3"."""
     cases: dict[str, list[str]] = {}
@@ -123,12 +140,6 @@ def at_most(value: float) -> str:
     Ten times the value for safety: other processors round otherwise.
     """
     return "0" if value == 0.0 else rf"< 10^{{{3 * ceil(log10(10 * value) / 3)}}}"
-
-
-def share(true: ArrayLike) -> str:
-    """Return a share in words: "1990 of 2000"."""
-    found = np.asarray(true)
-    return f"{int(found.sum())} of {found.size}"
 
 
 _INDEX: Final = re.compile(r"(?<![A-Za-z])([A-Za-zα-ωΑ-Ω]′?)_([a-z0-9]+(?:,[a-z0-9])?)")

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from pindrive.motion.batch import batched
 from pindrive.paper import baseline, formulas
-from pindrive.paper.exhibit import Exhibit, at_most, page, trend
+from pindrive.paper.exhibit import Exhibit, at_most, exhibit, page, trend
 from pindrive.paper.formulas import UNIT_DRIVE, UNIT_RELEASE, Releases
 from pindrive.paper.population import SEED
 from pindrive.plot.contours import MAP, draw_contours, jump_key
@@ -133,39 +133,27 @@ def time_and_displacement() -> tuple[Exhibit, Exhibit]:
     planes = {f"{across}_{up}": plane(across, up) for across, up in wanted}
     at = ", ".join(f"{MEANING[g.name]} {g.baseline:.3g}" for g in GROUPS.values())
     collapse, reduced = _checks()
-    time = Exhibit(
+    time = exhibit(
         "maps-of-time",
-        "The time of the transitional period over two parameters at a time",
-        "Settling time in undamped periods 2π/ω_0. The groups not on the axes are at the baseline, "
-        f"the dot: {at}. The thick lines are jumps, "
-        "where the pin makes one half swing more or less before rest; contours end there, where "
-        "they would pile up.",
         _joined({f"{a}_{u}": planes[f"{a}_{u}"] for a, u in TIME_MAPS}, "periods"),
         _draw_time,
-        (
-            "Dimensional analysis leaves ω_0 t_s and x_max / x_0 as functions of four groups: ζ, "
-            "v_p / ω_0 x_0, F_p / k x_0 and F_f / k x_0. Checked: 500 random drives and the same "
-            f"in units of m, x_0 and 1/ω_0 differ by ${at_most(collapse)}$ "
-            f"(relative, seed {SEED}).",
-            *(_reading(planes[f"{a}_{u}"].periods, a, u, "settling time") for a, u in TIME_MAPS),
+        readings=(
+            _reading(planes[f"{a}_{u}"].periods, a, u, "settling time") for a, u in TIME_MAPS
         ),
+        baseline=at,
+        collapse=at_most(collapse),
+        seed=SEED,
     )
-    displacement = Exhibit(
+    displacement = exhibit(
         "maps-of-displacement",
-        "The largest displacement over two parameters at a time",
-        f"First maximum (14) over x_0. The groups not on the axes are at the baseline: {at}.",
         _joined({f"{a}_{u}": planes[f"{a}_{u}"] for a, u in DISPLACEMENT_MAPS}, "peak"),
         _draw_displacement,
-        (
-            "Until the first maximum the pin slides one way on both surfaces, so only the "
-            "difference (F_p − F_f) / k x_0 counts, and three groups are left. Checked: (14) with "
-            f"F_p − F_f for F is the exact peak to ${at_most(reduced)}$ of x_0 on every such "
-            "point of the third map.",
-            *(
-                _reading(planes[f"{a}_{u}"].peak, a, u, "largest displacement")
-                for a, u in DISPLACEMENT_MAPS
-            ),
+        readings=(
+            _reading(planes[f"{a}_{u}"].peak, a, u, "largest displacement")
+            for a, u in DISPLACEMENT_MAPS
         ),
+        baseline=at,
+        reduced=at_most(reduced),
     )
     return time, displacement
 

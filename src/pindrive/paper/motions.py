@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from pindrive import Motion, Profile, simulate
 from pindrive.paper import baseline
 from pindrive.paper.baseline import FACTORS
-from pindrive.paper.exhibit import Exhibit, page
+from pindrive.paper.exhibit import Exhibit, exhibit, page
+from pindrive.paper.wording import TEXTS, worded
 from pindrive.plot.style import GREY, HALO, PALETTE, SMALL
 from pindrive.quantities.quantity import significant
 from pindrive.quantities.table import QUANTITIES
@@ -112,25 +113,19 @@ def displacement() -> Exhibit:
             "factor": ("factor", list(FACTORS), {"long_name": "the paper's damping factor"}),
         },
     )
+    words_of_reading = TEXTS["exhibits"]["figure-4-displacement"]["reading"]
     readings = []
     for reading, words in READINGS.items():
         of = data.sel(reading=reading)
         times = [f"{significant(1e3 * x, 3)}" for x in of.settling_time.values]
         depths = [f"{significant(-1e3 * x, 3)}" for x in of.trough.values]
-        readings.append(
-            f"Read as {words}: the pin settles after {times[0]}, {times[1]} and {times[2]} ms and "
-            f"swings to {depths[0]}, {depths[1]} and {depths[2]} mm on the other side."
-        )
-    return Exhibit(
+        readings.append(worded(words_of_reading, words=words, times=times, depths=depths))
+    return exhibit(
         "figure-4-displacement",
-        "Figure 4: displacement at damping factor 0.04, 0.16 and 0.32",
-        "The paper gives neither the unit of the damping factor nor any other parameter. Left it "
-        "is read as the damping ratio ζ = b / 2√(mk), right as b in N·s/m. Assumed: "
-        f"{baseline.stated('damping_ratio')}; static friction equal to kinetic, as in (1). The "
-        "line marks from when on the pin stays within 5 %.",
         data,
         _draw_displacement,
-        tuple(readings),
+        readings=tuple(readings),
+        baseline=baseline.stated("damping_ratio"),
     )
 
 
@@ -213,21 +208,18 @@ def velocity() -> Exhibit:
     fastest, return_time = -mm * float(v[lowest]), 1e3 * float(t[lowest] - released)
     plate = mm * baseline.VALUES["mouse_velocity"]
     again = float(v[after & (t > t[lowest])].max()) * mm
-    return Exhibit(
+    return exhibit(
         "figure-2-velocity",
-        "Figure 2: velocity of the pin while it crosses a line",
-        "Computed. The paper's Figure 2 is a measurement whose data are not printed, so nothing of "
-        f"it is here. Assumed: {baseline.stated()}; the magnet holds with {baseline.HOLD:g} times "
-        f"the plate's own friction until {1e3 * breakaway:.1f} ms and releases the pin within "
-        "0.1 ms; static friction equal to kinetic.",
         data,
         _draw_velocity,
-        (
-            f"Carried, the pin has the plate's velocity, {plate:g} mm/s; released, it comes back "
-            f"at up to {fastest:.0f} mm/s, {fastest / plate:.1f} times as fast, "
-            f"{return_time:.1f} ms after it broke away, and then reaches {again:.0f} mm/s "
-            "forwards.",
-        ),
+        baseline=baseline.stated(),
+        hold=baseline.HOLD,
+        breakaway=1000.0 * breakaway,
+        plate=plate,
+        fastest=fastest,
+        ratio=fastest / plate,
+        return_time=return_time,
+        again=again,
     )
 
 
@@ -293,13 +285,8 @@ def model() -> Exhibit:
         (r"\dot x", "the velocity, after block 2: `Motion.velocity`"),
         (r"\ddot x", "the acceleration, after block 1: `Motion.acceleration`"),
     )
-    return Exhibit(
+    return exhibit(
         "figure-3-model",
-        "Figure 3: the model as a block diagram",
-        "Drawn after equation (1) with the sign that dissipates. The paper's diagram is not "
-        "printed with its text; what its section on Simulink names is here: the pin, the finger, "
-        "and the three outputs. A solver with steps has to guess when a sign block switches; here "
-        "the switching times are exact roots.",
         xr.Dataset(
             {
                 "term": ("block", [term for _, _, _, _, term, _ in _BLOCKS]),

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +23,7 @@ from pindrive.motion.release import Release
 from pindrive.motion.simulate import simulated
 from pindrive.paper import formulas
 from pindrive.paper.formulas import Array, Releases
+from pindrive.paper.wording import TEXTS, worded
 
 Truth = NDArray[np.bool_]
 
@@ -227,6 +228,42 @@ class Claim:
         return (
             "holds" if everywhere else f"holds when {self.condition}" if where else "does not hold"
         )
+
+
+def claim(
+    name: str,
+    true: Truth | None,
+    *,
+    meets: Truth | None = None,
+    done: bool = False,
+    excludes: bool = False,
+    **slots: Any,
+) -> Claim:
+    """Return a sentence with its finding.
+
+    Args:
+        name: Name in `text.toml`.
+        true: Truth in each trial; slot {true} of the finding.
+        meets: Trials that meet the condition; {met} and {unmet} are the truth in them and beside.
+        done: True for a sentence on the authors' actions.
+        excludes: True for a claim of impossibility.
+        **slots: Further slots of the finding.
+    """
+    of = TEXTS["claims"][name]
+    if true is not None and meets is not None:
+        slots = {"met": true[meets], "unmet": true[~meets]} | slots
+    finding = worded(of["finding"], true=true, **slots)
+    return Claim(
+        of["place"],
+        of["sentence"],
+        true,
+        of["shown_by"],
+        finding,
+        of.get("condition", ""),
+        meets,
+        done,
+        excludes,
+    )
 
 
 def swing(found: xr.Dataset) -> Array:

@@ -28,9 +28,10 @@ from pindrive.paper import (
 from pindrive.paper.baseline import FACTORS
 from pindrive.paper.claims import claims
 from pindrive.paper.equations import GOOD, Row
-from pindrive.paper.exhibit import Exhibit, at_most, listed, markdown
+from pindrive.paper.exhibit import Exhibit, at_most, markdown
 from pindrive.paper.page import anchor, page
 from pindrive.paper.population import Claim, Facts
+from pindrive.paper.wording import TEXTS, worded
 
 T = TypeVar("T")
 
@@ -69,31 +70,28 @@ class Report:
     def summary(self) -> str:
         """The result in a paragraph."""
         count = Counter(claim.verdict.split(" when ")[0] for claim in self.claims)
-        unproved = count["not proved"]
         whole = sum(c.verdict == "holds" for c in self.claims)
-        evaluated = count["holds"] + count["does not hold"] + unproved
-        wrong = [row.number for row in self.rows if row.right]
-        return (
-            f"The paper makes {evaluated} statements about the drive: {whole} hold, "
-            f"{count['holds'] - whole} hold under an additional condition, "
-            f"{count['does not hold']} do not hold, and {unproved}, that no analytical solution "
-            f"exists, are not proved. {count['done here']} statements describe work of the authors "
-            f"that is repeated here, and {count['not evaluated']} are outside the scope. The "
-            f"equations ({'), ('.join(wrong)}) need correction. Corrected, all equations agree "
-            "with the exact simulator to rounding until the pin first reaches the plate's "
-            "velocity. No elementary closed form is known for that time; it is an isolated root of "
-            "(21), computed to rounding. This report was made from the text of the paper, number "
-            "298 of its journal, without its figures and the names of its authors."
+        return worded(
+            TEXTS["report"]["summary"],
+            evaluated=count["holds"] + count["does not hold"] + count["not proved"],
+            whole=whole,
+            conditional=count["holds"] - whole,
+            false=count["does not hold"],
+            unproved=count["not proved"],
+            done=count["done here"],
+            outside=count["not evaluated"],
+            wrong="), (".join(row.number for row in self.rows if row.right),
         )
 
     @property
     def method(self) -> str:
         """Trials of the equations and statements."""
-        return (
-            f"Evaluated on {population.COUNT} random releases, seed {population.SEED}: "
-            f"{population.RANGES}. Undamped releases: {population.UNDAMPED_RANGES}. Finger "
-            "friction, if any, is 0–10 mN. The reference is `pindrive.simulate`, with closed "
-            "forms between events and events by root isolation."
+        return worded(
+            TEXTS["report"]["method"],
+            count=population.COUNT,
+            seed=population.SEED,
+            ranges=population.RANGES,
+            undamped=population.UNDAMPED_RANGES,
         )
 
     def equation_cells(self) -> list[tuple[str, ...]]:
@@ -111,15 +109,6 @@ class Report:
                 off = f"printed: no number\nright: {off}"
             table.append((f"({row.number})", forms, row.against, off))
         return table
-
-    def slips(self) -> str:
-        """Further errors in the text around the equations."""
-        return (
-            "(1) needs two corrections: the signs, and F_1 and F_2 exchanged. As printed F_1 is "
-            "the plate's friction; the analysis sets F_1 = 0 for a pin that does not slide along "
-            "the finger and keeps F_2 as the plate's. Beside these, (22) is said to follow from "
-            "(17) and follows from (21), and v_p is defined twice."
-        )
 
     def trials(self) -> xr.Dataset:
         """The table of equations and the verdicts as data."""
@@ -202,34 +191,18 @@ def make(step: Callable[[str], None] = lambda _: None) -> Report:
     steady = doing("steady state and rest", analysis.steady_and_rest)
     slips = doing("printed forms", analysis.printed_forms)
     names = [p.name for p in sensitivity.PARAMETERS]
+    exhibits = {
+        "device": (figure_1,),
+        "problem": (sensitivity.settling(curves), sensitivity.displacement(curves), *of_maps),
+        "figures": (figure_2, figure_3, figure_4),
+        "analysis": (phase, reversal, steady, slips),
+    }
     return Report(
         rows,
         found,
-        (
-            Section(
-                "The device, its frame and the symbols",
-                "The paper studies a computer mouse with a pin that, moving sideways under the "
-                "fingertip, tells where a line or a letter is.",
-                (figure_1,),
-            ),
-            Section(
-                "Problem of the paper",
-                "Dependence of the time of the transitional period and of the maximum displacement "
-                f"on {listed(names)}. The paper states this problem and answers in words. Its "
-                "“system load” is the touch force, its “rigidity” the stiffness; mass and fall "
-                "time of the pull are added here.",
-                (sensitivity.settling(curves), sensitivity.displacement(curves), *of_maps),
-            ),
-            Section(
-                "Figures of the paper",
-                "Figure 1, the device, stands above.",
-                (figure_2, figure_3, figure_4),
-            ),
-            Section(
-                "Figures of the analysis",
-                "Content of equations (7) to (26) and of the last paragraph of the results.",
-                (phase, reversal, steady, slips),
-            ),
+        tuple(
+            Section(of["title"], worded(of["text"], parameters=names), exhibits[name])
+            for name, of in TEXTS["sections"].items()
         ),
     )
 
@@ -239,13 +212,7 @@ IMAGES: Final = "images/paper"
 _EQUATIONS: Final = "Equations, corrected"
 
 
-_DOCS: Final = (
-    "`pindrive paper -o DIR` writes this report as one page, with every figure as SVG and PNG and "
-    "its data as NetCDF. `pindrive.paper` has the equations as functions."
-)
-
-
-def text(report: Report, about: str = _DOCS) -> str:
+def text(report: Report, about: str = TEXTS["report"]["data"]) -> str:
     """The document, whose pictures are at `IMAGES` beside it; `about` says what else there is."""
     lines = [
         f"# {TITLE}",
@@ -274,10 +241,10 @@ def text(report: Report, about: str = _DOCS) -> str:
         f"## {_EQUATIONS}",
         markdown(report.method),
         _markdown_table(report.equation_cells()),
-        markdown(report.slips()),
+        markdown(TEXTS["report"]["slips"]),
         *_section(analysis),
         "## Assumptions",
-        "The paper gives three damping factors and no other value. Unless a figure says otherwise:",
+        TEXTS["report"]["assumptions"],
         _markdown_table([("", "value", "meaning", "source"), *baseline.SOURCES]),
     ]
     return "\n\n".join(line for line in lines if line) + "\n"

@@ -21,7 +21,7 @@ from pindrive.motion.motion import Motion
 from pindrive.motion.profile import Profile
 from pindrive.motion.simulate import simulated
 from pindrive.paper import baseline
-from pindrive.paper.exhibit import Exhibit, listed, page, trend
+from pindrive.paper.exhibit import Exhibit, exhibit, page, trend
 from pindrive.plot.style import GREY, PALETTE
 from pindrive.quantities.quantity import significant
 from pindrive.quantities.table import QUANTITIES
@@ -173,23 +173,18 @@ def settling(data: xr.Dataset) -> Exhibit:
         if np.abs(np.diff(data.settling_time.sel(parameter=p.argument).values)).max()
         > 0.05 * float(data.settling_time.sel(parameter=p.argument).max())
     ]
-    return Exhibit(
+    return exhibit(
         "influence-on-time",
-        "The time of the transitional period against each parameter",
-        f"Blue: settled, from then on within 5 % of |x_0 − x_end|. Orange: at rest. Dot: the "
-        f"baseline ({baseline.stated()}), which every other parameter keeps; {_OF_TWO}",
         data[[n for n in data if not str(n).startswith("peak")]],
         _draw_settling,
-        (
-            f"Between the ends of these ranges the settling time changes most with {order[0]}, "
-            f"then with {listed(order[1:])}, largest over least.",
-            "It jumps by more than a twentieth along "
-            f"{listed(jumps)}: the pin comes to rest in whole half swings, and one more or one "
-            "less leaves the 5 % band at such a place.",
-            f"A friction that follows the weight changes the settling time by up to "
-            f"{1e3 * apart:.3g} ms, at {1e3 * mass:.3g} g.",
-        ),
-        _table(data, "settling_time", 1e3, "ms"),
+        table=_table(data, "settling_time", 1e3, "ms"),
+        baseline=baseline.stated(),
+        scope=_OF_TWO,
+        most=order[0],
+        others=order[1:],
+        jumps=jumps,
+        apart=1000.0 * apart,
+        mass=1000.0 * mass,
     )
 
 
@@ -199,21 +194,18 @@ def displacement(data: xr.Dataset) -> Exhibit:
     ranked = _ranked(data, "peak_displacement")
     order = [f"{name} (by {factor:.3g})" for factor, name in ranked]
     small = [name for factor, name in ranked if factor < 1.05]
-    return Exhibit(
+    return exhibit(
         "influence-on-displacement",
-        "The largest displacement against each parameter",
-        "The first displacement maximum (14). Grey: the initial deflection, from which it starts. "
-        f"Dot: the baseline ({baseline.stated()}); {_OF_TWO} Same scale but for mouse speed and "
-        "initial deflection.",
         data[["value", "peak_displacement", "peak_displacement_by_weight"]],
         _draw_displacement,
-        (
-            f"It changes most with {order[0]}, then with {listed(order[1:])}, largest over least; "
-            f"{listed(small)} change it by less than 5 %.",
-            f"A friction that follows the weight changes it by up to {1e3 * apart:.2g} mm, at "
-            f"{1e3 * mass:.3g} g.",
-        ),
-        _table(data, "peak_displacement", 1e3, "mm"),
+        table=_table(data, "peak_displacement", 1e3, "mm"),
+        baseline=baseline.stated(),
+        scope=_OF_TWO,
+        most=order[0],
+        others=order[1:],
+        small=small,
+        apart=1000.0 * apart,
+        mass=1000.0 * mass,
     )
 
 
