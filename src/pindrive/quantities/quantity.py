@@ -1,18 +1,18 @@
-"""Definition of a quantity: name, unit, bounds, and text form of its values."""
+"""Definition of a quantity: name, unit, bounds, storage in a table, and text form of its values."""
 
 from __future__ import annotations
 
 import re
+import tomllib
 from dataclasses import dataclass, replace
 from math import degrees, floor, inf, isfinite, isnan, log10, nan
-from typing import Final
+from pathlib import Path
+from typing import Any, Final
 
 from pindrive import _core
 
 Rows = tuple[tuple[float, float], ...]
 """A piecewise-linear function by its corners, SI: (speed, force) or (time, value)."""
-
-PAPER: Final = '"Dynamics of tactile device drive"'
 
 DISPLAY: Final[dict[str, tuple[str, float]]] = {
     "kg": ("g", 1e3),
@@ -237,6 +237,57 @@ def inputs(section: str, *rows: Quantity) -> tuple[Quantity, ...]:
         bounds, limits, absent = _OF_CORE[f"{section}.{row.name}" if section else row.name]
         found.append(replace(row, section=section, bounds=bounds, limits=limits, absent=absent))
     return tuple(found)
+
+
+# ---- tables of quantities in TOML files, a line for each ---------------------------------------
+
+_NAMED: Final = {
+    "non-negative": NON_NEGATIVE,
+    "positive or infinite": POSITIVE_OR_RIGID,
+    "share": SHARE,
+}
+_INTERVALS: Final = ("bounds", "limits", "seen")
+
+
+def stored(file: str) -> dict[str, Any]:
+    """Return the groups of a file of this folder."""
+    return tomllib.loads(Path(__file__).with_name(file).read_text("utf-8"))
+
+
+def fields_of(row: dict[str, Any], **slots: str) -> dict[str, Any]:
+    """Return the fields of `Quantity` in a row; bounds are two numbers or a name.
+
+    Args:
+        row: Fields as stored; those named in "without" are None.
+        **slots: Texts in the braces of other texts.
+    """
+
+    def read(field: str, value: Any) -> Any:
+        if field in _INTERVALS:
+            return _NAMED[value] if isinstance(value, str) else between(*value)
+        if isinstance(value, list):
+            return tuple(read("", each) for each in value)
+        return value.format(**slots) if slots and isinstance(value, str) else value
+
+    found = {field: read(field, value) for field, value in row.items()}
+    return found | dict.fromkeys(found.pop("without", ()))
+
+
+def stored_inputs(section: str, group: dict[str, dict[str, Any]]) -> tuple[Quantity, ...]:
+    """Return the inputs of a group, in order; a name with a point has its section in itself."""
+    return tuple(
+        found
+        for each in quantities(group)
+        for found in inputs("" if "." in each.name else section, each)
+    )
+
+
+def quantities(group: dict[str, dict[str, Any]], prefix: str = "") -> tuple[Quantity, ...]:
+    """Return the quantities of a group, in order, with a prefix of their names."""
+    return tuple(Quantity(prefix + name, **fields_of(row)) for name, row in group.items())
+
+
+# ---- numbers as text -----------------------------------------------------------------------------
 
 
 def heading(name: str, unit: str) -> str:
