@@ -41,7 +41,7 @@ void nearest_surface() {
   guards.add(slipping(0.1, 0.04), segment, true);
   expect(count_of(guards) == 1 && guards.begin()->plate,
          "of two constant surface velocities below, the one that is reached first is kept");
-  const double tau = guards.earliest(segment.flow.oscillator, 0.0, never, 0.0);
+  const double tau = guards.earliest(segment.flow.oscillator, 0.0, never);
   expect(near(tau, std::acos(0.4) / 100, 1e-14), "... and when that is");
 
   guards.clear();
@@ -49,7 +49,7 @@ void nearest_surface() {
   guards.add(slipping(0.1, 0.3), segment, true);
   expect(count_of(guards) == 2, "one above and one below are both kept");
   expect(
-      near(guards.earliest(segment.flow.oscillator, 0.0, never, 0.0), std::asin(1.0) / 100, 1e-14),
+      near(guards.earliest(segment.flow.oscillator, 0.0, never), std::asin(1.0) / 100, 1e-14),
       "what the pin never reaches ends nothing");
 
   guards.clear();
@@ -64,8 +64,8 @@ void limits() {
   guards.add({0.3, 0, 0, -0.6}, ActiveGuard::none, true, 1);
   guards.add({0.3, 0, 0, 0.6}, ActiveGuard::none, true, -1);
   expect(count_of(guards) == 1, "what only grows is no guard");
-  expect(guards.earliest(o, 0.0, 0.4, 0.0) == 0.4, "a row of an input before it comes first");
-  expect(near(guards.earliest(o, 0.0, never, 0.0), 0.5, 1e-15), "a line comes to zero");
+  expect(guards.earliest(o, 0.0, 0.4) == 0.4, "a row of an input before it comes first");
+  expect(near(guards.earliest(o, 0.0, never), 0.5, 1e-15), "a line comes to zero");
   const auto defer_grazing = [&](double row) {
     return guards.defer_grazing(0.5, row, [&](const auto& guard, double tau) {
       return guards.stays(guard, o, tau, 1e-12);

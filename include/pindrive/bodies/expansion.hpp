@@ -195,14 +195,14 @@ class Expansion {
 
   void begin(const bodies::State<T>& state, const Inputs& inputs) {
     for (std::size_t i = 0; i < position_.size(); ++i) {
-      position_[i][0] = known(state.position[i], error(state.errors.position, i));
-      velocity_[i][0] = known(state.velocity[i], error(state.errors.velocity, i));
+      position_[i][0] = with_error(state.position[i], error(state.errors.position, i));
+      velocity_[i][0] = with_error(state.velocity[i], error(state.errors.velocity, i));
     }
     for (std::size_t j = 0; j < stretch_.size(); ++j)
-      stretch_[j][0] = known(state.stretch[j], error(state.errors.stretch, j));
+      stretch_[j][0] = with_error(state.stretch[j], error(state.errors.stretch, j));
     for (std::size_t f = 0; f < control_.size(); ++f) {
-      integral_[f][0] = known(state.integral[f], error(state.errors.integral, f));
-      control_[f][0] = known(state.held[f]);
+      integral_[f][0] = with_error(state.integral[f], error(state.errors.integral, f));
+      control_[f][0] = with_error(state.held[f]);
     }
     find_acting();
     for (std::size_t j = 0; j < contacts(); ++j) settled_[j] = is_settled(j, state, inputs);
@@ -232,14 +232,14 @@ class Expansion {
   }
   /// Order n of an input, with the error of a time that is known to rounding.
   N given(const InputSeries<T>& input, int n) const {
-    return known(input[n], late_ * std::abs(plain(T(n + 1) * input[n + 1])));
+    return with_error(input[n], late_ * std::abs(plain(T(n + 1) * input[n + 1])));
   }
   /// Order n of the rate of an input, likewise.
   N rate_of(const InputSeries<T>& input, int n) const {
-    return known(input.rate(n), late_ * std::abs(plain(T(n + 1) * input.rate(n + 1))));
+    return with_error(input.rate(n), late_ * std::abs(plain(T(n + 1) * input.rate(n + 1))));
   }
   /// Number of a state, with the rounding of it.
-  static N known(const T& of, Real within = 0) {
+  static N with_error(const T& of, Real within = 0) {
     if constexpr (std::is_same_v<N, T>)
       return of;
     else
@@ -318,7 +318,7 @@ class Expansion {
   void press(std::size_t s, int n) {
     const bodies::Stop<T>& stop = system_->stops[s];
     N beyond = apart(position_, stop.one, stop.other, n);
-    if (n == 0) beyond -= known(stop.position);
+    if (n == 0) beyond -= with_error(stop.position);
     depth_[s][n] = side(s) * beyond;
     approach_[s][n] = side(s) * apart(velocity_, stop.one, stop.other, n);
     push_[s][n] = N(T(0));

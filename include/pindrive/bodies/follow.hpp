@@ -453,17 +453,17 @@ class Following {
   bool touches(std::size_t s) const {
     using std::abs;
     const Stop<T>& stop = system_->stops[s];
-    Real known = 16 * detail::rounding<Real> * abs(plain(stop.position));
+    Real error = 16 * detail::rounding<Real> * abs(plain(stop.position));
     const auto place = [&](int body) {
       if (body == ground) return T(0);
       const T x = state_.position[body];
       const auto& errors = state_.errors.position;
-      known +=
+      error +=
           16 * detail::rounding<Real> * abs(plain(x)) + (errors.empty() ? Real(0) : errors[body]);
       return x;
     };
     const T depth = T(stop.side) * (place(stop.one) - place(stop.other) - stop.position);
-    return plain(depth) >= -known;
+    return plain(depth) >= -error;
   }
   /// Moves the bodies of a stop that was met to where they touch, within the rounding of its time.
   void place_at(std::size_t s) {
@@ -488,8 +488,8 @@ class Following {
     const T one = state_.velocity[stop.one];
     const T other = stop.other == ground ? T(0) : state_.velocity[stop.other];
     const T speed = T(stop.side) * (one - other);
-    const Real known = 16 * detail::rounding<Real> * (abs(plain(one)) + abs(plain(other)));
-    return plain(speed) > known ? speed : T(0);
+    const Real error = 16 * detail::rounding<Real> * (abs(plain(one)) + abs(plain(other)));
+    return plain(speed) > error ? speed : T(0);
   }
   /// True of a stop whose bounces, each shorter by the restitution, end within the resolution of time, or no longer lift
   /// the bodies beyond the rounding of their places.
@@ -497,13 +497,13 @@ class Following {
     using std::abs;
     const Stop<T>& stop = system_->stops[s];
     const Real e = plain(stop.restitution), lasted = plain(state_.time) - struck_[s];
-    const Real known = 1024 * detail::rounding<Real> * plain(state_.time) +
+    const Real error = 1024 * detail::rounding<Real> * plain(state_.time) +
                        (fastest_ > 0 ? Real(1e-12) / fastest_ : 0);
     Real place = abs(plain(stop.position)) + abs(plain(state_.position[stop.one]));
     if (stop.other != ground) place += abs(plain(state_.position[stop.other]));
     const Real height = e * e * lasted * plain(speed) / 4;
     if (lasted == 0) return false;  // a third body struck it
-    return lasted * e < (1 - e) * known || height < 16 * detail::rounding<Real> * place;
+    return lasted * e < (1 - e) * error || height < 16 * detail::rounding<Real> * place;
   }
   /// Ends the approach of both bodies of a stop; they part with a part of its speed.
   void push_apart(std::size_t s, T restitution, T speed) {

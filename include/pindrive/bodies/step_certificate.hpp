@@ -96,17 +96,17 @@ class StepCertificate {
   /// Distances over the largest place: bodies touch, or may have touched within the resolution of the time.
   static constexpr double touching = 1e-14, near = 1e-13;
 
-  static void raise(T& most, T value) {
+  static void update_max(T& most, T value) {
     using std::abs;
     most = std::max(most, abs(value));
   }
   void meet(const Step<T>& step, int body) {
     const T x = step.position(body, T(0)), v = step.velocity(body, T(0));
-    raise(size_, x);
-    raise(speed_, v);
+    update_max(size_, x);
+    update_max(speed_, v);
     if (!began_) return;
-    raise(found_.continuity, x - last_[2 * body]);
-    if (!struck_) raise(jump_, v - last_[2 * body + 1]);
+    update_max(found_.continuity, x - last_[2 * body]);
+    if (!struck_) update_max(jump_, v - last_[2 * body + 1]);
   }
   /// Looks for an impact before a step: at each rigid stop that touches bodies end to approach, by Newton's law where
   /// only one is hit, and nothing is gained.
@@ -117,10 +117,10 @@ class StepCertificate {
     for (std::size_t i = 0; i < system_->bodies.size(); ++i) {
       const T m = system_->bodies[i].mass, was = last_[2 * i + 1];
       const T is = step.velocity(static_cast<int>(i), T(0));
-      raise(jump, is - was);
+      update_max(jump, is - was);
       before += m * was * was / 2;
       after += m * is * is / 2;
-      raise(size, was);
+      update_max(size, was);
     }
     if (!(jump > 1e-12 * std::max(size, speed_))) return;
     int met = 0;
@@ -131,14 +131,14 @@ class StepCertificate {
       const auto was = [&](int body) { return body == ground ? T(0) : last_[2 * body + 1]; };
       const T approached = T(stop.side) * (was(stop.one) - was(stop.other));
       const T approaches = T(stop.side) * between(step, stop.one, stop.other, T(0), true);
-      if (apart <= touching * size_) raise(wrong_impact_, std::max(T(0), approaches));
+      if (apart <= touching * size_) update_max(wrong_impact_, std::max(T(0), approaches));
       if (++met == 1 && approached > 0)
         rebound_ = std::min(abs(approaches), abs(approaches + stop.restitution * approached));
     }
     struck_ = met > 0;
-    if (met == 1) raise(wrong_impact_, rebound_);
+    if (met == 1) update_max(wrong_impact_, rebound_);
     if (!struck_) return;
-    raise(drift_of_impacts_, std::max(T(0), after - before));
+    update_max(drift_of_impacts_, std::max(T(0), after - before));
     ledger_.stops += before - after;
     exchanged_ += abs(before - after);
   }
@@ -192,7 +192,7 @@ class StepCertificate {
     using std::abs;
     std::vector<T> rest(system_->bodies.size());
     const auto push = [&](int one, int other, T force) {
-      raise(force_, force);
+      update_max(force_, force);
       rest[one] -= force;
       if (other != ground) rest[other] += force;
     };
@@ -200,9 +200,9 @@ class StepCertificate {
       const int body = static_cast<int>(i);
       const T force = system_->bodies[i].force.from(step.begin()).at(tau);
       rest[i] = system_->bodies[i].mass * step.acceleration(body, tau) - force;
-      raise(force_, force);
-      raise(speed_, step.velocity(body, tau));
-      raise(size_, step.position(body, tau));
+      update_max(force_, force);
+      update_max(speed_, step.velocity(body, tau));
+      update_max(size_, step.position(body, tau));
     }
     for (const Link<T>& link : system_->links) {
       const Pull at = pull(step, link, tau);
@@ -223,11 +223,11 @@ class StepCertificate {
       const Feedback<T>& c = system_->feedbacks[i];
       const int f = static_cast<int>(i);
       push(c.one, c.other, control(step, f, tau));
-      raise(found_.motion, step.control(f, tau) - control(step, f, tau));
+      update_max(found_.motion, step.control(f, tau) - control(step, f, tau));
       if (!c.sampled())
-        raise(found_.continuity, step.integral_rate(f, tau) - error_of(step, c, tau).value);
+        update_max(found_.continuity, step.integral_rate(f, tau) - error_of(step, c, tau).value);
     }
-    for (const T each : rest) raise(found_.motion, each);
+    for (const T each : rest) update_max(found_.motion, each);
   }
   void halt(const Step<T>& step, int s, T tau) {
     using std::abs;
@@ -235,13 +235,13 @@ class StepCertificate {
     const T side = T(stop.side), force = step.push(s, tau);
     const T beyond = side * (between(step, stop.one, stop.other, tau, false) - stop.position);
     const T approach = side * between(step, stop.one, stop.other, tau, true);
-    raise(size_, stop.position);
-    raise(found_.stops, std::max(T(0), -force));
+    update_max(size_, stop.position);
+    update_max(found_.stops, std::max(T(0), -force));
     if (stop.rigid()) {
-      raise(beyond_, step.pushes(s) ? abs(beyond) : std::max(T(0), beyond));
+      update_max(beyond_, step.pushes(s) ? abs(beyond) : std::max(T(0), beyond));
       return;
     }
-    raise(found_.stops, force - pressed(stop, beyond, approach));
+    update_max(found_.stops, force - pressed(stop, beyond, approach));
   }
   /// Force of an elastic stop, N. A damper begins with a force where the bodies meet, within the rounding of their places.
   T pressed(const Stop<T>& stop, T beyond, T approach) const {
@@ -270,21 +270,21 @@ class StepCertificate {
         between(step, c.one, c.other, tau, true) - c.velocity.from(step.begin()).at(tau);
     const int side = static_cast<int>(step.slip(contact));
     const T rate = c.rigid() ? T(0) : step.stretch_rate(contact, tau);
-    raise(speed_, speed);
+    update_max(speed_, speed);
     if (side != 0) {
-      raise(found_.friction, friction + T(side) * c.kinetic * load);
-      raise(found_.sliding, std::max(T(0), -T(side) * (speed - rate)));
+      update_max(found_.friction, friction + T(side) * c.kinetic * load);
+      update_max(found_.sliding, std::max(T(0), -T(side) * (speed - rate)));
       if (!c.rigid())
-        raise(found_.friction,
-              c.stiffness * step.stretch(contact, tau) + c.damping * rate + friction);
+        update_max(found_.friction,
+                   c.stiffness * step.stretch(contact, tau) + c.damping * rate + friction);
       return;
     }
     using std::abs;
-    raise(found_.friction, std::max(T(0), abs(friction) - c.static_limit * load));
-    raise(found_.sliding, speed - rate);
+    update_max(found_.friction, std::max(T(0), abs(friction) - c.static_limit * load));
+    update_max(found_.sliding, speed - rate);
     if (!c.rigid())
-      raise(found_.friction,
-            c.stiffness * step.stretch(contact, tau) + c.damping * speed + friction);
+      update_max(found_.friction,
+                 c.stiffness * step.stretch(contact, tau) + c.damping * speed + friction);
   }
 
   T energy(const Step<T>& step, T tau) {
@@ -297,7 +297,7 @@ class StepCertificate {
       const T longer = pull(step, link, tau).longer;
       sum += link.stiffness * longer * longer / 2;
     }
-    raise(exchanged_, sum);
+    update_max(exchanged_, sum);
     return sum;
   }
   /// Work of inputs, dampers and contacts on bodies and springs during a time, by their power at one moment, J.

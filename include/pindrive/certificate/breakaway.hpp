@@ -95,7 +95,7 @@ class Breakaways {
   template <class Trajectory>
   static bool is_brief(const EvaluatedSegment<T, Trajectory>& segment, const PinState<T>& s) {
     return !(segment.segment.end > segment.segment.begin) &&
-           !(within_limit(segment, s) > end_error<T> * segment.scales.force);
+           !(within_limit(segment, s) > difference_error<T> * segment.scales.force);
   }
 
   /// Margin of the stick force to its limit, N; 0 without stick.

@@ -58,8 +58,8 @@ class Certifier {
     worst(result_.energy, unaccounted_, energy);
     // Forces are known to their rounding, and so is what they do on the way.
     const T time = std::min(duration_, motion_.outcome().until);
-    const T known = detail::rounding<T> * scales_.force * scales_.v * time;
-    worst(result_.dissipation, std::max(gained_ - known, T(0)), energy);
+    const T error = detail::rounding<T> * scales_.force * scales_.v * time;
+    worst(result_.dissipation, std::max(gained_ - error, T(0)), energy);
     repetition();
     return result_;
   }
@@ -74,15 +74,16 @@ class Certifier {
     const detail::PeriodSamples<T> samples(motion_, go_on_);
     const T tolerance = T(detail::repeat_tolerance);
     // The begin is found from four instants between two events: between those the difference may be larger.
-    raise(result_.period, std::max(samples.difference_since(since) - 2 * tolerance, T(0)));
+    update_max(result_.period, std::max(samples.difference_since(since) - 2 * tolerance, T(0)));
     const Outcome<T>& outcome = motion_.outcome();
     if (!outcome.cycles()) return;  // a mode of its own begins where its mode does
     // Continuity from the last segment to the begin of the cycle closes a round: it lasts one period.
     const T round = std::prev(motion_.end())->end - outcome.cycle_begin;
-    const T known = detail::rounding<T> * outcome.until;
-    raise(result_.period, std::max(abs(round - outcome.period) - known, T(0)) / outcome.period);
+    const T error = detail::rounding<T> * outcome.until;
+    update_max(result_.period,
+               std::max(abs(round - outcome.period) - error, T(0)) / outcome.period);
     const T begin = std::max(samples.begin(tolerance), detail::last_breakpoint(motion_.inputs()));
-    raise(result_.steady_since, std::max((since - begin) / outcome.period - T(1), T(0)));
+    update_max(result_.steady_since, std::max((since - begin) / outcome.period - T(1), T(0)));
   }
 
   template <class Trajectory>
@@ -110,14 +111,14 @@ class Certifier {
            motion_.stop_energy(s.x);
   }
 
-  /// Raises a maximum to |error|; infinity for NaN.
-  static void raise(T& most, T error) {
+  /// Updates a maximum by |error|; infinity for NaN.
+  static void update_max(T& most, T error) {
     using std::abs;
     const T size = abs(error);
     if (!(size <= most)) most = size < never ? size : never;
   }
   static void worst(T& residual, T error, T scale) {
-    raise(residual, scale > 0 ? error / scale : error);
+    update_max(residual, scale > 0 ? error / scale : error);
   }
 
   /// Updates the largest displacement, velocity and force: at the ends of segments, and within
@@ -203,10 +204,10 @@ class Certifier {
     laws(evaluated, from, errors);
     evaluated.along.each_part(evaluated.span, [&](T low, auto length, const auto& expanded) {
       const auto to = evaluated.at(low + length);
-      const T known = std::max(evaluated.unsure(from), evaluated.unsure(to));
+      const T error = std::max(evaluated.unsure(from), evaluated.unsure(to));
       for (const auto& [guard, law, scale, slid] : guards) {
         const T least = lowest(expanded(guard), T(detail::unseen_violation) * scale) +
-                        (law == &Certificate<T>::force_bound ? known : slid);
+                        (law == &Certificate<T>::force_bound ? error : slid);
         if (!(least >= 0)) worst(result_.*law, least, scale);
       }
       Sums sums;
@@ -311,18 +312,18 @@ class Certifier {
     using std::abs;
     const Trajectory& along = evaluated.along;
     const Mode mode = evaluated.segment.mode;
-    raise(errors.velocity, along.at(evaluated.x_rate, s.moment) - s.v);
+    update_max(errors.velocity, along.at(evaluated.x_rate, s.moment) - s.v);
     if (stretches(evaluated))
-      raise(errors.velocity, along.at(along.derivative(evaluated.stretch_force), s.moment) /
-                                     drive_.finger.stiffness +
-                                 stretch_rate(evaluated, s));
+      update_max(errors.velocity, along.at(along.derivative(evaluated.stretch_force), s.moment) /
+                                          drive_.finger.stiffness +
+                                      stretch_rate(evaluated, s));
     const T missed = drive_.mass * (s.a - evaluated.plate_velocity.rate_at(s.tau)) +
                      drive_.damping * s.v + drive_.stiffness * s.x - s.plate_force -
                      s.finger_force - evaluated.force.at(s.tau) - evaluated.stop_force(s);
-    raise(errors.law, std::max(abs(missed) - evaluated.unsure(s), T(0)));
+    update_max(errors.law, std::max(abs(missed) - evaluated.unsure(s), T(0)));
     if (held_by_stop(drive_, mode)) {
       const int end = stop_sign(mode.stop);
-      raise(errors.sticking, s.v);
+      update_max(errors.sticking, s.v);
       worst(result_.sticking, end * s.x - drive_.stops.travel, scales_.x);
       const T pull = end * evaluated.stop_force(s) - evaluated.unsure(s);
       worst(result_.force_bound, std::max(pull, T(0)), scales_.force);
@@ -330,18 +331,18 @@ class Certifier {
     const auto contact = [&](const Contact<T>& law, ContactState does, T u, T force, T load,
                              T unsure) {
       if (is_slip(does))
-        raise(errors.friction,
-              std::max(
-                  abs(force + sign(does) * load * detail::kinetic_friction(law, abs(u))) - unsure,
-                  T(0)));
+        update_max(errors.friction,
+                   std::max(abs(force + sign(does) * load * detail::kinetic_friction(law, abs(u))) -
+                                unsure,
+                            T(0)));
       else if (does == ContactState::stick)
-        raise(errors.sticking, u);
+        update_max(errors.sticking, u);
       else if (does == ContactState::absent && law.present())
-        raise(errors.friction,
-              std::max(load * detail::kinetic_friction(law, abs(u)) - unsure, T(0)));
+        update_max(errors.friction,
+                   std::max(load * detail::kinetic_friction(law, abs(u)) - unsure, T(0)));
     };
     if (evaluated.oblique())
-      raise(errors.friction, evaluated.oblique_error(s));
+      update_max(errors.friction, evaluated.oblique_error(s));
     else
       contact(drive_.plate, mode.plate, s.v - evaluated.plate_velocity.at(s.tau), s.plate_force,
               evaluated.load.at(s.tau), T(0));
@@ -363,7 +364,7 @@ class Certifier {
   template <class Trajectory>
   void gather(const Evaluated<Trajectory>& evaluated,
               const typename Evaluated<Trajectory>::State& s, T weight, Sums& sums) {
-    // A whole wave may begin and end at nothing, and be summed from what is stored on the way.
+    // Energy may be zero at both ends of a period; the scale follows from the energy stored in between.
     stored_ = std::max(stored_, energy(s));
     const T v_plate = evaluated.plate_velocity.at(s.tau);
     const T push =
@@ -391,12 +392,12 @@ class Certifier {
     using std::abs;
     const T loss = sums.damper + sums.plate + sums.finger + sums.stop + sums.skin;
     balance_ += after - before - sums.input + loss;
-    raise(unaccounted_, balance_);
+    update_max(unaccounted_, balance_);
     stored_ = std::max({stored_, before, after});
     input_ += abs(sums.input);
     dissipated_ += abs(loss);
     for (const T part : {sums.damper, sums.plate, sums.finger, sums.stop})
-      raise(gained_, std::min(part, T(0)));
+      update_max(gained_, std::min(part, T(0)));
   }
 
   // ---- from segment to segment -------------------------------------------------------------------
@@ -416,17 +417,17 @@ class Certifier {
           before.mode.plate == ContactState::slip_oblique
               ? abs(motion_.inputs().across_velocity.from(before.begin).rate_at(left.tau))
               : T(0);
-      const T known = before.end * (detail::rounding<T> * std::max(abs(left.a), abs(right.a)) +
+      const T error = before.end * (detail::rounding<T> * std::max(abs(left.a), abs(right.a)) +
                                     detail::least_across<T> * drifts);
-      worst(result_.continuity, std::max(abs(left.v - right.v) - known, T(0)), scales_.v);
+      worst(result_.continuity, std::max(abs(left.v - right.v) - error, T(0)), scales_.v);
     }
     if (!drive_.finger.compliant()) return;
     if (drive_.finger.damped()) return damped_junction(before, left, right, time);
     const T asked = abs(left.finger_force), drop = asked - abs(right.finger_force);
     if (event.finger != Transition::slip) {
-      const T known = detail::skin_unsure(drive_, before.end, left);
+      const T error = detail::skin_unsure(drive_, before.end, left);
       const T jump = abs(left.finger_force - right.finger_force);
-      worst(result_.continuity, std::max(jump - known, T(0)), scales_.force);
+      worst(result_.continuity, std::max(jump - error, T(0)), scales_.force);
       return;
     }
     const T load = motion_.inputs().finger_load.from(time).value;
@@ -438,7 +439,7 @@ class Certifier {
     const T most = !lifts ? load * most_from(gripped ? 0 : before.mode.finger_branch + 1) : T(0);
     const T unmet = std::max(most - asked, T(0));
     worst(result_.continuity, drop > 0 ? std::min(drop, unmet) : drop, scales_.force);
-    raise(gained_, std::min(energy(left) - energy(right), T(0)));
+    update_max(gained_, std::min(energy(left) - energy(right), T(0)));
   }
 
   /// True if the stretch of the skin follows from the motion: it sticks, or it has a damper.
@@ -458,9 +459,9 @@ class Certifier {
   /// Junction of skin with damping: its stretch does not jump, and it slips at its limit.
   void damped_junction(const Segment<T>& before, const Numbers& left, const Numbers& right,
                        T time) {
-    const T known = detail::skin_unsure(drive_, before.end, left);
+    const T error = detail::skin_unsure(drive_, before.end, left);
     const T jump = std::abs(left.stretch_force - right.stretch_force);
-    worst(result_.continuity, std::max(jump - known, T(0)), scales_.force);
+    worst(result_.continuity, std::max(jump - error, T(0)), scales_.force);
     if (before.event.finger != Transition::slip) return;
     const T asked = std::abs(left.finger_force - drive_.finger.damping * (right.v - left.v));
     const T most = drive_.finger.static_limit * motion_.inputs().finger_load.from(time).value;
@@ -477,8 +478,8 @@ class Certifier {
     const T slope = is_slip(mode.finger) ? finger.branch(mode.finger_branch).slope : T(0);
     const T limit = finger.static_limit;
     const T follows = slope > 0 ? 1 / slope : limit > 0 ? abs(v) / limit : T(0);
-    const T known = time * (detail::first_grip<T> + detail::rounding<T>);
-    return load.value <= known * (finger.stiffness * follows - load.rate);
+    const T error = time * (detail::first_grip<T> + detail::rounding<T>);
+    return load.value <= error * (finger.stiffness * follows - load.rate);
   }
 
   /// Largest friction of the finger from a branch of its curve on, for a load factor of 1, N: skin

@@ -36,7 +36,7 @@ class SegmentGuards {
     decltype(positive(std::declval<Trajectory>(), std::declval<Quantity>())) guard;
     T Certificate<T>::* law;
     T scale;
-    T known{0};  ///< error from the time resolution
+    T error{0};  ///< error from the time resolution
   };
 
   explicit SegmentGuards(const Evaluated& segment) : evaluated_(segment), along_(segment.along) {
@@ -82,7 +82,7 @@ class SegmentGuards {
 
   /// Sets the error of the last guards.
   void known_from(int first, T error) {
-    for (int i = first; i < count_; ++i) watches_[i].known = error;
+    for (int i = first; i < count_; ++i) watches_[i].error = error;
   }
   template <class Path>
   void watch(const Path& path, T Certificate<T>::* law, T scale) {

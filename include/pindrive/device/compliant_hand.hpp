@@ -244,7 +244,7 @@ class CompliantHand {
         const std::size_t count = pin.due.size();
         controller.sample(time, luminance(i, place), pin.decision, pin.due);
         if (pin.due.size() > count) due = std::min(due, pin.due.back());
-        for (const double side : {-known, known})
+        for (const double side : {-place_error, place_error})
           if (controller.decides(before, luminance(i, place + side)) != pin.decision)
             ambiguous_.push_back(time);
       }
@@ -262,7 +262,7 @@ class CompliantHand {
     return scan_->raster.at(at + scan_->device.spots[pin]);
   }
   /// Rounding of a place along a path, m.
-  static constexpr double known = 1e-15;
+  static constexpr double place_error = 1e-15;
 
   // ---- path --------------------------------------------------------------------------------------
 

@@ -87,8 +87,8 @@ class Axis {
  private:
   /// A component that is rounding of the speed is zero.
   static double significant(double component, Vector v) {
-    const double known = detail::rounding<double> * detail::hypot(v.x, v.y);
-    return std::abs(component) > known ? component : 0;
+    const double error = detail::rounding<double> * detail::hypot(v.x, v.y);
+    return std::abs(component) > error ? component : 0;
   }
 
   Vector direction_;

@@ -112,18 +112,15 @@ class Evolution {
   /// Time to the next breakpoint of an input, s.
   T until_breakpoint() const { return next_breakpoint - pin.time - time_error; }
 
-  /// Time to the earliest event. An event within the time resolution of a breakpoint happens at the
-  /// breakpoint.
+  /// Time to the earliest event, or to the breakpoint.
   T earliest(const Flow<T>& flow) {
     const T breakpoint = until_breakpoint();
-    if (series.used()) return series.earliest(pin.time, breakpoint);
+    if (series.used()) return series.earliest(breakpoint);
     const T serves = flow.oscillator.serves_for();
     const T limit = serves < breakpoint && flow.velocity.oscillates() ? serves : breakpoint;
     const T end = selected.guards.first_event(flow.oscillator, pin.time, limit, limit == breakpoint,
                                               pin.state.force_error);
-    return breakpoint < never && breakpoint - end <= rounding<T> * (pin.time + breakpoint)
-               ? breakpoint
-               : end;
+    return std::min(breakpoint, end);
   }
 
   /// Ends a segment and advances the state to the event: each guard at its zero is exactly zero
@@ -233,8 +230,8 @@ class Evolution {
 
  private:
   static constexpr T never = std::numeric_limits<T>::infinity();
-  static constexpr int driven_in_period =
-      8;  ///< least segments in a period, at whose ends a cycle is measured
+  /// Least number of segments in a period of the inputs: a cycle is compared at their ends.
+  static constexpr int driven_in_period = 8;
 
   /// Speed below which a pin is at rest, m/s. The scale is the largest term of x, as the position
   /// of rest may be 0.
@@ -294,8 +291,8 @@ class Evolution {
     else
       look_ahead();
     const T now = pin.finger.load.value,
-            known = rounding<T> * (abs(value) + 2 * abs(rate) * pin.time);
-    if (abs(value - now) > known + rounding<T> * abs(now)) return abs(value) > known ? value : T(0);
+            error = rounding<T> * (abs(value) + 2 * abs(rate) * pin.time);
+    if (abs(value - now) > error + rounding<T> * abs(now)) return abs(value) > error ? value : T(0);
     if (!series.has_eliminated_slider()) keep_force(pin.finger, pin.state, value);
     return now;
   }

@@ -41,8 +41,8 @@ Flow<T> mode_flow(const Pin<T>& pin, const SelectedMotion<T>& selected,
   Oscillator<T> oscillator = plain_oscillator;
   if (!has_plain_flow(pin)) {
     // Damping cancelled by falling friction within rounding is zero.
-    const T known = rounding<T> / 2 * pin.drive.damping + plate.rounding + finger.rounding;
-    if (abs(damping) <= known) damping -= plain(damping);
+    const T error = rounding<T> / 2 * pin.drive.damping + plate.rounding + finger.rounding;
+    if (abs(damping) <= error) damping -= plain(damping);
     oscillator = Oscillator<T>(pin.drive.mass, damping, stiffness);
   }
   // A pin with zero speed and balanced forces, within rounding or the rest criterion, is at rest.

@@ -148,8 +148,8 @@ class CycleDetector {
     if (!moves && driven_ && now.mode.stuck()) return T(0);  // periodic inputs that move no pin
     if (!moves) return never;
     const T rounded = rounding<T> * std::max(abs(now.state.x), length);
-    const auto apart = [](T one, T other, T known, T scale) {
-      const T beyond = abs(one - other) - known;
+    const auto apart = [](T one, T other, T error, T scale) {
+      const T beyond = abs(one - other) - error;
       return beyond > 0 ? beyond / scale : T(0);
     };
     const State<T>&one = earlier.state, &other = now.state;

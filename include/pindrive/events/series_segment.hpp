@@ -74,12 +74,10 @@ class SeriesSegment {
     const T late = rounding<T> * (segment.begin + end);
     guards.clear();
     for (const auto& guard : paths) {
-      const bool ends = guard.zero == never && last && falls_to_zero(guard.path, late, guard.known);
+      const bool ends = guard.zero == never && last && falls_to_zero(guard.path, late, guard.error);
       guards.add_known(ends ? end : since + guard.zero, guard.bound, guard.plate, guard.side,
                        segment.mode.stuck() && !held && &guard - paths.begin() < 2);
     }
-    const T turns = abs(equation.across.rate) + abs(equation.plate_velocity.rate);
-    const T left = abs(equation.across.at(span)) + abs(equation.plate_velocity.at(span));
     // A function has the rounding of its terms.
     const auto rounding_at = [&](T tau) {
       T sum{0};
@@ -87,8 +85,6 @@ class SeriesSegment {
         if (!input->straight()) sum += input->rounding(tau);
       return sum;
     };
-    stops_ = equation.held && equation.side == 0 &&
-             left <= difference_error<T> * (segment.begin + span) * turns + rounding_at(span);
     first_ = guards.earliest_known(end);
     // An immediate end may be deferred to the end of the step, as to a breakpoint.
     const bool ends_early = end < (1 - rounding<T>)*span;
@@ -131,14 +127,7 @@ class SeriesSegment {
   }
 
   /// Time to the earliest event, the end of the step or the breakpoint.
-  ///
-  /// An event within the time resolution of the breakpoint happens there. So does an event a few
-  /// resolutions before a breakpoint at which the plate comes to rest in both directions: the
-  /// sliding direction under a pin that is held is undetermined there.
-  T earliest(T since, T breakpoint) const {
-    const T known = (stops_ ? before_rest<T> : rounding<T>)*(since + breakpoint);
-    return breakpoint < never && breakpoint - first_ <= known ? breakpoint : first_;
-  }
+  T earliest(T breakpoint) const { return std::min(first_, breakpoint); }
 
   /// Time at which a moving pin turns; infinite if the pin does not turn within the step.
   T turning_point() const {
@@ -169,12 +158,12 @@ class SeriesSegment {
     const T still = rounding<T> * size * sqrt(drive.stiffness / drive.mass);
     const T pull = drive.mass * step.velocity.derivative().at(tau) + drive.damping * state.v +
                    finger.branch().slope * finger.load.at(tau) * state.slider_velocity;
-    const T known = 2 * abs(pull) / (rounding<T> * drive.stiffness);
+    const T error = 2 * abs(pull) / (rounding<T> * drive.stiffness);
     if (finger.mode.branch != 0 || abs(state.v) > still || abs(state.slider_velocity) > still)
       return;
-    if (known > 64 * (1 + drive.damping * still / state.force_error) * size) return;
+    if (error > 64 * (1 + drive.damping * still / state.force_error) * size) return;
     state.v = state.slider_velocity = T(0);
-    state.position_scale = std::max(state.position_scale, known);
+    state.position_scale = std::max(state.position_scale, error);
   }
 
  private:
@@ -216,9 +205,9 @@ class SeriesSegment {
     T zero = never;
     const auto* first = guards.end();
     for (const auto& guard : guards) {
-      const T own = zero_beyond<T>(guard.known, [&](T raise, const auto& visit) {
+      const T own = zero_beyond<T>(guard.error, [&](T offset, const auto& visit) {
         auto raised = guard.path;
-        raised += Line<T>{raise, T(0)};
+        raised += Line<T>{offset, T(0)};
         sign_changes(raised, 1, clear, end, std::min(zero, end), visit);
       });
       if (own < zero) first = &guard;
@@ -244,16 +233,16 @@ class SeriesSegment {
   }
 
   /// True if a polynomial that is positive reaches zero within a time after its end.
-  static bool falls_to_zero(const Polynomial<T>& path, T late, detail::Real<T> known) {
+  static bool falls_to_zero(const Polynomial<T>& path, T late, detail::Real<T> error) {
     const T end(path.span), value = path.at(end);
     if (value * end > late * T(series_order) * path.size()) return false;
-    return value + late * path.derivative().at(end) <= -known;
+    return value + late * path.derivative().at(end) <= -error;
   }
   /// True if an input is zero within rounding from a time to another: at its ends and at a time between them that is
   /// no period.
   static bool rests(const Curve<T>& input, T from, T to) {
-    const T known = input.rounding();
-    const auto is_zero = [&](T tau) { return abs(input.at(tau)) <= known; };
+    const T error = input.rounding();
+    const auto is_zero = [&](T tau) { return abs(input.at(tau)) <= error; };
     return is_zero(from) && is_zero(to) && is_zero(from + T(0.382) * (to - from));
   }
 
@@ -261,8 +250,7 @@ class SeriesSegment {
 
   std::optional<SeriesStep<T>> step_;  ///< the segment or, of a driven motion, its last step
   std::optional<DrivenMotion<T>> driven_;
-  bool stops_{false};  ///< the plate comes to rest under a pin that is held, at the next breakpoint
-  T first_{0};         ///< time to the zero of the first guard, or to the end of the step, s
+  T first_{0};  ///< time to the zero of the first guard, or to the end of the step, s
 };
 
 }  // namespace pindrive::detail

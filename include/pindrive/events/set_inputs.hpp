@@ -80,8 +80,8 @@ T change_to(const T& given, const Held<T>& held, T now) {
   const Curve<T> line = held.from(now);
   const T change = given - line.value;
   const T size = abs(held.line.value) + abs(line.rate * (now - held.since)) + abs(given);
-  const T known = line.straight() ? rounding<T> * size : T(line.rounding());
-  return abs(change) <= known ? change - plain(change) : change;
+  const T error = line.straight() ? rounding<T> * size : T(line.rounding());
+  return abs(change) <= error ? change - plain(change) : change;
 }
 
 /// True if an input differs from its continuation in value or rate; what changes by itself is not set.

@@ -298,10 +298,10 @@ T largest_size(const Polynomial<T>& p) {
 
 /// Zero at which a quantity that begins positive becomes negative by more than its rounding; infinity if none.
 ///
-/// `changes(raise, visit)` calls visit(τ) at each sign change of the quantity plus `raise`, in order, until visit
+/// `changes(offset, visit)` calls visit(τ) at each sign change of the quantity plus `offset`, in order, until visit
 /// returns false. A quantity that only touches zero, as a velocity at the end of a stroke, has none.
 template <class T, class Changes>
-T zero_beyond(Real<T> known, Changes&& changes) {
+T zero_beyond(Real<T> error, Changes&& changes) {
   constexpr T never{std::numeric_limits<Real<T>>::infinity()};
   T beyond = never, last = never;
   bool falls = false;
@@ -314,16 +314,16 @@ T zero_beyond(Real<T> known, Changes&& changes) {
     if (falls && (tau <= beyond || last == never)) last = tau;
     return tau < beyond;
   };
-  changes(known, visit);
-  if (known == 0 || beyond == never) return beyond;
+  changes(error, visit);
+  if (error == 0 || beyond == never) return beyond;
   changes(0, visit);
   return last < never ? last : beyond;
 }
 template <class T>
-T zero_beyond(const Polynomial<T>& p, Real<T> known) {
-  return zero_beyond<T>(known, [&](Real<T> raise, const auto& visit) {
+T zero_beyond(const Polynomial<T>& p, Real<T> error) {
+  return zero_beyond<T>(error, [&](Real<T> offset, const auto& visit) {
     Polynomial<T> raised = p;
-    raised.c[0] += raise;
+    raised.c[0] += offset;
     sign_changes(raised, 1, visit);
   });
 }

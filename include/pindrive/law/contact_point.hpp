@@ -330,10 +330,10 @@ struct ContactPoint {
   [[gnu::noinline]] bool is_admissible_obliquely(const State<T>& s, T first, T second,
                                                  T third) const {
     const ObliqueSlip<T> speed = oblique_slip(s.v, surface.rate + first);
-    const T closing = speed.closing(), known = speed.rounding_of(surface.value);
+    const T closing = speed.closing(), error = speed.rounding_of(surface.value);
     const T parting = speed.parting(second, across.second());
     const bool turns =
-        closing == 0 || grazes(closing, parting, known) || grazes(-closing, -parting, known);
+        closing == 0 || grazes(closing, parting, error) || grazes(-closing, -parting, error);
     T faster = closing;
     if (turns) faster = parting != 0 ? parting : speed.velocity() * third;
     if (faster == 0) faster = second * second;  // the pin starts to turn

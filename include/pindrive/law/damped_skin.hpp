@@ -87,7 +87,7 @@ class DampedSkinCandidates {
     add(ContactMode<T>::slip(slip_sign, slip.guard, slip.branch), slip.speed);
   }
   void add_stick(ActiveGuard guard) { add({ContactState::elastic_stick, guard, 0, T(0)}, T(0)); }
-  /// Adds the slip after a jump of the speed, or what follows where there is none.
+  /// Adds the slip after a jump of the speed; without a stable slip, stick or slip in the other direction.
   void add_jump(const Slip& slip, T slip_sign) {
     if (!slip.none)
       add_slip(slip, slip_sign);
@@ -108,7 +108,7 @@ class DampedSkinCandidates {
                                                   : range.from;
     const T tension = slip_sign * tension_;
     const T most = range.at(speed) * load_ + contact_.damping * speed;
-    const bool jumps = abs(tension - most) > jump_error<T> * (abs(tension) + most) + error_;
+    const bool jumps = abs(tension - most) > difference_error<T> * (abs(tension) + most) + error_;
     if (jumps || !(rise(branch) > 0)) {  // a load or the velocity of the pin has jumped
       error_ += rounding<T> * most;
       const bool up = jumps && tension > most;

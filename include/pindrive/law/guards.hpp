@@ -95,7 +95,7 @@ class Guards {
   ///
   /// Times count from the start of the mode, which is at `since`. Times that differ by less than
   /// the time resolution are equal.
-  T earliest(const Oscillator<T>& oscillator, T since, T limit, T force_error) {
+  T earliest(const Oscillator<T>& oscillator, T since, T limit) {
     const Path<T>* falls = nullptr;     // falls to the centre of its oscillation
     for (int n = 0; n < count_; ++n) {  // speeds, then stick forces
       Guard<T>& guard = list_[n + forces_ < count_ ? n + forces_ : n + forces_ - count_];
@@ -113,8 +113,8 @@ class Guards {
           continue;
       }
       const bool ends = limit < std::numeric_limits<T>::infinity();
-      guard.zero = first_crossing(guard, oscillator, force_error,
-                                  ends ? limit + rounding<T> * (since + limit) : limit);
+      guard.zero =
+          first_root(oscillator, path, 1, ends ? limit + rounding<T> * (since + limit) : limit);
       limit = std::min(limit, guard.zero);
     }
     return limit;
@@ -147,14 +147,14 @@ class Guards {
   T first_event(const Oscillator<T>& oscillator, T since, T limit, bool is_breakpoint,
                 T force_error) {
     const T breakpoint = is_breakpoint ? limit : std::numeric_limits<T>::infinity();
-    const T first = earliest(oscillator, since, limit, force_error);
+    const T first = earliest(oscillator, since, limit);
     T counts = defer_grazing(first, breakpoint, [&](const Guard<T>& guard, T tau) {
       return stays(guard, oscillator, tau, force_error);
     });
     if (counts > first)  // later guards are not evaluated yet
       for (int i = 0; i < count_; ++i)
         if (list_[i].zero > counts) {
-          list_[i].zero = first_crossing(list_[i], oscillator, force_error, counts);
+          list_[i].zero = first_root(oscillator, list_[i].path, 1, counts);
           counts = std::min(counts, list_[i].zero);
         }
     return counts;
@@ -172,21 +172,6 @@ class Guards {
   }
 
  private:
-  /// First zero of a guard up to a limit; infinite if the skin tension only grazes its limit.
-  ///
-  /// A tension that does not grow and exceeds its limit by at most its error never exceeds the
-  /// limit: a drive in other units has another error and does not slip either.
-  static T first_crossing(const Guard<T>& guard, const Oscillator<T>& oscillator, T force_error,
-                          T limit) {
-    const Path<T>& path = guard.path;
-    const T zero = first_root(oscillator, path, 1, limit);
-    const bool skin = guard.bound == ActiveGuard::none && !guard.plate;
-    if (!skin || !(zero < std::numeric_limits<T>::infinity())) return zero;
-    if (oscillator.alpha() > 0 || !path.oscillates() || !path.straight()) return zero;
-    const auto rates = path.rates(oscillator, oscillator.after(zero));
-    return grazes(rates.first, rates.second, 2 * force_error) ? std::numeric_limits<T>::infinity()
-                                                              : zero;
-  }
   /// Adds the distance of a speed from the end of its branch; `falls` if it decreases with the
   /// velocity v. Of two parallel distances only the smaller is kept, as its zero comes first.
   void add_nearer(const Path<T>& path, ActiveGuard bound, bool plate, bool falls, T v) {

@@ -23,15 +23,15 @@ struct Departure {
 
 /// Departure of a pin of mass m from a plate that begins to slide across with acceleration w'.
 ///
-/// Solves m p + λF p/√(p² + w'²) = pull (N); the left side is monotone, so the root is unique. Without w', friction
-/// balances a pull up to λF: the pin follows the plate, and slides in the direction of that friction. `known`: error of
-/// the pull, N.
+/// Solves m p + λF p/√(p² + w'²) = pull (N); the left side is monotone, so the root is unique. With w' = 0 friction
+/// balances a pull up to λF: the pin then has the acceleration of the plate, and slides in the direction of the pull.
+/// `error` is the error of the pull, N.
 template <class T>
-Departure<T> departure_of(T mass, T friction, T across_rate, T pull, T known = T(0)) {
+Departure<T> departure_of(T mass, T friction, T across_rate, T pull, T error = T(0)) {
   const T w = abs(across_rate);
   if (w == 0) {
     const T excess = abs(pull) - friction, side = pull < 0 ? T(-1) : T(1);
-    if (excess <= difference_error<T> * friction + known)
+    if (excess <= difference_error<T> * friction + error)
       return {T(0), excess < 0 ? pull / friction : friction > 0 ? side : T(0)};
     return {side * excess / mass, side};
   }
@@ -161,12 +161,12 @@ template <class Point, class T>
 }
 
 /// Relative acceleration with which a pin leaves a plate that begins to slide across; sets the
-/// sliding direction. `pull` is the sum of all further forces, N, and `known` its error.
+/// sliding direction. `pull` is the sum of all further forces, N, and `error` its error.
 template <class T, class Point>
-T oblique_departure(T mass, Point& plate, T pull, T known = T(0)) {
+T oblique_departure(T mass, Point& plate, T pull, T error = T(0)) {
   const T rest = pull - mass * plate.surface.rate;
   const Departure<T> found =
-      departure_of(mass, plate.load.value * plate.start.friction, plate.across.rate, rest, known);
+      departure_of(mass, plate.load.value * plate.start.friction, plate.across.rate, rest, error);
   plate.direction = found.along;
   return found.acceleration;
 }

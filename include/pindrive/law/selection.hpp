@@ -193,7 +193,7 @@ class Selection {
                         own_limit * on.load.rate + other_limit * other.load.rate};
     const T force = holding_force(on, other.force(pin_.state));
     const int at_limit = pin_.stays_at_limit() ? pin_.stick_limit_side : 0;
-    // The friction of an oblique plate turns within the time resolution.
+    // rounding: the friction of an oblique plate turns within the time resolution.
     const T turns =
         other.oblique() ? abs(other.force_rate(pin_.state.v, on.surface.rate).value) : T(0);
     const T error = pin_.force_error() + rounding<T> * pin_.time * turns;
@@ -226,8 +226,8 @@ class Selection {
   static Coefficients coefficients(const Curve<T>& of) {
     return of.template coefficients<beginning_orders>();
   }
-  /// True if the force of a contact follows from its load, or from the place of the pin, alone.
-  static bool follows_load(const ContactPoint& side) {
+  /// True if the force of a contact depends on its load, or on the position of the pin, alone.
+  static bool follows_plate_load(const ContactPoint& side) {
     const Branch<T> range = side.branch();
     const bool falls = range.falling.present() && range.falling.excess != 0;
     return !side.oblique() && (!side.sliding() || (range.slope == 0 && !falls));
@@ -245,7 +245,7 @@ class Selection {
   /// the force of the other contact depends on its speed, the third coefficient alone is known, and only while that
   /// contact does not accelerate.
   T later_margin(const ContactPoint& on, const ContactPoint& other, T side) const {
-    const bool any_order = follows_load(other);
+    const bool any_order = follows_plate_load(other);
     const T relative = on.surface.rate - other.surface.rate;
     if (!any_order && (other.oblique() || relative != 0 || !other.load.steady())) return T(0);
     const Coefficients surface = coefficients(on.surface), force = coefficients(pin_.force),
@@ -280,7 +280,7 @@ class Selection {
                                                 selected_.applied_force - restoring_force_ + finger,
                                                 pin_.force_error())
                             : T(0);
-    follows_ =
+    follows_plate_ =
         starts && departure == 0 && pin_.plate.across.rate == 0 && pin_.plate.start.friction > 0;
     const T plate = pin_.plate.force(pin_.state);
     selected_.acceleration =
@@ -315,7 +315,7 @@ class Selection {
                                                jerk.rate, pin_.force_error() / pin_.drive.mass);
       }
       if (!selected_.tangential) return side.is_admissible(pin_.state, force);
-      if (follows_) {
+      if (follows_plate_) {
         const Line<T> jerk = this->jerk();
         return side.is_admissible(pin_.state, T(0), jerk.value, jerk.rate);
       }
@@ -361,8 +361,9 @@ class Selection {
   static T later(const Curve<T>& velocity) {
     return velocity.straight() ? T(0) : third_or_later(coefficients(velocity));
   }
-  /// The first derivative from the third on in which a pin with the acceleration of a surface leaves its velocity, by
-  /// its sign; 0 if it does not. Of frictions that depend on the speed the part at this instant is used.
+  /// Returns the lowest coefficient, from the third on, of the velocity relative to a surface that is not zero, for a pin
+  /// that has the acceleration of the surface; 0 without one. The sign alone is exact: friction that depends on the
+  /// speed has its present value.
   T relative_beginning(const Curve<T>& surface) const {
     const Coefficients plate = coefficients(pin_.plate.surface), force = coefficients(pin_.force),
                        plate_load = coefficients(pin_.plate.load),
@@ -395,13 +396,13 @@ class Selection {
 
   /// Jerk of a slipping pin, m/s³, zero within its error; and the derivative of the jerk.
   Line<T> jerk() const {
-    if (follows_) return creeping_jerk();
+    if (follows_plate_) return creeping_jerk();
     const auto [rate, scale, second] = force_rate();
     return {abs(rate) <= rounding<T> * scale ? T(0) : rate / pin_.drive.mass,
             second / pin_.drive.mass};
   }
-  /// Jerk of a pin that follows a plate which begins to slide across, with u = w d/√(1 − d²); instead of its derivative,
-  /// the first later coefficient that is not zero, of which the sign is used.
+  /// Jerk of a pin on a plate that begins to slide across, with the acceleration of the plate: u = w d/√(1 − d²). The
+  /// slope is the next later coefficient that is not zero, of which the sign is used.
   Line<T> creeping_jerk() const {
     auto velocity = pin_.plate.surface.template coefficients<beginning_orders>();
     const auto across = pin_.plate.across.template coefficients<beginning_orders>();
@@ -440,8 +441,8 @@ class Selection {
 
   Pin<T>& pin_;
   SelectedMotion<T>& selected_;
-  bool follows_{
-      false};  ///< the pin follows a plate that begins to slide across without an acceleration
+  /// A plate begins to slide across, and the pin has its velocity and acceleration.
+  bool follows_plate_{false};
   T restoring_force_{0};  ///< force of spring and damper less that of a stop, N
 };
 

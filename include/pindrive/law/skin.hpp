@@ -165,8 +165,8 @@ class SliderCandidates {
     if (guard == ActiveGuard::none && !(speed > range.from)) guard = ActiveGuard::lower;
     // A slider without its own velocity follows a jump of the pin velocity.
     const T beyond_end = guard == ActiveGuard::upper ? speed - range.to : range.from - speed;
-    must_jump_ = !own_speed && reached == ActiveGuard::none && guard != ActiveGuard::none &&
-                 beyond_end > branch_end_error<T> * (range.from + (speed < 0 ? -speed : speed));
+    must_jump_ =
+        !own_speed && reached == ActiveGuard::none && guard != ActiveGuard::none && beyond_end > 0;
     start_.keeps_speed = !own_speed && !must_jump_;
     start_.slider_speed = guard == ActiveGuard::none    ? speed
                           : guard == ActiveGuard::upper ? range.to
@@ -174,7 +174,8 @@ class SliderCandidates {
     start_.friction = range.at(own_speed ? start_.slider_speed : range.from);
     const T tension = slip_sign * s_.skin, most = start_.friction * point_.load.value;
     const int branch = present_.branch;
-    if (std::abs(plain(tension - most)) > jump_error<T> * plain(tension + most) + s_.force_error) {
+    if (std::abs(plain(tension - most)) >
+        difference_error<T> * plain(tension + most) + s_.force_error) {
       must_jump_ = true;  // the load has jumped
       start_.keeps_speed = false;
       const T friction = tension / point_.load.value;
@@ -225,7 +226,7 @@ class SliderCandidates {
 
   bool is_nonzero(T distance) const {
     const T size = abs(u_) + abs(point_.stretch_rate(contact_.branch(present_.branch).force));
-    return abs(distance) > jump_error<T> * size;
+    return abs(distance) > difference_error<T> * size;
   }
 
   Point& point_;
@@ -260,7 +261,7 @@ template <class T, class Point>
   Curve<T>& load = point.load;
   if (load.rate == 0 || contact.rigid() || contact.damped() || !contact.present())
     return breakpoint;
-  const T u = v < 0 ? -v : v, known = first_grip<T> * breakpoint;
+  const T u = v < 0 ? -v : v, delay = first_grip<T> * breakpoint;
   if (load.value == 0 && load.rate > 0) {
     const T most = point.stretch_rate(contact.static_limit);
     if (!contact.may_lag() || u == 0 || u < most) return breakpoint;
@@ -268,15 +269,15 @@ template <class T, class Point>
     if (!there.sticks && there.guard != ActiveGuard::lower) return breakpoint;
     const T round = point.stretch_rate(largest_friction(contact, 2 * u));  // per second of delay
     load.rate = T(0);
-    return std::min(breakpoint, time + u / round * known);
+    return std::min(breakpoint, time + u / round * delay);
   }
   if (load.rate > 0) return breakpoint;
   const T ends = load.at(breakpoint - time);
   const T follows = point.has_slider_state()   ? 1 / point.branch().slope
                     : contact.static_limit > 0 ? u / contact.static_limit
                                                : T(0);
-  if (ends > rounding<T> * load.value + known * -load.rate ||
-      load.value > known * (contact.stiffness * follows - load.rate))
+  if (ends > rounding<T> * load.value + delay * -load.rate ||
+      load.value > delay * (contact.stiffness * follows - load.rate))
     return breakpoint;
   load = {T(0), T(0)};
   return breakpoint;

@@ -166,8 +166,8 @@ class EndStops {
   bool no_push() const { return push_is_zero_; }  ///< the force is exactly zero
 
  private:
-  /// True if the pin decays about the edge of an elastic stop, so little beside its position that it is at rest
-  /// (MODEL, section 10): what it still does with the stop is no event.
+  /// True if the pin is at rest by the rest criterion (MODEL, section 10) while it decays about the edge of an elastic
+  /// stop. Its further contacts with the stop are then no events.
   bool decays_at_edge(const State<T>& s, const Flow<T>& flow) const {
     const Path<T>& x = flow.position;
     if (stops_.rigid() || !x.straight() || !(flow.oscillator.alpha() < 0)) return false;

@@ -39,10 +39,11 @@ struct InputCurves {
             across_from(inputs, segment.begin, segment.plate_velocity, held(drive, segment.mode)),
             inputs.force.from(segment.begin), inputs.finger_load.from(segment.begin)};
   }
-  /// Transverse velocity from a time on. A velocity within rounding of both velocities is zero:
-  /// close to zero the steps of a pin that comes to rest on the plate become short. If both
-  /// velocities reach zero at the next breakpoint under a held pin, the time until then gives the
-  /// better value.
+  /// Returns the transverse velocity from a time on.
+  ///
+  /// A transverse velocity that is smaller than the rounding of both components is set to zero: close to zero the steps
+  /// of a pin that comes to rest on the plate become short. If both components of a held pin's plate reach zero at the
+  /// next breakpoint, the value follows from the time until then, which is more accurate.
   static Curve<T> across_from(const Inputs<T>& inputs, T time, const Curve<T>& along, bool held) {
     using std::abs;
     Curve<T> line = inputs.across_velocity.from(time);
@@ -53,7 +54,8 @@ struct InputCurves {
     if (held && along.rate != 0 && along.straight() && line.straight() &&
         abs(line.at(rest)) + abs(along.at(rest)) <= detail::difference_error<T> * changes)
       return {-line.rate * rest, line.rate};
-    // Functions may come to zero together, or a function and a line: neither is then zero before the other.
+    // Two functions, or a function and a line, may reach zero at the same time. Setting one of them to zero before would
+    // turn the sliding direction.
     const T there = abs(along.value * line.rate - along.rate * line.value);
     const int lines = int(line.straight()) + int(along.straight());
     const bool together =
@@ -89,8 +91,8 @@ struct InputCurves {
   static bool touches_zero(const Curve<T>& input, T time) {
     using std::abs;
     if (input.straight()) return input.is_zero();
-    const T known = input.rounding(), turns = detail::least_across<T> * time * abs(input.second());
-    return abs(input.value) <= known && abs(input.rate) <= known * input.fastest() + turns;
+    const T error = input.rounding(), turns = detail::least_across<T> * time * abs(input.second());
+    return abs(input.value) <= error && abs(input.rate) <= error * input.fastest() + turns;
   }
 };
 

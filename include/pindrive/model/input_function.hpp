@@ -229,16 +229,17 @@ struct Curve {
     if (of.straight()) return;
     piece = &of;
     using std::abs;
-    const Real known = detail::rounding<Real>, fastest = of.fastest(), size = of.size(after);
+    const Real relative_error = detail::rounding<Real>, fastest = of.fastest(),
+               size = of.size(after);
     const Real time =
         abs(plain(of.begin)) + abs(plain(after)) + (fastest > 0 ? 1 / fastest : Real(0));
-    if (abs(plain(value)) < near_zero * size) refine_beside_touch(known * size);
+    if (abs(plain(value)) < near_zero * size) refine_beside_touch(relative_error * size);
     // A zero or an extremum within the resolution of time and phase is now; so is a zero that the function only
     // touches.
-    if (abs(plain(value)) <= known * time * abs(plain(rate))) value -= plain(value);
-    if (abs(plain(rate)) > known * time * abs(2 * plain(c[2]))) return;
+    if (abs(plain(value)) <= relative_error * time * abs(plain(rate))) value -= plain(value);
+    if (abs(plain(rate)) > relative_error * time * abs(2 * plain(c[2]))) return;
     rate -= plain(rate);
-    if (abs(plain(value)) <= known * size) value -= plain(value);
+    if (abs(plain(value)) <= relative_error * size) value -= plain(value);
   }
 
   /// Part of a piece at a time that is so long after its begin; its terms may have decayed.
@@ -352,8 +353,8 @@ struct Curve {
     return exp(exponent * log1p(relative_rate() * tau));
   }
   /// Corrects the value close to an extremum at which the function only touches zero, as its terms cancel there: the
-  /// value follows from its derivatives. `known`: the rounding of the value.
-  [[gnu::noinline]] void refine_beside_touch(Real known) {
+  /// value follows from its derivatives. `allowed`: the rounding of the value.
+  [[gnu::noinline]] void refine_beside_touch(Real allowed) {
     using std::abs;
     auto c = coefficients<detail::beginning_orders>();
     c[0] = T(0);
@@ -370,7 +371,7 @@ struct Curve {
     }
     const bool close = abs(plain(c[3]) * until) <= near_zero * abs(plain(c[2]));
     const Real error = plain(value) + change;
-    if (close && abs(error) <= known) value -= error;
+    if (close && abs(error) <= allowed) value -= error;
   }
   [[gnu::noinline]] std::array<T, 4> derivatives(T tau) const {
     std::array<T, 4> c;

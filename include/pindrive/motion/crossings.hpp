@@ -101,7 +101,7 @@ void extrema(const Motion<T>& motion, Quantity quantity, T until,
     const T forces =
         drive.stiffness * abs(flow.position.start) + drive.damping * abs(flow.velocity.start);
     const T terms = abs(value) + abs(end) + forces / drive.mass;
-    return abs(value - end) > detail::end_error<T> * terms;
+    return abs(value - end) > detail::difference_error<T> * terms;
   };
   motion.expanded(T(0), until, [&](const Segment<T>& segment, T begin, T span) {
     return go_on() && motion.along(segment, [&](const auto& along) {

@@ -269,9 +269,9 @@ class ByTerms {
   /// Sign of the first Taylor coefficient that is not zero; a value within rounding is zero.
   int side_after_start(const TermSum<T>& sum) const {
     const Polynomial<T> p = sum.expanded(std::min(sum.reach(), plain(lasts_)));
-    const T known = rounding<T> * sum.size(T(0));
+    const T error = rounding<T> * sum.size(T(0));
     for (const T& c : p.c)
-      if (abs(c) > (&c == p.c.data() ? known : T(0))) return c > 0 ? 1 : -1;
+      if (abs(c) > (&c == p.c.data() ? error : T(0))) return c > 0 ? 1 : -1;
     return 0;
   }
   template <class Visitor>

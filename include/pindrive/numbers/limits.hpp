@@ -30,38 +30,17 @@ inline constexpr double near_root = 1e-5;
 template <class T>
 inline constexpr T difference_error = 4 * rounding<T>;
 
-/// Relative error of a force at the end of a segment: it is a sum whose terms are closed forms.
-/// Without it: crossings_test fails.
-template <class T>
-inline constexpr T end_error = 8 * rounding<T>;
-
-/// Relative distance of the stationary speed of a slider from the end of its branch, below which
-/// the slider has not left the branch: both are rounded. Without it: fuzz fails.
-template <class T>
-inline constexpr T branch_end_error = 2 * rounding<T>;
-
 /// Relative transverse velocity below which an oblique plate moves along the axis: closer to zero
 /// the steps of a pin that comes to rest on the plate become short. Without it: fuzz --replay
 /// fails.
 template <class T>
 inline constexpr T least_across = 64 * rounding<T>;
 
-/// Relative time before a breakpoint at which an oblique plate comes to rest, within which an event
-/// belongs to the breakpoint: the sliding direction under a held pin is undetermined there. Without
-/// it: fuzz --replay fails.
-template <class T>
-inline constexpr T before_rest = 128 * rounding<T>;
-
 /// Relative time of the first stick of skin that has no first mode as its load grows from zero:
 /// some time resolutions, for each period in which the load grows by a half. Without it: fuzz
 /// --replay fails.
 template <class T>
 inline constexpr T first_grip = 64 * rounding<T>;
-
-/// Relative difference of two forces, or of two speeds, beyond which the load or the pin velocity
-/// of a slider has jumped: the accumulated rounding of a segment is below. Without it: fuzz fails.
-template <class T>
-inline constexpr T jump_error = 64 * rounding<T>;
 
 /// Events at one instant after which a motion is terminated. Physics has two or three (a contact
 /// slips, a second one follows, a breakpoint is passed); more would never end. Without it:

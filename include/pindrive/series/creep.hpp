@@ -26,7 +26,7 @@ namespace pindrive::detail {
 
 /// Step of creep; valid if velocity and series agree with creep within rounding.
 template <class T>
-class CreepFlow : public IteratedStep<T> {
+class CreepFlow : public SlowStep<T> {
  public:
   using typename SeriesExpansion<T>::Real;
   using SeriesExpansion<T>::position, SeriesExpansion<T>::velocity, SeriesExpansion<T>::skin,
@@ -41,7 +41,7 @@ class CreepFlow : public IteratedStep<T> {
             bool within_step = false, Real shortest = 0)
       : balance_(e) {
     this->eliminated = EliminatedPart::of_friction;
-    acceleration_[0] = e.plate_velocity.rate;  // initial guess: acceleration of the plate
+    this->set_small(0, e.plate_velocity.rate);  // initial guess: acceleration of the plate
     const Real farthest = balance_.farthest(e, plain(limit));
     const Real step = balance_.span(e, start, farthest);
     if (!(step > 0)) return;
@@ -52,8 +52,7 @@ class CreepFlow : public IteratedStep<T> {
     // Best iterate, for a known step whose iterations do not converge within rounding.
     SeriesStep<T> nearest;
     Real least = std::numeric_limits<Real>::infinity();
-    for (int round = 0; round < slow_iterations && balance_.solve(e, start, acceleration_[0]);
-         ++round) {
+    for (int round = 0; round < slow_iterations && balance_.solve(e, start, small_[0]); ++round) {
       // The iteration contracts.
       const Real v = plain(e.plate_velocity.value + across_[0] * balance_.ratio());
       const Real off = plain(start.v) - v;
@@ -69,14 +68,14 @@ class CreepFlow : public IteratedStep<T> {
       if (part * step < shortest) return;
       const bool converged = converged_;
       const Real changed = last_change(part);
-      const Real known = last_digit<Real> * this->size_of(plate_force, part) / plain(e.mass);
-      converged_ = changed <= known;
+      const Real allowed = last_digit<Real> * this->size_of(plate_force, part) / plain(e.mass);
+      converged_ = changed <= allowed;
       // Changes decrease ever slower: at the present rate they would not be small in time. They decrease faster over
       // a shorter part of the step.
       const bool slow =
           !within_step && round > 2 && !converged_ &&
           (changed > last / 2 ||
-           changed * exp(log(changed / last) * (slow_iterations - 2 - round)) > known);
+           changed * exp(log(changed / last) * (slow_iterations - 2 - round)) > allowed);
       if (slow && shortest == 0) return;
       if (slow) left = part / 4;
       last = slow ? last_change(left) : changed;
@@ -90,22 +89,14 @@ class CreepFlow : public IteratedStep<T> {
       if (!converged) static_cast<SeriesStep<T>&>(*this) = nearest;
       if (!within_step && !starts_from(e, start)) return;
       this->rescale(part);
-      holds_ = within_step || bound(e, plain(e.mass) * last_change(part));
-      for (int tries = 0; !holds_ && tries < slow_reductions; ++tries) {
-        part *= Real(step_reduction);
-        this->rescale(Real(step_reduction));
-        holds_ = bound(e, plain(e.mass) * last_change(part));
-      }
+      this->hold(within_step, part,
+                 [&](Real part) { return bound(e, plain(e.mass) * last_change(part)); });
       break;
     }
-    if (holds_) this->trim();
   }
 
-  /// True if the pin creeps, so that the step may be used.
-  bool is_valid() const { return holds_; }
-
  private:
-  using IteratedStep<T>::acceleration_, IteratedStep<T>::last_change;
+  using SlowStep<T>::small_, SlowStep<T>::last_change;
   using SeriesExpansion<T>::across_;
   using SeriesExpansion<T>::N, SeriesExpansion<T>::falling_plate_,
       SeriesExpansion<T>::falling_finger_;
@@ -147,7 +138,7 @@ class CreepFlow : public IteratedStep<T> {
       friction[n] = e.plate_force * d[n] + e.plate_slope * u;
       const T v_p = this->plate_velocity_[n];
       T others = e.stiffness * x[n] + e.skin_pull.value * y[n] - this->given_force(e, n, step) +
-                 e.mass * acceleration_[n];
+                 e.mass * small_[n];
       if (n > 0) others += step * (e.damping_rate * v[n - 1] + e.skin_pull.rate * y[n - 1]);
       others += this->bent_damper_force(e, n);
       if (n > 0 && n < N) {
@@ -252,18 +243,18 @@ class CreepFlow : public IteratedStep<T> {
     return abs(plain(start.v - velocity.c[0])) <=
            difference_error<Real> * sums_of(velocity.c)[0] + unsure(e, start);
   }
-  /// Error of the creep velocity from the rounding of forces, inputs and time: large near the friction
-  /// limit, but limited to a small part of the velocity.
+  /// Error of the creep velocity from the rounding of forces, inputs and time: large near the friction limit, but at most a
+  /// small part of the velocity there.
   Real unsure(const SeriesEquation<T>& e, const SeriesState<T>& start) const {
-    const Real sizes = abs(plain(e.force.value)) + abs(plain(e.mass) * plain(acceleration_[0])) +
+    const Real sizes = abs(plain(e.force.value)) + abs(plain(e.mass) * plain(small_[0])) +
                        abs(plain(e.damping) * plain(start.v)) +
                        plain(e.stiffness) * abs(plain(start.x)) +
                        abs(plain(e.skin_pull.value) * plain(start.skin));
     const Real changes =
         abs(plain(e.plate_velocity.rate)) + abs(plain(balance_.across().rate * balance_.ratio()));
-    const Real root = hypot(Real(1), plain(balance_.ratio()));
     const Real by_forces = difference_error<Real> * sizes * plain(balance_.across().value) /
                            plain(e.load.value * balance_.friction(e));
+    const Real root = hypot(Real(1), plain(balance_.ratio()));
     const Real here =
         std::min(by_forces * root * root * root, creep_error<Real> * abs(plain(start.v)));
     return std::max(by_forces, here) + rounding<Real> * plain(start.time) * changes +
@@ -275,20 +266,18 @@ class CreepFlow : public IteratedStep<T> {
   }
 
   CreepBalance<T> balance_;  // at the start
-  bool converged_{false}, holds_{false};
+  bool converged_{false};
 };
 
 /// Returns a step of creep; none if the pin has a fast transient, or the step would be too short.
 template <class T>
 std::optional<CreepFlow<T>> creep(const SeriesEquation<T>& e, const SeriesState<T>& start, T limit,
                                   bool within_step = false, Real<T> shortest = 0) {
-  std::optional<CreepFlow<T>> flow;
-  if (!flow.emplace(e, start, limit, within_step, shortest).is_valid()) flow.reset();
-  return flow;
+  return valid_step<CreepFlow<T>>(e, start, limit, within_step, shortest);
 }
 
-/// True if a pin follows a plate that begins to slide across without an acceleration. The equation is singular there,
-/// and creep its only solution.
+/// True if the plate begins to slide across with zero transverse acceleration, while the pin has the velocity and the
+/// acceleration of the plate. The equation is singular there, and creep is its only solution.
 template <class T>
 bool follows_plate(const SeriesEquation<T>& e, const SeriesState<T>& start) {
   if (start.v != e.plate_velocity.value || e.across.value != 0 || e.across.rate != 0) return false;
@@ -300,8 +289,9 @@ T pull_on(const SeriesEquation<T>& e, const SeriesState<T>& start) {
   return e.force.value - e.mass * e.plate_velocity.rate - e.damping * start.v -
          e.stiffness * start.x - e.skin_pull.value * start.skin;
 }
-/// Velocity relative to the plate that a pin at its friction limit has a time after the plate began to slide across, m/s.
-/// All friction balances the pull, so that the pin lags: m u' = λF w²/(2u²) as long as w is small beside u.
+/// Returns the velocity, relative to the plate, of a pin at its friction limit a time after the plate began to slide
+/// across, m/s. Friction balances the pull, and the pin lags behind the plate: m u' = λF w²/(2u²) while w is much smaller
+/// than u.
 template <class T>
 [[gnu::noinline]] T lag_at_limit(const SeriesEquation<T>& e, T pull, T time) {
   const T friction = e.load.value * (e.plate_force + e.plate_falling.excess);
@@ -310,13 +300,13 @@ template <class T>
   const T cube = T(1.5) * friction / e.mass * w * w * time / (2 * order + 1);
   return cube > 0 ? (pull < 0 ? -1 : 1) * exp(log(cube) / 3) : T(0);
 }
-/// Step of a pin at its friction limit, which the plate takes along for a short time.
+/// Returns a step in which a pin at its friction limit moves with the plate for a short time.
 template <class T>
 [[gnu::noinline]] SeriesStep<T> carried_by_plate(SeriesEquation<T> e, const SeriesState<T>& start,
                                                  T limit) {
   const T pull = pull_on(e, start);
   e.side = pull < 0 ? -1 : 1;
-  // Friction that is zero at rest is proportional to u: the sliding direction does not matter.
+  // Friction without a constant part is −λ S u along the axis, whatever the sliding direction.
   if (e.plate_force + e.plate_falling.excess == 0) return SeriesFlow<T>(e, start, limit);
   e.held = true;
   e.surface = e.plate_velocity;
@@ -325,8 +315,8 @@ template <class T>
   step.velocity.c[2] += lag_at_limit(e, pull, T(step.span()));
   return step;
 }
-/// Time for which the plate takes along a pin at its friction limit, s, at most `longest`: its friction turns by
-/// `turned_by_carrying` in it.
+/// Returns the time for which a pin at its friction limit moves with the plate, s, at most `longest`: until friction has
+/// turned by `turned_by_carrying`.
 template <class T>
 T time_carried(const SeriesEquation<T>& e, const SeriesState<T>& start, T longest) {
   const T lag = abs(lag_at_limit(e, pull_on(e, start), longest)), w = abs(e.across.at(longest));
@@ -337,7 +327,7 @@ T time_carried(const SeriesEquation<T>& e, const SeriesState<T>& start, T longes
   const T shorter = longest * exp(3 * log(over) / (order - 1));
   return std::min(longest, std::max(shorter, T(difference_error<T> * start.time)));
 }
-/// Step of a pin that follows the plate: its series diverges, and holds to rounding over a short time.
+/// Returns a step of a pin that follows the plate. The series diverges, but is exact to rounding over a short time.
 template <class T>
 SeriesStep<T> creep_from_rest(const SeriesEquation<T>& e, const SeriesState<T>& start, T limit) {
   const Real<T> natural_time = sqrt(plain(e.mass / e.stiffness));

@@ -82,10 +82,10 @@ inline InputPoint lowest_value(const Profile<double>& input, double until) {
     }
     // Lower values within the step, each found where the distance above the last one is negative.
     polynomial.c[0] -= lowest.value;
-    const double known = 4 * detail::rounding<double> * size;
+    const double error = 4 * detail::rounding<double> * size;
     for (;;) {
-      const double least = detail::lowest(polynomial, known);
-      if (!(least < -known)) break;
+      const double least = detail::lowest(polynomial, error);
+      if (!(least < -error)) break;
       lowest = {time + detail::first_zero(polynomial), lowest.value + least};
       polynomial.c[0] -= least;
     }
@@ -104,8 +104,8 @@ inline InputJump first_jump(const Profile<double>& input) {
     const Curve<double> curve = time > -never ? input.from(time) : Curve<double>{input.first(), 0};
     const double before = curve.at(next - time), after = input.from(next).value;
     const double size = curve.size(next - time) + std::abs(after);
-    const double known = 64 * detail::rounding<double> * size;
-    if (std::abs(after - before) > known) return {next, before, after};
+    const double error = 64 * detail::rounding<double> * size;
+    if (std::abs(after - before) > error) return {next, before, after};
     time = next;
   }
 }

@@ -5,7 +5,7 @@
 ///
 ///     B v = force − λ F d − k x − f y − m a,   v = x', a = v',
 ///
-/// in which a comes from the series of the preceding iteration, and the remaining residual is bounded.
+/// in which a comes from the series of the preceding iteration (slow_step.hpp).
 #pragma once
 
 #include <algorithm>
@@ -15,44 +15,14 @@
 #include <optional>
 
 #include "pindrive/numbers/limits.hpp"
-#include "pindrive/series/series_expansion.hpp"
+#include "pindrive/series/slow_step.hpp"
 
 namespace pindrive::detail {
-
-/// Step whose acceleration a comes from the series of the preceding iteration.
-template <class T>
-class IteratedStep : public SeriesExpansion<T> {
- public:
-  using typename SeriesExpansion<T>::Real;
-
- protected:
-  using SeriesExpansion<T>::N;
-
-  /// Takes a from the velocity below an order, in the time σ = τ/step.
-  void take_acceleration(Real step, int order) {
-    for (int n = 0; n < order; ++n) {
-      const T a = T(n + 1) / T(step) * this->velocity.c[n + 1];
-      changes_[n] = abs(plain(a - acceleration_[n]));
-      acceleration_[n] = a;
-    }
-  }
-  /// Change of a in the last iteration, over a part of the step.
-  Real last_change(Real part) const {
-    Real sum{0}, power{1};
-    for (int n = 0; n < N; ++n, power *= part) sum += changes_[n] * power;
-    return sum;
-  }
-
-  std::array<T, N + 1> acceleration_{};  // a, in the time σ, m/s²
-
- private:
-  std::array<Real, N> changes_{};  // changes in the last iteration
-};
 
 /// Step of an overdamped pin under constant damping; valid if the pin has the velocity of the slow motion within
 /// rounding.
 template <class T>
-class OverdampedFlow : public IteratedStep<T> {
+class OverdampedFlow : public SlowStep<T> {
  public:
   using typename SeriesExpansion<T>::Real;
   using SeriesExpansion<T>::position, SeriesExpansion<T>::velocity, SeriesExpansion<T>::skin,
@@ -78,38 +48,24 @@ class OverdampedFlow : public IteratedStep<T> {
     this->eliminated = EliminatedPart::of_inertia;
     const Real step = std::min({1 / slow_rate(e), e.input_reach(), plain(limit)});
     const Real left = plain(limit) / step;
-    acceleration_[0] = e.plate_velocity.rate;
-    Real part{1}, last{0};
+    this->set_small(0, e.plate_velocity.rate);
     this->begin(e, step);
-    bool converged = false;
-    for (int round = 0;; ++round) {
-      expand(e, start, step);
-      part = within_step ? left
-                         : std::min({this->suggested_part(), left, Real(longest_step),
-                                     e.input_reach() / step});
-      // Dual derivatives converge one iteration later.
-      if (converged) break;
-      const Real changed = plain(e.mass) * last_change(part);
-      converged = changed <= last_digit<Real> * plain(damping(e)) * this->size_of(velocity, part);
-      if (round == slow_iterations || (round > 2 && !converged && changed > last / 2)) return;
-      last = changed;
-    }
+    Real part{1};
+    const auto allowed = [&](Real part) {
+      return last_digit<Real> * plain(damping(e)) * this->size_of(velocity, part);
+    };
+    if (!this->iterate(
+            within_step, left, e.input_reach() / step, plain(e.mass), part,
+            [&] { expand(e, start, step); }, allowed))
+      return;
     this->rescale(part);
     if (!within_step && !starts_from(e, start)) return;
-    holds_ = within_step || bound(e, plain(e.mass) * last_change(part));
-    for (int tries = 0; !holds_ && tries < slow_reductions; ++tries) {
-      part *= Real(step_reduction);
-      this->rescale(Real(step_reduction));
-      holds_ = bound(e, plain(e.mass) * last_change(part));
-    }
-    if (holds_) this->trim();
+    this->hold(within_step, part,
+               [&](Real part) { return bound(e, plain(e.mass) * last_change(part)); });
   }
 
-  /// True if the pin follows the slow motion, so that the step may be used.
-  bool is_valid() const { return holds_; }
-
  private:
-  using IteratedStep<T>::acceleration_, IteratedStep<T>::last_change;
+  using SlowStep<T>::last_change, SlowStep<T>::small_;
   using SeriesExpansion<T>::N, SeriesExpansion<T>::load_, SeriesExpansion<T>::plate_velocity_;
   using typename SeriesExpansion<T>::Sums;
 
@@ -129,7 +85,7 @@ class OverdampedFlow : public IteratedStep<T> {
     for (int n = 0; n <= N; ++n) {
       const T friction = e.plate_force * side * load_[n] - slope * plate_velocity_[n];
       v[n] = (this->given_force(e, n, step) - friction - e.stiffness * x[n] -
-              e.skin_pull.value * y[n] - e.mass * acceleration_[n]) /
+              e.skin_pull.value * y[n] - e.mass * small_[n]) /
              damping(e);
       plate_force.c[n] = -friction - slope * v[n];
       speed.c[n] = side * (v[n] - plate_velocity_[n]);
@@ -169,18 +125,14 @@ class OverdampedFlow : public IteratedStep<T> {
                    (sums_of(velocity.c)[0] + abs(plain(start.v)) + forces / plain(damping(e))) +
                rounding<Real> * plain(start.time) * changes;
   }
-
-  bool holds_{false};
 };
 
 /// Returns a step of an overdamped pin; none if the pin has a fast transient.
 template <class T>
 std::optional<OverdampedFlow<T>> overdamped(const SeriesEquation<T>& e, const SeriesState<T>& start,
                                             T limit, bool within_step = false) {
-  std::optional<OverdampedFlow<T>> flow;
-  if (!OverdampedFlow<T>::stiff(e)) return flow;
-  if (!flow.emplace(e, start, limit, within_step).is_valid()) flow.reset();
-  return flow;
+  if (!OverdampedFlow<T>::stiff(e)) return {};
+  return valid_step<OverdampedFlow<T>>(e, start, limit, within_step);
 }
 
 }  // namespace pindrive::detail

@@ -236,8 +236,8 @@ class SeriesFlow : public SeriesExpansion<T> {
   /// Time at which a plate turns back on a straight path; the end of the step if the plate does not.
   Real turns_back(const SeriesEquation<T>& e) const {
     const T end(span());
-    const Real known = e.plate_velocity.rounding(end) + e.across.rounding(end);
-    return std::min(span(), plain(zero_beyond(speed, known)));
+    const Real error = e.plate_velocity.rounding(end) + e.across.rounding(end);
+    return std::min(span(), plain(zero_beyond(speed, error)));
   }
   /// Sign of the velocity along a straight path with which the step begins.
   int sense_of_path() const {
@@ -387,12 +387,12 @@ class SeriesFlow : public SeriesExpansion<T> {
                       over(speed_bound, rounding_of(from_rest(speed.c)) + of_velocity));
     if (K != 0) excess = max(excess, over(skin_bound, rounding_of(sums_of(skin.c))));
     if (!e.held) return excess;
-    const auto known = [](const FallingFriction<T>& law) {
+    const auto allowed = [](const FallingFriction<T>& law) {
       return direction_error<Real> * plain(law.excess);
     };
     return max({excess, over(turning.direction, direction_error<Real>),
-                over(turning.falling.error, known(e.plate_falling)),
-                over(turning.falling_at_finger.error, known(e.finger_falling))});
+                over(turning.falling.error, allowed(e.plate_falling)),
+                over(turning.falling_at_finger.error, allowed(e.finger_falling))});
   }
 };
 

@@ -55,9 +55,9 @@ class SeriesExpansion : public SeriesStep<T> {
     std::array<Real, 3> ratios{never, never, never};
     for (const Polynomial<T>* p : {&velocity, &skin, &speed}) {
       const auto size = [&](int n) { return abs(plain(p->c[n])); };
-      const Real known = truncation_error<Real> * std::max({size(0), size(1), size(2)});
-      for (int i = 0; i < 3 && known > 0; ++i)
-        if (size(N - 2 + i) > 0) ratios[i] = std::min(ratios[i], known / size(N - 2 + i));
+      const Real error = truncation_error<Real> * std::max({size(0), size(1), size(2)});
+      for (int i = 0; i < 3 && error > 0; ++i)
+        if (size(N - 2 + i) > 0) ratios[i] = std::min(ratios[i], error / size(N - 2 + i));
     }
     Real least = never;
     for (int i = 0; i < 3; ++i)

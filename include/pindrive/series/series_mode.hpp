@@ -151,7 +151,7 @@ class SeriesMode {
     bool plate;
     int side;
     /// Rounding of a function in the path: a path that only touches zero within it has no zero.
-    Real known{0};
+    Real error{0};
     T zero{never};  ///< time at which a polynomial becomes negative, s; infinite if never
   };
 
@@ -173,23 +173,23 @@ class SeriesMode {
       count_ = 0;
       for (const Guard<Other>& guard : others)
         list_[count_++] = {{},         guard.bound, guard.plate,
-                           guard.side, guard.known, &guard == zero ? T(0) : never};
+                           guard.side, guard.error, &guard == zero ? T(0) : never};
     }
 
    private:
     friend class SeriesMode;
     void add(Polynomial<T> path, bool at_zero, ActiveGuard bound, bool plate, int side,
-             Real known = 0) {
+             Real error = 0) {
       if (at_zero) leave_zero(path.c);
       // A step that begins beyond the guard by rounding and moves away ends at once.
       const bool speed = bound == ActiveGuard::lower || bound == ActiveGuard::upper;
-      const bool beyond = speed && !at_zero && path.c[0] < -known && path.c[1] < 0;
-      const T zero = beyond ? T(0) : zero_beyond(path, known);
-      list_[count_++] = {path, bound, plate, side, known, zero};
+      const bool beyond = speed && !at_zero && path.c[0] < -error && path.c[1] < 0;
+      const T zero = beyond ? T(0) : zero_beyond(path, error);
+      list_[count_++] = {path, bound, plate, side, error, zero};
     }
     void add(const TermSum<T>& path, bool, ActiveGuard bound, bool plate, int side,
-             Real known = 0) {
-      list_[count_++] = {path, bound, plate, side, known};
+             Real error = 0) {
+      list_[count_++] = {path, bound, plate, side, error};
     }
     /// Makes exact the start that the selection of the mode implies: coefficients of the wrong sign
     /// are rounding, or the path turns back within the rounding of its start.
@@ -213,14 +213,14 @@ class SeriesMode {
       found.add(T(-end) * along.stick_force, at.push, ActiveGuard::push, false, end);
     } else if (mode_.stuck()) {
       Path most = along.input(Line<T>{T(0), T(0)});
-      Real known{0};
+      Real error{0};
       const auto add_limit = [&](const Contact<T>& contact, const Curve<T>& load) {
         most += contact.static_limit * along.input(load);
-        known += plain(contact.static_limit) * given_rounding(load);
+        error += plain(contact.static_limit) * given_rounding(load);
       };
       if (mode_.plate == ContactState::stick) add_limit(drive_.plate, inputs_.plate_load);
       if (mode_.finger == ContactState::stick) add_limit(drive_.finger, inputs_.finger_load);
-      within(found, along.stick_force, most, at.limit, mode_.plate == ContactState::stick, known);
+      within(found, along.stick_force, most, at.limit, mode_.plate == ContactState::stick, error);
     }
     const Real followed = rounding_followed(along);
     if (is_slip(mode_.plate))
@@ -287,14 +287,14 @@ class SeriesMode {
   }
   template <class Path>
   void between(Guards<Path>& found, const Path& speed, const Branch<T>& range, ActiveGuard at,
-               bool is_plate, bool oblique, Real known) const {
+               bool is_plate, bool oblique, Real error) const {
     Path above = speed, below = T(-1) * speed;
     above += Line<T>{-range.from, T(0)};
     below += Line<T>{range.to, T(0)};
     if (!oblique || range.from > 0)  // otherwise the transverse velocity keeps the speed positive
-      found.add(above, at == ActiveGuard::lower, ActiveGuard::lower, is_plate, 0, known);
+      found.add(above, at == ActiveGuard::lower, ActiveGuard::lower, is_plate, 0, error);
     if (range.to < never)
-      found.add(below, at == ActiveGuard::upper, ActiveGuard::upper, is_plate, 0, known);
+      found.add(below, at == ActiveGuard::upper, ActiveGuard::upper, is_plate, 0, error);
   }
   template <class Along>
   void stops(Guards<typename Along::Path>& found, const Along& along, const Reached& at) const {
@@ -323,11 +323,11 @@ class SeriesMode {
   }
   template <class Path>
   void within(Guards<Path>& found, const Path& force, const Path& most, int at_limit, bool is_plate,
-              Real known = 0) const {
+              Real error = 0) const {
     for (const int side : {1, -1}) {
       Path left = T(-side) * force;
       left += most;
-      found.add(left, side == at_limit, ActiveGuard::none, is_plate, side, known);
+      found.add(left, side == at_limit, ActiveGuard::none, is_plate, side, error);
     }
   }
 

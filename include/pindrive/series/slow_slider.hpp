@@ -18,13 +18,14 @@
 #include "pindrive/model/model.hpp"
 #include "pindrive/numbers/limits.hpp"
 #include "pindrive/series/series.hpp"
+#include "pindrive/series/slow_step.hpp"
 
 namespace pindrive::detail {
 
 /// Step of a pin on a slow slider; valid if the slider has the velocity of the slow motion within
 /// rounding.
 template <class T>
-class SlowSliderFlow : public SeriesFlow<T> {
+class SlowSliderFlow : public SlowStep<T, SeriesFlow<T>> {
  public:
   using typename SeriesExpansion<T>::Real;
   using SeriesExpansion<T>::position, SeriesExpansion<T>::velocity, SeriesExpansion<T>::skin,
@@ -47,37 +48,26 @@ class SlowSliderFlow : public SeriesFlow<T> {
     this->eliminated = EliminatedPart::of_slider;
     const Real step = std::min(1 / slow_rate(e, start), e.input_reach());
     const Real left = plain(limit) / step;
-    e.stretching = stretching_.data();
-    Real part{1}, last{0};
-    bool converged = false;
-    for (int round = 0;; ++round) {
+    e.stretching = small_.data();
+    Real part{1};
+    const auto iteration = [&] {
       this->expand(e, start, step);
       follow(e, step);
-      part = within_step ? left
-                         : std::min({this->suggested_part(), left, Real(longest_step),
-                                     e.input_reach() / step});
-      // Dual derivatives converge one iteration later.
-      if (converged) break;
-      const Real changed = change(part);
-      converged = changed <= last_digit<Real> * plain(e.skin_decay) * this->size_of(skin, part);
-      if (round == slow_iterations || (round > 2 && !converged && changed > last / 2)) return;
-      last = changed;
-    }
+    };
+    const auto allowed = [&](Real part) {
+      return last_digit<Real> * plain(e.skin_decay) * this->size_of(skin, part);
+    };
+    if (!this->iterate(within_step, left, e.input_reach() / step, Real(1), part, iteration,
+                       allowed))
+      return;
     this->rescale(part);
     if (!within_step && !starts_from(start)) return;
-    holds_ = within_step || bound(e, start.time, change(part));
-    for (int tries = 0; !holds_ && tries < slow_reductions; ++tries) {
-      part *= Real(step_reduction);
-      this->rescale(Real(step_reduction));
-      holds_ = bound(e, start.time, change(part));
-    }
-    if (holds_) this->trim();
+    this->hold(within_step, part,
+               [&](Real part) { return bound(e, start.time, this->last_change(part)); });
   }
 
-  /// True if the slider follows the slow motion, so that the step may be used.
-  bool is_valid() const { return holds_; }
-
  private:
+  using SlowStep<T, SeriesFlow<T>>::small_;
   using SeriesExpansion<T>::N, SeriesExpansion<T>::load_;
   using typename SeriesExpansion<T>::Sums;
 
@@ -97,19 +87,9 @@ class SlowSliderFlow : public SeriesFlow<T> {
       const T next =
           n < N ? e.skin_factor.value * skin.c[n + 1] - e.skin_damping * velocity.c[n + 1] : T(0);
       const T grows = next / T(step);
-      const T now = T(n + 1) * (grows + e.skin_factor.rate * skin.c[n]);
-      changes_[n] = std::abs(plain(now - stretching_[n]));
-      stretching_[n] = now;
+      this->set_small(n, T(n + 1) * (grows + e.skin_factor.rate * skin.c[n]));
     }
   }
-  /// Change of (φ y − B v)' in the last iteration over a part of the step: the residual of the series of
-  /// y.
-  Real change(Real part) const {
-    Real sum{0}, power{1};
-    for (int n = 0; n <= N; ++n, power *= part) sum += changes_[n] * power;
-    return sum;
-  }
-
   /// Bounds the truncation errors; true if within rounding. The error of y is at most the restoring
   /// effect of the velocity error and of the residual of its equation, and conversely.
   bool bound(const SeriesEquation<T>& e, T time, Real missed_skin) {
@@ -154,10 +134,6 @@ class SlowSliderFlow : public SeriesFlow<T> {
     return abs(plain(start.skin - skin.c[0])) <= difference_error<Real> * sums_of(skin.c)[0] +
                                                      rounding<Real> * plain(start.time) * changes;
   }
-
-  std::array<T, N + 1> stretching_{};  // (φ y − B v)', in the time σ
-  std::array<Real, N + 1> changes_{};  // changes in the last iteration
-  bool holds_{false};
 };
 
 /// Returns a step of a pin on a slow slider; none if the slider has a fast transient.
@@ -165,10 +141,8 @@ template <class T>
 std::optional<SlowSliderFlow<T>> slow_slider(const SeriesEquation<T>& e,
                                              const SeriesState<T>& start, T limit,
                                              bool within_step = false) {
-  std::optional<SlowSliderFlow<T>> flow;
-  if (!SlowSliderFlow<T>::stiff(e, start)) return flow;
-  if (!flow.emplace(e, start, limit, within_step).is_valid()) flow.reset();
-  return flow;
+  if (!SlowSliderFlow<T>::stiff(e, start)) return {};
+  return valid_step<SlowSliderFlow<T>>(e, start, limit, within_step);
 }
 
 }  // namespace pindrive::detail

@@ -162,8 +162,8 @@ class TermSum {
       p.degree = series_order;
     }
     Real tail{0};
-    const Real known = removed_terms<Real> * plain(p.size());
-    while (p.degree > 1 && (tail += std::abs(plain(p.c[p.degree]))) <= known)
+    const Real error = removed_terms<Real> * plain(p.size());
+    while (p.degree > 1 && (tail += std::abs(plain(p.c[p.degree]))) <= error)
       p.c[p.degree--] = T(0);
     return p;
   }
@@ -206,7 +206,7 @@ class TermSum {
     // Real part of (cosine − i·sine) e^((iΩ − δ)τ), whose n-th coefficient follows from the last.
     Number real = term.cosine, imaginary = -term.sine;
     const Number decay = term.decay * step, turn = term.frequency * step;
-    const Real known = negligible * (std::abs(plain(real)) + std::abs(plain(imaginary)));
+    const Real error = negligible * (std::abs(plain(real)) + std::abs(plain(imaginary)));
     for (int n = 0; n <= order; ++n) {
       c[n] += real;
       const Real part = inverses[n];
@@ -214,7 +214,7 @@ class TermSum {
       imaginary = (turn * real - decay * imaginary) * part;
       real = turned;
       // Later ones are smaller.
-      if (n >= farthest_reach && std::abs(plain(real)) + std::abs(plain(imaginary)) < known) return;
+      if (n >= farthest_reach && std::abs(plain(real)) + std::abs(plain(imaginary)) < error) return;
     }
   }
   /// 1/(n + 1), for the orders n of a series.

@@ -202,7 +202,7 @@ class Scan(lazy.NotebookHtml):
 
     @cached_property
     def slot_room(self) -> SlotRoom | None:
-        """The least room of a pin to the end of its slot, exactly; None of no known slots."""
+        """The least room of a pin to the end of its slot; None if the array states no slots."""
         travel = self.device.array.travel
         if travel is None:
             return None
