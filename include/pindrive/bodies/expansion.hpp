@@ -147,7 +147,7 @@ class Expansion {
   const Series& sliding(std::size_t contact) const { return sliding_[contact]; }
   /// Friction force on `one`, N.
   const Series& friction(std::size_t contact) const { return friction_[contact]; }
-  /// Way of `one` beyond the place where a stop touches, m, and the rate of this way, m/s.
+  /// Distance of `one` beyond the place where a stop touches, m, and the rate of the distance, m/s.
   const Series& depth(std::size_t stop) const { return depth_[stop]; }
   const Series& approach(std::size_t stop) const { return approach_[stop]; }
   /// Force with which a stop pushes, or an elastic one would push, N.

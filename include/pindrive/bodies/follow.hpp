@@ -51,7 +51,7 @@ class Step {
   }  ///< m/s
   /// Friction force on `one`, N.
   T friction(int contact, T tau) const { return at(series_->friction(contact), tau); }
-  /// Way of `one` beyond the place where a stop touches, m, and the force with which the stop pushes, N.
+  /// Distance of `one` beyond the place where a stop touches, m, and the force with which the stop pushes, N.
   T depth(int stop, T tau) const { return at(series_->depth(stop), tau); }
   T push(int stop, T tau) const { return pushes(stop) ? at(series_->push(stop), tau) : T(0); }
   /// True of a stop that pushes.
@@ -93,7 +93,7 @@ class Step {
   Real span_;
 };
 
-/// A system under way: its state, the slip of its contacts, and its steps, whose polynomials are its motion.
+/// Simulation of a system: state, slip of the contacts, and the steps, which are polynomials.
 template <class T>
 class Following {
  public:

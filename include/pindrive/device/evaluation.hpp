@@ -22,7 +22,7 @@ struct Criteria {
   double direction_sure;   ///< smallest skin motion whose direction is recognised, m
   double direction_speed;  ///< least mean speed of that motion, m/s
   double false_line;       ///< least height of a false line over that of the line before
-  double distinct;         ///< least return between two lines, over the way back to the rest
+  double distinct;  ///< least return between two lines, over the distance to the rest position
 };
 
 /// Outcome of a printed line.
@@ -41,7 +41,7 @@ struct EvaluatedEdge {
   Place spot;       ///< m
   double command;   ///< time of the switching of the magnet, s
   double response;  ///< time of the response of the pin, s
-  double lag;       ///< way of the hand from `time` to `response`, m
+  double lag;       ///< path length of the hand from `time` to `response`, m
   double skin;      ///< motion of the skin, m
   Cue cue;
 };
@@ -56,7 +56,7 @@ struct EvaluatedLine {
   double returned;  ///< return of the pin before the next line or the stop of the hand, m
   double release;   ///< time of the break-away from the plate, s
   double settled;   ///< time from which the pin is settled, s
-  double smear;     ///< way of the hand from `release` to `settled`, m
+  double smear;     ///< path length of the hand from `release` to `settled`, m
   double overshoot, contrast;
 };
 
@@ -74,7 +74,7 @@ struct ScannedPin {
   Place spot;                      ///< offset of its spot from the hand, m
   const Motion<double>* motion;    ///< over the time since the begin of the path
   std::vector<Span> energised;     ///< times with the magnet switched on
-  std::vector<PrintedLine> lines;  ///< printed along its way
+  std::vector<PrintedLine> lines;  ///< printed along the path of the pin
 };
 
 /// Inputs of an evaluation that all pins share.

@@ -94,7 +94,7 @@ class Axis {
   Vector direction_;
 };
 
-/// Length of the way of a hand.
+/// Length of the path of a hand.
 class Way {
  public:
   explicit Way(const HandPath& path) : path_(path), lengths_(path.count) {
@@ -115,7 +115,7 @@ class Way {
   double of_stretch(std::size_t i) const { return lengths_[i + 1] - lengths_[i]; }
 
  private:
-  /// Length from the begin of a stretch, by Gauss-Legendre quadrature: exact on a straight way.
+  /// Length from the begin of a stretch, by Gauss-Legendre quadrature: exact on a straight path.
   double length(std::size_t i, double until) const {
     static constexpr double nodes[] = {0x1.77ac94f3c7344p-3, 0x1.0d129583284b4p-1,
                                        0x1.97e4ab249f41ep-1, 0x1.ebab1cb0acc66p-1};

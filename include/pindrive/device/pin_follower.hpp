@@ -16,7 +16,7 @@
 
 namespace pindrive::device {
 
-/// Pin that follows a hand of which only the way so far is known. The times at which the caller pauses do not
+/// Pin under a hand with a path that is given while the hand moves. The times at which the caller pauses do not
 /// change a bit.
 class PinFollower {
  public:

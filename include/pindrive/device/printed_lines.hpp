@@ -1,4 +1,4 @@
-/// Lines printed along the way of a pin: stretches of time with its spot on dark paper.
+/// Lines printed along the path of a pin: intervals of time with the spot on dark paper.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace pindrive::device {
 
-/// Line printed across the way of a pin.
+/// Line printed across the path of a pin.
 struct PrintedLine {
   double begin, end;  ///< time at which the spot enters and leaves the line, s
   bool whole;         ///< no begin, end or turn of the path on the line
@@ -26,7 +26,7 @@ struct PageAlongPath {
   Way way;
   std::vector<double> turnings;
 
-  /// Samples of the luminance per pixel of the way.
+  /// Samples of the luminance per pixel of the path.
   static constexpr double samples_per_pixel = 4;
   /// Parts of a stretch with bends, and bound of the speed in one over that at its ends and its middle.
   static constexpr int parts_of_bend = 16;
@@ -87,7 +87,7 @@ struct PageAlongPath {
     return found;
   }
 
-  /// Lines along the way of a spot. Adds the number of its edges to `count`, until it exceeds
+  /// Lines along the path of a spot. Adds the number of its edges to `count`, until it exceeds
   /// `most`.
   std::vector<PrintedLine> lines(Place spot, std::size_t most, std::size_t& count) const {
     const std::vector<double> at = edges(spot, most);

@@ -145,7 +145,7 @@ class ScanEvaluation {
   ScanEvaluation(const ScanEvaluation&) = delete;
   ScanEvaluation& operator=(const ScanEvaluation&) = delete;
 
-  /// Adds the lines of one pin, printed along its way.
+  /// Adds the lines printed along the path of one pin.
   void add(std::size_t pin, const PinRun& run, const Motion<double>& motion,
            std::vector<PrintedLine> printed, Evaluation& found) const {
     const ScannedPin scanned{static_cast<int>(pin), scan_->device.spots[pin], &motion,

@@ -22,7 +22,7 @@ namespace pindrive::device {
 /// Two lines at one speed: the worst of all phases of the control block's samples.
 struct LineTrial {
   double speed;               ///< m/s
-  double back;                ///< part of its way that the pin comes back between the lines
+  double back;                ///< return of the pin between the lines, over its distance from rest
   double skin;                ///< motion of the skin by the fainter line, m
   bool shown;                 ///< both lines are felt, and do not merge
   std::vector<double> until;  ///< of each phase, the time at which the second line moves the pin, s
@@ -122,7 +122,7 @@ class TwoLines {
     return 8 / std::max(slowest_rate(device_.drive), 8 / longest * frequency_);
   }
 
-  /// Part of its way back to its place of rest that the pin comes after a line.
+  /// Return of the pin after a line, over its distance from the rest position.
   double part_back(const EvaluatedLine& line) const {
     const double rest = drag_of_plate(device_.drive, dragging_friction(device_), 1);
     const double high = line.height - rest;

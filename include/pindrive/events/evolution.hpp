@@ -98,9 +98,9 @@ class Evolution {
     return event;
   }
 
-  /// Time to the next turning point of a pin over a plate that slides across, or under a friction
-  /// law that is not linear, with constant inputs; infinite elsewhere. Such a pin may oscillate for ever without an event, and a cycle is
-  /// closed at its turning points.
+  /// Time to the next turning point of a pin over a plate that slides across, or under a friction law that is not linear,
+  /// with constant inputs; infinite elsewhere. Such a pin may oscillate without events, and a cycle is detected at the
+  /// turning points.
   T turning_point() const {
     const bool turns =
         pin.plate.oblique() || !pin.drive.plate.linear() || !pin.drive.finger.linear();

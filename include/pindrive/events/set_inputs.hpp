@@ -15,7 +15,7 @@
 
 namespace pindrive::detail {
 
-/// Load from a time on, of which a falling load stops at zero, as friction never pushes.
+/// Load from a time on. A falling load ends at zero, since a contact does not pull.
 template <class T>
 Held<T> load_from(T now, const Line<T>& given) {
   Held<T> load(now, given);
@@ -51,7 +51,7 @@ Inputs<T> without_end(Inputs<T> inputs) {
   return inputs;
 }
 
-/// Inputs as a state has them set and, where they change by themselves, as they `begun`.
+/// Inputs of a state: those that were set, and those of `begun` that are functions of time.
 template <class T>
 Inputs<T> continued(const StepperState<T>& state, const Inputs<T>& begun) {
   const auto input = [](const Profile<T>& of_release, const Held<T>& set) {
@@ -84,7 +84,7 @@ T change_to(const T& given, const Held<T>& held, T now) {
   return abs(change) <= error ? change - plain(change) : change;
 }
 
-/// True if an input differs from its continuation in value or rate; what changes by itself is not set.
+/// True if an input differs from its continuation in value or rate. Functions of time cannot be set.
 template <class T>
 bool differs(const Curve<T>& given, const Profile<T>& input, T now) {
   if (input.has_breakpoints()) return false;
