@@ -121,7 +121,8 @@ class PinFollower {
     inputs.finger_load = touch.to_the(scan.finger_load.power());
     return inputs;
   }
-  /// Load by the present piece of the pull and the touch at a time, s since the begin; `turns`: at a row of the touch.
+  /// Factor of the plate friction from a time on, s since the begin: from the present piece of the pull, and from the
+  /// touch. `turns`: the touch has a row there.
   Held<double> load(const ScanInputs& scan, double time, bool turns = false) {
     const LineSince<double> touch = scan.touch(time);
     load_ = device_->pressing.load_under(coil_.pull_piece(), begin_, touch);

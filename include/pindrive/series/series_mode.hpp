@@ -25,8 +25,8 @@ class SeriesMode {
   SeriesMode(const Drive<T>& drive, const Mode& mode, const InputCurves<T>& inputs)
       : drive_(drive), mode_(mode), inputs_(inputs) {}
 
-  /// True if flow.hpp has a mode in closed form, so that no series is needed.
-  /// Under a held pin a plate of constant velocity slides across with a friction that only the load changes.
+  /// True if flow.hpp has the closed form of a mode, so that no series is needed. Oblique slip has one only under a held
+  /// pin and a plate of constant velocity, where friction is proportional to the load.
   PINDRIVE_INLINE static bool closed_form(const Drive<T>& drive, const Mode& mode,
                                           const InputCurves<T>& inputs) {
     const auto bilinear = [](ContactState state, const Contact<T>& contact, int branch,

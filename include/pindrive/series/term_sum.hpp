@@ -103,8 +103,8 @@ class TermSum {
     return later;
   }
 
-  /// Lower bound of the sum, or of its negative with a side of −1, over a length of time, s: by Taylor terms of low order,
-  /// or by the amplitude of a term that turns far in that time.
+  /// Lower bound of the sum over a length of time, s; with a side of −1, of the negative sum. Each term is bounded by its
+  /// Taylor polynomial of low order or, if its phase changes too much for that, by its amplitude.
   Real least(Real length, int side = 1) const {
     std::array<Real, degree + 1> p{};
     Real power(side), missed{0}, size{0};
