@@ -25,7 +25,7 @@ double end_of(const Series& series) {
 template <class Series>
 void expand(Series& series, const bodies::System<double>& system, const std::vector<Slip>& mode,
             const bodies::State<double>& state, double step, int order) {
-  bodies::InputsAt<double> inputs;
+  pindrive::detail::InputsAt<double> inputs;
   inputs.read(system, state.time);
   series.set(mode, inputs);
   series.read(inputs, state.time, step, order);

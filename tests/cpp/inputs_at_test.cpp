@@ -13,7 +13,7 @@ int main() {
   system.links = {{0, 1, 100, 0, 1e-3}};
   system.contacts = {{1, bodies::ground, 0.1, 0.1}};
   system.contacts[0].velocity = 0.05;
-  bodies::InputsAt<double> inputs;
+  pindrive::detail::InputsAt<double> inputs;
   inputs.read(system, 0.5);
   expect(inputs.force[0].is_zero() && inputs.force[1].value == 1 && inputs.force[1].rate == 2,
          "forces of the bodies");

@@ -19,7 +19,7 @@ Mode selected(double displacement, double plate, double finger) {
   system.links.push_back({0, bodies::ground, 100, 0.4});
   system.contacts = {{0, bodies::ground, plate, plate}, {0, bodies::ground, finger, finger}};
   pindrive::detail::ModeSelection<double> selection(system);
-  bodies::InputsAt<double> inputs;
+  pindrive::detail::InputsAt<double> inputs;
   inputs.read(system, 0);
   Mode mode{Slip::forward, Slip::forward};
   const bool found = selection.select({0, {displacement}, {0}, {0, 0}}, inputs, {0, 1}, 1e-3, mode);

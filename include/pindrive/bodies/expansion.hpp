@@ -25,7 +25,7 @@ class Expansion {
   using Real = detail::Real<T>;
   using Series = std::array<N, series_order + 2>;
   using Mode = std::vector<bodies::Slip>;
-  using Inputs = bodies::InputsAt<T>;
+  using Inputs = InputsAt<T>;
 
   explicit Expansion(const bodies::System<T>& system)
       : system_(&system),

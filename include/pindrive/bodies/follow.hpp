@@ -533,7 +533,7 @@ class Following {
 
   const System<T>* system_;
   State<T> state_;
-  InputsAt<T> inputs_;
+  detail::InputsAt<T> inputs_;
   Mode mode_;
   detail::Expansion<T> series_;
   detail::ModeSelection<T> selection_;

@@ -22,7 +22,7 @@ class ModeSelection {
  public:
   using Real = detail::Real<T>;
   using Mode = std::vector<bodies::Slip>;
-  using Inputs = bodies::InputsAt<T>;
+  using Inputs = InputsAt<T>;
 
   explicit ModeSelection(const bodies::System<T>& system)
       : system_(&system), series_(system), zero_(system.modes()) {}

@@ -90,7 +90,7 @@ class CreepFlow : public SlowStep<T> {
       if (!within_step && !starts_from(e, start)) return;
       this->rescale(part);
       this->hold(within_step, part,
-                 [&](Real part) { return bound(e, plain(e.mass) * last_change(part)); });
+                 [&](Real used) { return bound(e, plain(e.mass) * last_change(used)); });
       break;
     }
   }

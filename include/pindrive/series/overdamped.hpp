@@ -51,8 +51,8 @@ class OverdampedFlow : public SlowStep<T> {
     this->set_small(0, e.plate_velocity.rate);
     this->begin(e, step);
     Real part{1};
-    const auto allowed = [&](Real part) {
-      return last_digit<Real> * plain(damping(e)) * this->size_of(velocity, part);
+    const auto allowed = [&](Real used) {
+      return last_digit<Real> * plain(damping(e)) * this->size_of(velocity, used);
     };
     if (!this->iterate(
             within_step, left, e.input_reach() / step, plain(e.mass), part,
@@ -61,7 +61,7 @@ class OverdampedFlow : public SlowStep<T> {
     this->rescale(part);
     if (!within_step && !starts_from(e, start)) return;
     this->hold(within_step, part,
-               [&](Real part) { return bound(e, plain(e.mass) * last_change(part)); });
+               [&](Real used) { return bound(e, plain(e.mass) * last_change(used)); });
   }
 
  private:

@@ -54,8 +54,8 @@ class SlowSliderFlow : public SlowStep<T, SeriesFlow<T>> {
       this->expand(e, start, step);
       follow(e, step);
     };
-    const auto allowed = [&](Real part) {
-      return last_digit<Real> * plain(e.skin_decay) * this->size_of(skin, part);
+    const auto allowed = [&](Real used) {
+      return last_digit<Real> * plain(e.skin_decay) * this->size_of(skin, used);
     };
     if (!this->iterate(within_step, left, e.input_reach() / step, Real(1), part, iteration,
                        allowed))
@@ -63,7 +63,7 @@ class SlowSliderFlow : public SlowStep<T, SeriesFlow<T>> {
     this->rescale(part);
     if (!within_step && !starts_from(start)) return;
     this->hold(within_step, part,
-               [&](Real part) { return bound(e, start.time, this->last_change(part)); });
+               [&](Real used) { return bound(e, start.time, this->last_change(used)); });
   }
 
  private:
