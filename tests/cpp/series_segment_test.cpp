@@ -84,13 +84,15 @@ void follows() {
 
 void ends() {
   Slide slide(0.1);
-  const double first = slide.series.earliest(0.1);
+  const double first = slide.series.earliest(2, 0.1);
   expect(slide.guards.end() - slide.guards.begin() == 1 &&
              slide.guards.begin()->bound == ActiveGuard::lower && slide.guards.begin()->plate &&
              slide.guards.begin()->zero == first,
          "what ends it is its speed, that comes to a breakpoint");
   expect(near(slide.after(first)[1], 0.05, 1e-12), "... at the time at which it does");
-  expect(slide.series.earliest(first / 2) == first / 2, "a row before it comes first");
+  const double soon = first * (1 + 1e-15);
+  expect(slide.series.earliest(2, soon) == soon && slide.series.earliest(2, first / 2) == first / 2,
+         "an event at a row to rounding happens at the row, as does what would come later");
   slide.series.reset();
   const auto before = slide.state;
   slide.move(1e-3);

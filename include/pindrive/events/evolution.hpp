@@ -112,15 +112,18 @@ class Evolution {
   /// Time to the next breakpoint of an input, s.
   T until_breakpoint() const { return next_breakpoint - pin.time - time_error; }
 
-  /// Time to the earliest event, or to the breakpoint.
+  /// Time to the earliest event. An event within the time resolution of a breakpoint happens at the
+  /// breakpoint.
   T earliest(const Flow<T>& flow) {
     const T breakpoint = until_breakpoint();
-    if (series.used()) return series.earliest(breakpoint);
+    if (series.used()) return series.earliest(pin.time, breakpoint);
     const T serves = flow.oscillator.serves_for();
     const T limit = serves < breakpoint && flow.velocity.oscillates() ? serves : breakpoint;
     const T end = selected.guards.first_event(flow.oscillator, pin.time, limit, limit == breakpoint,
                                               pin.state.force_error);
-    return std::min(breakpoint, end);
+    return breakpoint < never && breakpoint - end <= rounding<T> * (pin.time + breakpoint)
+               ? breakpoint
+               : end;
   }
 
   /// Ends a segment and advances the state to the event: each guard at its zero is exactly zero

@@ -78,6 +78,8 @@ class SeriesSegment {
       guards.add_known(ends ? end : since + guard.zero, guard.bound, guard.plate, guard.side,
                        segment.mode.stuck() && !held && &guard - paths.begin() < 2);
     }
+    const T turns = abs(equation.across.rate) + abs(equation.plate_velocity.rate);
+    const T left = abs(equation.across.at(span)) + abs(equation.plate_velocity.at(span));
     // A function has the rounding of its terms.
     const auto rounding_at = [&](T tau) {
       T sum{0};
@@ -85,6 +87,8 @@ class SeriesSegment {
         if (!input->straight()) sum += input->rounding(tau);
       return sum;
     };
+    stops_ = equation.held && equation.side == 0 &&
+             left <= difference_error<T> * (segment.begin + span) * turns + rounding_at(span);
     first_ = guards.earliest_known(end);
     // An immediate end may be deferred to the end of the step, as to a breakpoint.
     const bool ends_early = end < (1 - rounding<T>)*span;
@@ -127,7 +131,14 @@ class SeriesSegment {
   }
 
   /// Time to the earliest event, the end of the step or the breakpoint.
-  T earliest(T breakpoint) const { return std::min(first_, breakpoint); }
+  ///
+  /// An event within the time resolution of the breakpoint happens there. So does an event a few
+  /// resolutions before a breakpoint at which the plate comes to rest in both directions: the
+  /// sliding direction under a pin that is held is undetermined there.
+  T earliest(T since, T breakpoint) const {
+    const T resolution = (stops_ ? before_rest<T> : rounding<T>)*(since + breakpoint);
+    return breakpoint < never && breakpoint - first_ <= resolution ? breakpoint : first_;
+  }
 
   /// Time at which a moving pin turns; infinite if the pin does not turn within the step.
   T turning_point() const {
@@ -250,7 +261,8 @@ class SeriesSegment {
 
   std::optional<SeriesStep<T>> step_;  ///< the segment or, of a driven motion, its last step
   std::optional<DrivenMotion<T>> driven_;
-  T first_{0};  ///< time to the zero of the first guard, or to the end of the step, s
+  bool stops_{false};  ///< the plate comes to rest under a pin that is held, at the next breakpoint
+  T first_{0};         ///< time to the zero of the first guard, or to the end of the step, s
 };
 
 }  // namespace pindrive::detail

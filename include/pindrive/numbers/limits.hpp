@@ -36,6 +36,12 @@ inline constexpr T difference_error = 4 * rounding<T>;
 template <class T>
 inline constexpr T least_across = 64 * rounding<T>;
 
+/// Relative time before a breakpoint at which an oblique plate comes to rest, within which an event
+/// belongs to the breakpoint: the sliding direction under a held pin is undetermined there. Without
+/// it: fuzz --replay fails.
+template <class T>
+inline constexpr T before_rest = 128 * rounding<T>;
+
 /// Relative time of the first stick of skin that has no first mode as its load grows from zero:
 /// some time resolutions, for each period in which the load grows by a half. Without it: fuzz
 /// --replay fails.
