@@ -48,9 +48,8 @@ void nearest_surface() {
   guards.add(slipping(0.1, 0), segment, false);
   guards.add(slipping(0.1, 0.3), segment, true);
   expect(count_of(guards) == 2, "one above and one below are both kept");
-  expect(
-      near(guards.earliest(segment.flow.oscillator, 0.0, never), std::asin(1.0) / 100, 1e-14),
-      "what the pin never reaches ends nothing");
+  expect(near(guards.earliest(segment.flow.oscillator, 0.0, never), std::asin(1.0) / 100, 1e-14),
+         "what the pin never reaches ends nothing");
 
   guards.clear();
   guards.add(slipping(0.1, 0), segment, false);

@@ -227,7 +227,7 @@ class Selection {
     return of.template coefficients<beginning_orders>();
   }
   /// True if the force of a contact depends on its load, or on the position of the pin, alone.
-  static bool follows_plate_load(const ContactPoint& side) {
+  static bool follows_load(const ContactPoint& side) {
     const Branch<T> range = side.branch();
     const bool falls = range.falling.present() && range.falling.excess != 0;
     return !side.oblique() && (!side.sliding() || (range.slope == 0 && !falls));
@@ -245,7 +245,7 @@ class Selection {
   /// the force of the other contact depends on its speed, the third coefficient alone is known, and only while that
   /// contact does not accelerate.
   T later_margin(const ContactPoint& on, const ContactPoint& other, T side) const {
-    const bool any_order = follows_plate_load(other);
+    const bool any_order = follows_load(other);
     const T relative = on.surface.rate - other.surface.rate;
     if (!any_order && (other.oblique() || relative != 0 || !other.load.steady())) return T(0);
     const Coefficients surface = coefficients(on.surface), force = coefficients(pin_.force),
