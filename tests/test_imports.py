@@ -1,7 +1,7 @@
 """Imports between the files of the package: no circles, ordered packages, used names.
 
-What counts is what runs as a module is imported: types may come from anywhere, and a result may
-reach its figure from inside a method.
+For circles, what runs as a module is imported counts. The order of the packages also holds for
+imports inside of functions and for types: a result reaches its figure by `pindrive.views`.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from collections import Counter
 from collections.abc import Iterator
 from functools import cache
 from graphlib import CycleError, TopologicalSorter
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -45,18 +46,19 @@ def run_at_import(node: ast.AST) -> Iterator[ast.AST]:
         yield from run_at_import(child)
 
 
-def imports(files: dict[str, str]) -> Graph:
+def imports(files: dict[str, str], everywhere: bool = False) -> Graph:
     """Return the imports of each module among the given modules.
 
     Args:
         files: the text of each module; a package is named as the package.
+        everywhere: with those inside of functions and of types.
     """
     packages = {name.rpartition(".")[0] for name in files}
     graph: Graph = {}
     for module, text in files.items():
         package = module if module in packages else module.rpartition(".")[0]
         found = set()
-        for node in run_at_import(ast.parse(text)):
+        for node in (ast.walk if everywhere else run_at_import)(ast.parse(text)):
             if isinstance(node, ast.Import):
                 found |= {name.name for name in node.names}
             elif isinstance(node, ast.ImportFrom):
@@ -108,10 +110,11 @@ def upward(graph: Graph) -> list[tuple[str, str]]:
 
 
 @cache
-def package() -> Graph:
+def package(everywhere: bool = False) -> Graph:
     paths = {p: p.relative_to(SOURCE).with_suffix("").parts for p in SOURCE.rglob("*.py")}
     names = {p: ".".join(parts).removesuffix(".__init__") for p, parts in paths.items()}
-    return without_own(imports({name: p.read_text("utf-8") for p, name in names.items()}))
+    files = {name: p.read_text("utf-8") for p, name in names.items()}
+    return without_own(imports(files, everywhere))
 
 
 def test_no_file_imports_a_file_that_imports_it() -> None:
@@ -119,7 +122,22 @@ def test_no_file_imports_a_file_that_imports_it() -> None:
 
 
 def test_a_package_imports_from_those_before_it_alone() -> None:
-    assert upward(package()) == []
+    assert upward(package(everywhere=True)) == []
+
+
+def test_each_view_belongs_to_a_method_and_has_a_function() -> None:
+    classes = {
+        node.name: {item.name for item in node.body if isinstance(item, ast.FunctionDef)}
+        for path in SOURCE.rglob("*.py")
+        for node in ast.parse(path.read_text("utf-8")).body
+        if isinstance(node, ast.ClassDef)
+    }
+    for package in ("plot", "files", "evaluation"):
+        for method, place in import_module(f"pindrive.{package}.views").VIEWS.items():
+            owner, _, name = method.partition(".")
+            assert name in classes[owner], method
+            module, _, function = place.partition(":")
+            assert callable(getattr(import_module(f"pindrive.{package}.{module}"), function))
 
 
 def test_every_package_has_its_place_in_the_order() -> None:

@@ -15,7 +15,6 @@ __all__ = [
     "ImageDraw",
     "ImageFont",
     "ImageOps",
-    "NotebookHtml",
     "features",
     "ft2font",
     "h5netcdf",
@@ -127,14 +126,3 @@ def _loaded(name: str) -> ModuleType:
             raise ModuleNotFoundError(reason, name=error.name) from None
         raise
     return sys.modules[name]
-
-
-class NotebookHtml:
-    """A result that a notebook shows as a table with units and a small picture."""
-
-    __slots__ = ()
-
-    def _repr_html_(self) -> str:
-        from pindrive.plot.notebook import html
-
-        return html(self)

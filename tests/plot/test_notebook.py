@@ -54,7 +54,7 @@ def results(motion: pd.Motion, tmp_path_factory: pytest.TempPathFactory) -> dict
 
 
 ROOT = Path(__file__).parents[2]
-MADE = re.compile(r"^class (\w+)\(lazy\.NotebookHtml", re.M)
+MADE = re.compile(r"^class (\w+)\(NotebookHtml", re.M)
 SPEEDS = np.linspace(0.0, 0.2, 30)
 READER = EXAMPLE.parent / "tactile-reader.toml"
 SYSTEM = EXAMPLE.parent / "two-pins-system.toml"

@@ -13,7 +13,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pindrive import _core, lazy
+from pindrive import _core
 from pindrive.bodies.core_numbers import stop_ends
 from pindrive.bodies.ending import ENDINGS, SystemEnding, ending_of, numbers_of_ending
 from pindrive.bodies.motion_parts import (
@@ -32,6 +32,7 @@ from pindrive.quantities.refusal import refusal
 from pindrive.quantities.status import Side, Status
 from pindrive.quantities.table import default
 from pindrive.quantities.value import concise
+from pindrive.views import NotebookHtml, csv_file, figure
 
 Kind = Literal["stick", "slip", "reverse", "stop", "leave"]
 
@@ -120,7 +121,7 @@ class SystemCertificate:
         )
 
 
-class SystemMotion(lazy.NotebookHtml):
+class SystemMotion(NotebookHtml):
     """Exact motion of a system of several bodies, made by `System.simulate`.
 
     `motion["pin"]` is the motion of a body, `motion.contact("pin", "hand")` that of a contact.
@@ -377,9 +378,7 @@ class SystemMotion(lazy.NotebookHtml):
 
     def plot(self) -> mpl_figure.Figure:
         """Positions of the bodies, forces and slip of the contacts over time, as a figure."""
-        from pindrive.plot.system import plot_system
-
-        return plot_system(self)
+        return figure(self, "plot")
 
     def to_dataset(self, times: ArrayLike | None = None) -> xr.Dataset:
         """The motion over time, its events and its numbers, with units, as an xarray Dataset.
@@ -412,9 +411,7 @@ class SystemMotion(lazy.NotebookHtml):
             ValueError: A rate out of its range; too many samples; a file that is there and holds
                 something else, or one that cannot be written.
         """
-        from pindrive.files.system_export import to_csv
-
-        return to_csv(self, path, rate)
+        return csv_file(self, "to_csv", path, rate)
 
 
 def _in_loops(between: dict[str, tuple[str, str]]) -> set[str]:

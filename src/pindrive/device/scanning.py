@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import pindrive
-from pindrive import _core, lazy
+from pindrive import _core
 from pindrive.device.compliant_hand import HandMotion, follow_hand
 from pindrive.device.device import Criteria, Device
 from pindrive.device.geometry import Gap, smallest_gaps
@@ -47,6 +47,7 @@ from pindrive.quantities.refusal import refusal
 from pindrive.quantities.status import Status
 from pindrive.quantities.table import check, default
 from pindrive.quantities.value import equal_by_value
+from pindrive.views import NotebookHtml, csv_file, evaluation, figure
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +62,7 @@ class SlotRoom:
 
 @equal_by_value
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Scan(lazy.NotebookHtml):
+class Scan(NotebookHtml):
     """Motion of a device that a hand moved over a scene."""
 
     inputs: ScanInputs
@@ -119,9 +120,7 @@ class Scan(lazy.NotebookHtml):
             A `pindrive.evaluation.Evaluation`: lines shown and missed, their lag and smear.
         """
         chosen = self.criteria if criteria is None else criteria
-        from pindrive.evaluation.perception import evaluate
-
-        return evaluate(self, chosen)
+        return evaluation(self, "evaluate", chosen)
 
     def plot(self, pin: int | None = None) -> mpl_figure.Figure:
         """Plot the scanned page and the motions of the pins.
@@ -140,11 +139,9 @@ class Scan(lazy.NotebookHtml):
         Raises:
             ValueError: Nothing could slow the hand.
         """
-        from pindrive.plot.hand import plot_hand
-
         if self.hand is None:
             raise ValueError(refusal("the device", "one with a hand, [hand]", "one without"))
-        return plot_hand(self, self.hand)
+        return figure(self, "plot_hand", self.hand)
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
@@ -253,9 +250,7 @@ class Scan(lazy.NotebookHtml):
         Raises:
             ValueError: The samples of all pins exceed their budget, as for `Motion.to_csv`.
         """
-        from pindrive.files.export import scan_to_csv
-
-        return scan_to_csv(self, path, rate)
+        return csv_file(self, "to_csv", path, rate)
 
     def to_dataset(self, times: ArrayLike | None = None) -> xr.Dataset:
         """All pins over time, their events and commands, the hand and the scene, with units.

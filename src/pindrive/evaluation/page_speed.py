@@ -11,7 +11,6 @@ from typing import Final
 import numpy as np
 
 import pindrive
-from pindrive import lazy
 from pindrive.device.device import Criteria, Device
 from pindrive.device.page_description import Page
 from pindrive.device.pin_scan import Progress
@@ -23,6 +22,7 @@ from pindrive.lazy import mpl_figure, xr
 from pindrive.quantities.status import Status
 from pindrive.quantities.table import QUANTITIES, default
 from pindrive.quantities.value import equal_by_value
+from pindrive.views import NotebookHtml, figure
 
 TRIED: Final = 12
 """Speeds in the grid."""
@@ -36,7 +36,7 @@ COUNTED: Final = ("crossed", "shown", "unsettled", "sure", "false")
 
 @equal_by_value
 @dataclass(frozen=True, eq=False, repr=False)
-class PageSpeeds(lazy.NotebookHtml):
+class PageSpeeds(NotebookHtml):
     """Fate of the lines of a page, by the speed of the hand.
 
     Attributes:
@@ -90,9 +90,7 @@ class PageSpeeds(lazy.NotebookHtml):
 
     def plot(self, device: str = "") -> mpl_figure.Figure:
         """The part of the lines shown over the speed; `device` is a name for the title."""
-        from pindrive.plot.resolution import plot_page_speeds
-
-        return plot_page_speeds(self, device)
+        return figure(self, "plot", device)
 
 
 def all_shown(counts: Mapping[str, int]) -> bool:

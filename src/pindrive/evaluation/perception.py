@@ -39,7 +39,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from pindrive import _core, lazy
+from pindrive import _core
 from pindrive.device.device import Criteria
 from pindrive.device.scanning import Scan
 from pindrive.evaluation.line_crossings import (
@@ -57,6 +57,7 @@ from pindrive.quantities.results import BAD_WHEN_SMALL, EDGES, HAND_PATH, LINE, 
 from pindrive.quantities.status import Status
 from pindrive.quantities.table import QUANTITIES
 from pindrive.quantities.value import equal_by_value
+from pindrive.views import NotebookHtml, figure
 
 Columns = Mapping[str, NDArray[Any]]
 
@@ -71,7 +72,7 @@ _FALSE_LINE: Final = (
 
 @equal_by_value
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Evaluation(lazy.NotebookHtml):
+class Evaluation(NotebookHtml):
     """Evaluation of a scan."""
 
     scan: Scan
@@ -123,9 +124,7 @@ class Evaluation(lazy.NotebookHtml):
 
     def plot(self, pin: int | None = None) -> mpl_figure.Figure:
         """Plot the scan and one pin, from 0, as `Scan.plot`."""
-        from pindrive.plot.scan import plot_scan
-
-        return plot_scan(self, pin)
+        return figure(self, "plot", pin)
 
     def columns(self) -> dict[str, NDArray[Any]]:
         """Each line under each pin, by the names of datasets and files; arrays of shape (n,), SI.

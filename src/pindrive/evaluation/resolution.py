@@ -35,7 +35,7 @@ from typing import Any, Final, overload
 
 import numpy as np
 
-from pindrive import _core, lazy
+from pindrive import _core
 from pindrive.device.controller import ControlBlock
 from pindrive.device.device import Criteria, Device
 from pindrive.device.pin_scan import Progress
@@ -47,6 +47,7 @@ from pindrive.quantities.refusal import refusal
 from pindrive.quantities.status import SimulationError, Status
 from pindrive.quantities.table import QUANTITIES, check, default
 from pindrive.quantities.value import concise, equal_by_value
+from pindrive.views import NotebookHtml, figure
 
 Band = tuple[float, float]
 
@@ -143,7 +144,7 @@ class SpeedLimit:
 
 @equal_by_value
 @dataclass(frozen=True, eq=False, repr=False)
-class SpeedLimits(lazy.NotebookHtml, Sequence[SpeedLimit]):
+class SpeedLimits(NotebookHtml, Sequence[SpeedLimit]):
     """Largest hand speeds over two lines of several pitches; a sequence of limits.
 
     Attributes:
@@ -179,9 +180,7 @@ class SpeedLimits(lazy.NotebookHtml, Sequence[SpeedLimit]):
 
     def plot(self, device: str = "") -> mpl_figure.Figure:
         """The speeds over the pitch; `device` is a name for the title."""
-        from pindrive.plot.resolution import plot_speeds
-
-        return plot_speeds(self.limits, self.criteria, device)
+        return figure(self, "plot", self.criteria, device)
 
     def to_dataset(self) -> xr.Dataset:
         """The speeds and the width of the lines over `speed_pitch`, with units."""

@@ -11,13 +11,13 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pindrive import lazy
 from pindrive.lazy import mpl_figure, optimize, xr
 from pindrive.motion.drive import Contact
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.refusal import check_whole, refusal
 from pindrive.quantities.status import Status
 from pindrive.quantities.value import equal_by_value
+from pindrive.views import NotebookHtml, figure
 
 Array = NDArray[np.float64]
 
@@ -82,7 +82,7 @@ class FittedLaw:
 
 @equal_by_value
 @dataclass(frozen=True, eq=False, repr=False)
-class FrictionCurve(lazy.NotebookHtml):
+class FrictionCurve(NotebookHtml):
     """A friction curve: rows (speed, force), linear between them and beyond the last.
 
     Attributes:
@@ -189,9 +189,7 @@ class FrictionCurve(lazy.NotebookHtml):
 
     def plot(self) -> mpl_figure.Figure:
         """Measured forces, the curve and its rows over speed, and AICc over their number."""
-        from pindrive.plot.fit import plot_friction_curve
-
-        return plot_friction_curve(self)
+        return figure(self, "plot")
 
     def to_dataset(self) -> xr.Dataset:
         """Rows over `row`, AICc over `row_count`, and the data over `sample`, SI."""

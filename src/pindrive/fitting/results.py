@@ -11,7 +11,6 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pindrive import lazy
 from pindrive.fitting.identifiability import Identifiability
 from pindrive.fitting.least_squares import Problem
 from pindrive.fitting.model import Model
@@ -30,6 +29,7 @@ from pindrive.quantities.quantity import counted, significant
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.status import Status
 from pindrive.quantities.value import concise, equal_by_value
+from pindrive.views import NotebookHtml, figure
 
 Array = NDArray[np.float64]
 
@@ -95,7 +95,7 @@ class Estimate:
 
 @equal_by_value
 @dataclass(frozen=True, eq=False, repr=False)
-class Fit(lazy.NotebookHtml):
+class Fit(NotebookHtml):
     """Result of `fit`.
 
     Attributes:
@@ -330,9 +330,7 @@ class Fit(lazy.NotebookHtml):
 
     def plot(self) -> mpl_figure.Figure:
         """Recordings and fit, residuals, and the profiles, as a figure."""
-        from pindrive.plot.fit import plot_fit
-
-        return plot_fit(self)
+        return figure(self, "plot")
 
     def to_dataset(self) -> xr.Dataset:
         """Return the whole result as data.
@@ -398,7 +396,7 @@ class Fit(lazy.NotebookHtml):
 
 @equal_by_value
 @dataclass(frozen=True, eq=False, repr=False)
-class ModelComparison(lazy.NotebookHtml):
+class ModelComparison(NotebookHtml):
     """Fits of several friction laws to equal recordings.
 
     Attributes:
@@ -441,9 +439,7 @@ class ModelComparison(lazy.NotebookHtml):
 
     def plot(self) -> mpl_figure.Figure:
         """The residuals of each law over time, as a figure."""
-        from pindrive.plot.fit import plot_comparison
-
-        return plot_comparison(self)
+        return figure(self, "plot")
 
     def to_dataset(self) -> xr.Dataset:
         """AICc, its excess over the best, weights and the count of parameters over `law`."""

@@ -14,7 +14,7 @@ from typing import Any, Final, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pindrive import _core, lazy
+from pindrive import _core
 from pindrive.lazy import mpl_figure, xr
 from pindrive.motion.core_numbers import DURATION, CoreNumbers
 from pindrive.motion.drive import Drive, law_values
@@ -48,6 +48,7 @@ from pindrive.quantities.refusal import refusal
 from pindrive.quantities.results import ENDING, ENERGY, TRANSIENT
 from pindrive.quantities.status import End, Side, Status
 from pindrive.quantities.table import check, default
+from pindrive.views import NotebookHtml, csv_file, figure
 
 __all__ = ["Crossings", "Event", "Extrema", "Motion", "Segment"]
 
@@ -60,7 +61,7 @@ _ENERGY: Final = tuple(f"energy.{field.name}" for field in fields(Ledger))
 _READ: Final = itemgetter(*_NAMES)
 
 
-class Motion(lazy.NotebookHtml):
+class Motion(NotebookHtml):
     """Exact motion of a pin after its release, made by `simulate`.
 
     Attributes:
@@ -380,9 +381,7 @@ class Motion(lazy.NotebookHtml):
         Returns:
             A figure of 180 mm by 125 or, with skin, 150 mm; `figure.savefig(FILE)` writes it.
         """
-        from pindrive.plot.motion import plot_motion
-
-        return plot_motion(self)
+        return figure(self, "plot")
 
     # ---- for other programs ----------------------------------------------------------------------
 
@@ -429,9 +428,7 @@ class Motion(lazy.NotebookHtml):
             ValueError: A rate out of its range; more than 10 000 000 samples; a file that is there
                 and holds something else, or one that cannot be written.
         """
-        from pindrive.files.export import to_csv
-
-        return to_csv(self, path, rate)
+        return csv_file(self, "to_csv", path, rate)
 
     def inputs(self) -> dict[str, float | str | tuple[tuple[float, float], ...]]:
         """Simulated inputs, SI, by the names of the table of quantities.

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import pindrive
-from pindrive import _core, lazy
+from pindrive import _core
 from pindrive.lazy import mpl_figure, xr
 from pindrive.motion.core_numbers import (
     PLACES,
@@ -41,6 +41,7 @@ from pindrive.quantities.refusal import refusal
 from pindrive.quantities.results import SERIES
 from pindrive.quantities.status import Side, Status
 from pindrive.quantities.table import QUANTITIES
+from pindrive.views import NotebookHtml, figure
 
 __all__ = ["Sensitivity"]
 
@@ -69,7 +70,7 @@ _ROW = re.compile(
 )
 
 
-class Sensitivity(lazy.NotebookHtml):
+class Sensitivity(NotebookHtml):
     """Derivatives of a motion, SI units of the quantity per SI unit of the parameter.
 
     Attributes:
@@ -113,9 +114,7 @@ class Sensitivity(lazy.NotebookHtml):
 
     def plot(self) -> mpl_figure.Figure:
         """Plot the change of the pin's position with each parameter, over time."""
-        from pindrive.plot.sensitivity import plot_motion_sensitivity
-
-        return plot_motion_sensitivity(self)
+        return figure(self, "plot")
 
     def to_dataset(self, times: ArrayLike | None = None) -> xr.Dataset:
         """All derivatives with their units.

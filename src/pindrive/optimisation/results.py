@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from pindrive import lazy
 from pindrive.files.device import DeviceFile
 from pindrive.files.device_text import device_text
 from pindrive.files.keys import NUMERIC_KEYS, variable
@@ -27,6 +26,7 @@ from pindrive.quantities.value import concise, equal_by_value
 from pindrive.study.distributions import with_links
 from pindrive.study.evaluate import follow
 from pindrive.study.outputs import NUMBERS, Constraint, Share, attributes
+from pindrive.views import NotebookHtml, figure
 
 if TYPE_CHECKING:
     from pindrive.optimisation.design_space import DesignSpace
@@ -178,7 +178,7 @@ class SteadyDesign:
 
 @equal_by_value
 @dataclass(frozen=True, eq=False, repr=False)
-class Design(lazy.NotebookHtml):
+class Design(NotebookHtml):
     """Result of `optimise`.
 
     Attributes:
@@ -267,9 +267,7 @@ class Design(lazy.NotebookHtml):
 
     def plot(self) -> mpl_figure.Figure:
         """The front, and the maps of the feasible region around the design, as a figure."""
-        from pindrive.plot.design import plot_design
-
-        return plot_design(self)
+        return figure(self, "plot")
 
     def to_dataset(self) -> xr.Dataset:
         """Return the whole result as data.

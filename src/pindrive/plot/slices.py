@@ -19,12 +19,12 @@ from pindrive.study.slices import QUANTITY, Slice, axis_label, value, values, wo
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
-    from pathlib import Path
 
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.collections import QuadMesh
 
+    from pindrive.study.runner import Sweep
     from pindrive.study.slices import Panel
 
 _HATCH: Final[dict[str, Any]] = {
@@ -81,9 +81,9 @@ def plot_study(
     return figure
 
 
-def plot_sweep(path: Path) -> Figure:
+def plot_sweep(sweep: Sweep) -> Figure:
     """Draw the file of a complete sweep: its usual number over the first two keys that vary."""
-    with Slice(path) as view:
+    with Slice(sweep.path) as view:
         return plot_study(view, view.usual_numbers(), *view.axes(None, None, {}), {})
 
 

@@ -10,7 +10,6 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from pindrive import lazy
 from pindrive.files.keys import NAMES, NUMERIC_KEYS, variable
 from pindrive.lazy import mpl_figure, xr
 from pindrive.motion.motion import Motion
@@ -23,6 +22,7 @@ from pindrive.quantities.table import QUANTITIES
 from pindrive.quantities.value import equal_by_value
 from pindrive.study.distributions import Even, Linked, Listed, with_links
 from pindrive.study.study import Study
+from pindrive.views import NotebookHtml, figure
 
 Progress = Callable[[int, int], None]
 
@@ -89,7 +89,7 @@ class BranchChange:
 
 @equal_by_value
 @dataclass(frozen=True, kw_only=True, repr=False)
-class Bifurcation(lazy.NotebookHtml):
+class Bifurcation(NotebookHtml):
     """Result of `bifurcation`."""
 
     key: str
@@ -117,9 +117,7 @@ class Bifurcation(lazy.NotebookHtml):
 
     def plot(self) -> mpl_figure.Figure:
         """Plot the turning points over the parameter, up and down."""
-        from pindrive.plot.bifurcation import plot_bifurcation
-
-        return plot_bifurcation(self)
+        return figure(self, "plot")
 
     def to_dataset(self) -> xr.Dataset:
         """Return all motions.

@@ -9,7 +9,6 @@ from typing import Final
 
 import numpy as np
 
-from pindrive import lazy
 from pindrive.files.keys import variable
 from pindrive.lazy import mpl_figure, xr
 from pindrive.motion.friction import COEFFICIENTS
@@ -20,6 +19,7 @@ from pindrive.quantities.value import equal_by_value
 from pindrive.study.design import ranges_of
 from pindrive.study.distributions import Linked, base_value, exponents
 from pindrive.study.study import Study
+from pindrive.views import NotebookHtml, figure
 
 _WITHOUT: Final = ("motion.duration", "motion.settling_band")
 """Keys along which the core has no derivatives."""
@@ -27,7 +27,7 @@ _WITHOUT: Final = ("motion.duration", "motion.settling_band")
 
 @equal_by_value
 @dataclass(frozen=True, slots=True, repr=False)
-class Elasticities(lazy.NotebookHtml):
+class Elasticities(NotebookHtml):
     """Relative change of each number, in per cent, when a key grows by one per cent."""
 
     keys: tuple[str, ...]
@@ -54,9 +54,7 @@ class Elasticities(lazy.NotebookHtml):
 
     def plot(self) -> mpl_figure.Figure:
         """The elasticities as a table of colours, numbers down and keys across."""
-        from pindrive.plot.sensitivity import plot_elasticities
-
-        return plot_elasticities(self)
+        return figure(self, "plot")
 
     def to_dataset(self) -> xr.Dataset:
         """The elasticities as data.

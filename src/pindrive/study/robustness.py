@@ -9,7 +9,6 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from pindrive import lazy
 from pindrive.device.pin_scan import Progress
 from pindrive.files.keys import NUMERIC_KEYS, variable
 from pindrive.lazy import mpl_figure, optimize, xr
@@ -24,6 +23,7 @@ from pindrive.study.distributions import Sample
 from pindrive.study.evaluate import RefusedPoints, evaluate, evaluate_all, exist, follow
 from pindrive.study.outputs import NUMBERS, Constraint, Share, attributes
 from pindrive.study.study import Study
+from pindrive.views import NotebookHtml, figure
 
 USUAL_COUNT: Final = 100_000
 USUAL_COUNT_OF_SCANS: Final = 1000
@@ -56,7 +56,7 @@ class WorstCase:
 
 @equal_by_value
 @dataclass(frozen=True, slots=True, repr=False)
-class Robustness(lazy.NotebookHtml):
+class Robustness(NotebookHtml):
     """Result of `robustness`."""
 
     ranges: Ranges
@@ -94,15 +94,11 @@ class Robustness(lazy.NotebookHtml):
 
     def plot(self) -> mpl_figure.Figure:
         """Plot the distributions of the watched numbers with the limits."""
-        from pindrive.plot.robustness import plot_robustness
-
-        return plot_robustness(self, self.name)
+        return figure(self, "plot", self.name)
 
     def plot_designs(self) -> mpl_figure.Figure:
         """Plot the drawn values of the designs that meet and that violate the specification."""
-        from pindrive.plot.robustness import plot_designs
-
-        return plot_designs(self, self.name)
+        return figure(self, "plot_designs", self.name)
 
     def to_dataset(self) -> xr.Dataset:
         """Return the designs with their drawn values and numbers, and the yield.

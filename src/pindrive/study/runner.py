@@ -15,7 +15,6 @@ from typing import Any
 
 import numpy as np
 
-from pindrive import lazy
 from pindrive.device.pin_scan import Progress
 from pindrive.files.keys import variable
 from pindrive.files.output import (
@@ -44,13 +43,14 @@ from pindrive.study.store import (
 )
 from pindrive.study.study import Study
 from pindrive.study.workers import check_installed, cluster_executor
+from pindrive.views import NotebookHtml, figure
 
 Work = Callable[["Study", list[int]], Iterator[tuple[int, list[Piece]]]]
 """Computes chunks of a study, and yields each when it is done, in any order."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class Sweep(lazy.NotebookHtml):
+class Sweep(NotebookHtml):
     """Result of `sweep`, and its file."""
 
     path: Path
@@ -81,9 +81,7 @@ class Sweep(lazy.NotebookHtml):
         Raises:
             ValueError: The sweep is not complete, or holds a single point.
         """
-        from pindrive.plot.slices import plot_sweep
-
-        return plot_sweep(self.path)
+        return figure(self, "plot")
 
     def to_dataset(self) -> xr.Dataset:
         """The points, as `Study.run` gives them; read from the file when they are needed."""

@@ -9,7 +9,6 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from pindrive import lazy
 from pindrive.device.pin_scan import Progress
 from pindrive.lazy import mpl_figure, qmc, xr
 from pindrive.quantities import budgets
@@ -23,6 +22,7 @@ from pindrive.study.evaluate import RefusedPoints, evaluate_all, exist
 from pindrive.study.local_sensitivity import Elasticities, elasticities
 from pindrive.study.outputs import LEDGER, MEASURED, SCAN_MEASURED, known_output
 from pindrive.study.study import Study
+from pindrive.views import NotebookHtml, figure
 
 Function = Callable[[NDArray[np.float64]], Mapping[str, NDArray[np.float64]]]
 """Numbers at points given by columns (keys, n): arrays of shape (n,)."""
@@ -169,7 +169,7 @@ USUAL_ROWS_OF_SCANS: Final = 256
 
 @equal_by_value
 @dataclass(frozen=True, slots=True, repr=False)
-class SobolIndices(lazy.NotebookHtml):
+class SobolIndices(NotebookHtml):
     """Sobol' indices of each key for each number, optionally with elasticities."""
 
     keys: tuple[str, ...]
@@ -197,9 +197,7 @@ class SobolIndices(lazy.NotebookHtml):
 
     def plot(self) -> mpl_figure.Figure:
         """The indices as bars, numbers down and keys across, as a figure that a notebook shows."""
-        from pindrive.plot.sensitivity import plot_sobol_indices
-
-        return plot_sobol_indices(self, self.name)
+        return figure(self, "plot", self.name)
 
     def to_dataset(self) -> xr.Dataset:
         """The indices with their 95 % confidence intervals.
