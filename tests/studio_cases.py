@@ -135,6 +135,7 @@ def compare(found: dict[str, Any], motion: Motion) -> None:
     time at which a decay is known to be one.
     """
     assert found["status"] == int(motion.status)
+    assert found["end"] == motion.ending.end.name
     if motion.drive.finger.damping:
         t = doubles(found["times"])
         for page, true in zip(
@@ -144,7 +145,6 @@ def compare(found: dict[str, Any], motion: Motion) -> None:
         ):
             np.testing.assert_allclose(page, true, rtol=0.0, atol=1e-9 * np.abs(true).max())
         return
-    assert found["end"] == motion.ending.end.name
     ends = [end for segment in motion.segments for end in (segment.begin, segment.end)]
     np.testing.assert_array_equal(doubles(found["segments"]), ends)
     numbers = motion.numbers()

@@ -147,11 +147,28 @@ void motion() {
   expect(certificate.worst() < 1e-13, "... and keeps the laws");
 }
 
+/// A pin that only decays is at rest, to rounding, after the time constants of its slowest part.
+void decays() {
+  pd::detail::SeriesEquation<double> e;
+  e.mass = 1;
+  e.damping = 5;
+  e.stiffness = 4;  // rates of 1 and 4 per second
+  const pd::detail::SeriesState<double> start{1e-3, 0, 0, 0, 0};
+  const pd::detail::DrivenMotion<double> motion(e, start);
+  const double end = motion.decay_time();
+  expect(end > 30 && end < 40, "a decay takes some 36 time constants to its rounding");
+  expect(std::abs(motion.velocity.at(end)) < 1e-17, "... after which the velocity is rounding");
+  e.damping = 0;
+  expect(std::isinf(pd::detail::DrivenMotion<double>(e, start).decay_time()),
+         "an oscillation lasts");
+}
+
 }  // namespace
 
 int main() {
   equation();
   refused();
+  decays();
   motion();
   return check::status();
 }

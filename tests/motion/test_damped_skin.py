@@ -181,6 +181,27 @@ def test_much_damping_makes_a_rigid_finger() -> None:
     assert apart[0] > 3.0 * apart[1] > 9.0 * apart[2]
 
 
+@pytest.mark.parametrize("ratio", [1.4, 3.0])
+def test_a_pin_that_slips_on_skin_decays_as_on_a_rigid_finger(ratio: float) -> None:
+    """The pin never stops; the rest criterion ends its motion long before a double underflows."""
+    slipping = Release(0.25, -1.5e-3, velocity=0.25)
+    rigid, skin = (
+        simulate(
+            Drive(mass=0.016, stiffness=240.0, damping_ratio=ratio, plate=plate, finger=finger),
+            slipping,
+        )
+        for plate, finger in (
+            (Contact(0.066), Contact(0.042)),
+            (Contact(0.066), Contact(0.042, stiffness=1300.0, damping=2.3)),
+        )
+    )
+    assert rigid.ending.kind == skin.ending.kind == "decaying"
+    assert skin.segments[-1].begin < 2.0
+    assert skin.ending.position == pytest.approx(rigid.ending.position, rel=1e-9)
+    assert skin.transient.settling_time == pytest.approx(rigid.transient.settling_time, rel=1e-6)
+    assert skin.transient.trough_time == rigid.transient.trough_time == np.inf
+
+
 def test_the_damper_of_the_skin_has_its_own_energy() -> None:
     """The integral of b s' squared; and all parts add up."""
     motion = simulate(pin(finger(0.3)), HANDS["constant"], duration=0.07)

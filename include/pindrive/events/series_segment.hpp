@@ -163,8 +163,8 @@ class SeriesSegment {
     state.slider_velocity = now.skin;
     if (driven_) return;
     const SeriesStep<T>& step = *step_;
-    // Pin and slider are at rest once their velocities are within the rounding of the position; the error of the
-    // position of rest then follows from the remaining forces.
+    // rounding: pin and slider are at rest once their velocities are within the rounding of the position; the error of
+    // the position of rest then follows from the remaining forces (tests/hard/slider-and-pin-at-rest.txt).
     const T size = std::max(abs(state.x), abs(step.position.c[0]));
     const T still = rounding<T> * size * sqrt(drive.stiffness / drive.mass);
     const T pull = drive.mass * step.velocity.derivative().at(tau) + drive.damping * state.v +
@@ -204,7 +204,9 @@ class SeriesSegment {
       clear = T(0.9375) * step_->span();  // guards are positive there
     }
     const T reach = motion.reach(plain(clear));
-    const T latest = std::min(longest, T(clear + most_driven_steps * reach));
+    // A pin that has decayed may be at rest.
+    const T latest =
+        std::min({longest, T(clear + most_driven_steps * reach), T(clear + motion.decay_time())});
     if (!(latest < never)) return T(0);
     T end = clear;
     for (T length = reach; end < latest; length *= 4) {

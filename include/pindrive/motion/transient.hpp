@@ -98,7 +98,9 @@ class Measurement {
     int direction = 0;
     bool more = true;
     for (const Segment<T>& segment : motion_) {
-      if (segment.begin > duration_ || !go_on_()) return;
+      // A decay that the rest criterion ends does not turn there.
+      const bool decays_on = segment.eliminated == EliminatedPart::motion;
+      if (segment.begin > duration_ || decays_on || !go_on_()) return;
       const int start = heading(segment);
       if (direction * start < 0 || (direction != 0 && start == 0))
         if (!visit(segment.begin, segment.flow.position.start)) return;
