@@ -15,7 +15,8 @@ from command import run
 from pindrive import Contact, Drive, Profile, Release, load_device, simulate, simulate_batch
 from pindrive.device import Device, Electromagnet
 from pindrive.motion.coefficients import Coefficients
-from pindrive.study.evaluate import evaluate, follow
+from pindrive.motion.simulate import motion_of
+from pindrive.study.evaluate import evaluate
 from pindrive.study.spec import load_study
 from pindrive.study.validation import coefficient_range
 
@@ -439,7 +440,7 @@ def test_a_study_over_mass_coefficient_or_touch_force_is_physical(text: str) -> 
             settled = motion.transient.settling_time
             assert table["transient_settling_time"][i] == pytest.approx(settled, rel=1e-12)
             at = {name: float(column[i]) for name, column in columns.items()}
-            assert forces(follow(plan, at).drive) == forces(own.drive)
+            assert forces(motion_of(plan.device_at(at)).drive) == forces(own.drive)
         found = coefficient_range(plan, tolerances=False)
         assert found == ((0.15, 0.3) if key == "plate.coefficient" else None)
 

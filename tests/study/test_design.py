@@ -13,9 +13,10 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from pindrive.files.overrides import ConfigError
+from pindrive.motion.simulate import motion_of
 from pindrive.quantities.status import Status
 from pindrive.study.distributions import BLOCK, Distribution, Even, Sample
-from pindrive.study.evaluate import evaluate, follow, is_slow, refusals
+from pindrive.study.evaluate import evaluate, is_slow, refusals
 from pindrive.study.outputs import MEASURED, OUTPUTS
 from pindrive.study.spec import load_study
 from pindrive.study.study import Study
@@ -211,7 +212,9 @@ def test_end_stops_are_followed_by_the_batch(tmp_path: Path) -> None:
     assert not is_slow(plan.device, columns)
     found = evaluate(plan, columns, count, OUTPUTS)
     for i in range(count):
-        motion = follow(plan, {key: float(values[i]) for key, values in columns.items()})
+        motion = motion_of(
+            plan.device_at({key: float(values[i]) for key, values in columns.items()})
+        )
         numbers = motion.numbers()
         for name in MEASURED:
             quantity = next(n for n in numbers if n.replace(".", "_") == name)

@@ -18,13 +18,13 @@ from pindrive.files.device_text import device_text
 from pindrive.files.keys import NUMERIC_KEYS, variable
 from pindrive.lazy import mpl_figure, xr
 from pindrive.motion.motion import Motion
+from pindrive.motion.simulate import motion_of
 from pindrive.optimisation.effort import Count
 from pindrive.optimisation.goals import DesignProblem, Goal, Margin, Variable
 from pindrive.quantities.names import label
 from pindrive.quantities.status import Status
 from pindrive.quantities.value import concise, equal_by_value
 from pindrive.study.distributions import with_links
-from pindrive.study.evaluate import follow
 from pindrive.study.outputs import NUMBERS, Constraint, Share, attributes
 from pindrive.views import NotebookHtml, figure
 
@@ -263,7 +263,7 @@ class Design(NotebookHtml):
         study = self.problem.study
         at = {key: np.asarray(x) for key, x in (*self.values.items(), *self.goals[0].case.items())}
         found = with_links(study.device, at, study.links)
-        return follow(study, {key: float(x) for key, x in found.items()})
+        return motion_of(study.device_at({key: float(x) for key, x in found.items()}))
 
     def plot(self) -> mpl_figure.Figure:
         """The front, and the maps of the feasible region around the design, as a figure."""

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
-from math import inf, nan
+from dataclasses import dataclass
+from math import nan
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -14,15 +14,11 @@ from pindrive.device.pin_scan import Progress
 from pindrive.device.scanning import scan
 from pindrive.files.device import DeviceFile
 from pindrive.files.keys import variable
-from pindrive.files.ratios import scaled_rows
 from pindrive.motion.batch import batched
-from pindrive.motion.drive import Contact, Drive, law_name
-from pindrive.motion.friction import COEFFICIENT_OF, COEFFICIENTS, LAW, PRESSING
 from pindrive.motion.function import Function
-from pindrive.motion.motion import Motion
 from pindrive.motion.profile import Profile
-from pindrive.motion.release import INPUTS, Release
-from pindrive.motion.simulate import motion_of, simulated
+from pindrive.motion.release import INPUTS
+from pindrive.motion.simulate import motion_of
 from pindrive.quantities.budgets import worker_count
 from pindrive.quantities.refusal import Refusal, message_of, refused_by
 from pindrive.quantities.status import End, SimulationError, Status
@@ -57,16 +53,16 @@ def scan_numbers(study: Study, at: Mapping[str, float]) -> dict[str, float]:
     return numbers
 
 
-def _evaluate_scans(
-    study: Study, columns: Columns, count: int, outputs: Sequence[str], threads: int | None = 1
-) -> dict[str, Any]:
-    """The outputs at `count` points; arguments as for `evaluate`.
+def _one_by_one(
+    study: Study, columns: Columns, count: int, outputs: Sequence[str], threads: int | None
+) -> Table:
+    """The outputs at points that are simulated one by one; arguments as for `evaluate`.
 
     Raises:
         ValueError: A file of the page has changed since the study was read.
     """
-    assert study.page
-    study.page.check()
+    if study.page:
+        study.page.check()
     every = {key: np.broadcast_to(values, (count,)) for key, values in columns.items()}
     points = [{key: float(values[i]) for key, values in every.items()} for i in range(count)]
     threads = worker_count(threads)
@@ -74,8 +70,7 @@ def _evaluate_scans(
     portions = [points[i : i + portion] for i in range(0, count, portion)]
     done = spread(_rows, study, portions, threads)
     rows = [row for portion in done for row in portion]
-    kinds = {"reason": object}
-    return {name: np.array([row[name] for row in rows], kinds.get(name)) for name in outputs}
+    return {name: np.array([row[name] for row in rows], _KINDS.get(name)) for name in outputs}
 
 
 def _rows(study: Study, points: Sequence[Mapping[str, float]]) -> list[Row]:
@@ -83,29 +78,46 @@ def _rows(study: Study, points: Sequence[Mapping[str, float]]) -> list[Row]:
 
 
 def _row(study: Study, point: Mapping[str, float]) -> Row:
-    """The numbers at a point; one without a scan has a status and no numbers."""
-    names = variables(SCANNED)
+    """The numbers at a point; one that is refused has a status and no numbers."""
     try:
-        found = scan_numbers(study, point)
+        return _of_scan(study, point) if study.page else _of_motion(study, point)
     except (ValueError, ArithmeticError, MemoryError) as error:
         status = error.status if isinstance(error, SimulationError) else Status.refused
-        return dict.fromkeys(names, nan) | {"status": status, "reason": refused_by(error)}
-    given = {name: found[quantity.name] for name, quantity in names.items()}
+        numbers = variables(SCANNED) if study.page else MEASURED
+        unsettled = {"transient_settled": False, "ending": End.unknown, "events": 0}
+        refused = unsettled | {"status": status, "reason": refused_by(error)}
+        return dict.fromkeys(numbers, nan) | refused
+
+
+def _of_scan(study: Study, point: Mapping[str, float]) -> Row:
+    found = scan_numbers(study, point)
+    given = {name: found[quantity.name] for name, quantity in variables(SCANNED).items()}
     return given | {"status": Status.ok, "reason": ""}
 
 
-_WHOLE: Final = {
+def _of_motion(study: Study, point: Mapping[str, float]) -> Row:
+    motion = motion_of(study.device_at(point))
+    return {name.replace(".", "_"): value for name, value in motion.numbers().items()} | {
+        "status": motion.status,
+        "ending": motion.ending.end,
+        "events": len(motion.events),
+        "reason": "",
+    }
+
+
+_KINDS: Final = {
+    **dict.fromkeys(MEASURED, np.float64),
     **dict.fromkeys(("status", "ending", "events"), np.int64),
     "transient_settled": np.bool_,
+    "reason": object,
 }
+"""Types of the outputs of a motion. Counts among its numbers are floats, as they may be NaN."""
 _NOT_OF_THE_DRIVE: Final = ("duration", "settling_band")
 """Parameters of a motion beside its drive and its release."""
-_STOPS: Final = ("travel", "stop_stiffness", "stop_damping")
 _FOLLOWED: Final = tuple(
     f"motion.{name}" for name in ("skin_stretch", "force", "across_velocity", "finger_load")
 )
 """Reasons for which `simulate_batch` does not simulate a point."""
-_RELEASE: Final = tuple(field.name for field in fields(Release))
 Table = dict[str, Any]
 """Arrays of one length by the names of their variables."""
 
@@ -127,24 +139,29 @@ def evaluate(
             cannot exist, the same for points that are refused alike, and empty where it exists.
         threads: Number of threads; None: all cores.
     """
-    if study.page:
-        return _evaluate_scans(study, columns, count, outputs, threads)
     device = study.device
-    inputs = _inputs(device, columns)
-    if is_slow(device, columns):
-        table = _one_by_one(inputs, count)
-    else:
-        varied = {name: inputs[name] for name in (*map(variable, columns), *_NOT_OF_THE_DRIVE)}
-        if "damping_ratio" in varied or device.by_ratio:
-            varied["damping"] = inputs["damping"]
-            varied.pop("damping_ratio", None)
-        varied["mass"] = np.broadcast_to(inputs["mass"], (count,))
-        kept = [name for name in outputs if name != "reason"]
-        found = batched(device.drive, device.release, varied, outputs=kept, threads=threads)
-        table = {name: found[name].values for name in kept}
-        if "reason" in outputs:
-            table["reason"] = _refused(found["status"].values)
+    if study.page or is_slow(device, columns):
+        return _one_by_one(study, columns, count, outputs, threads)
+    kept = [name for name in outputs if name != "reason"]
+    varied = _varied(device, columns, count)
+    found = batched(device.drive, device.release, varied, outputs=kept, threads=threads)
+    table = {name: found[name].values for name in kept}
+    if "reason" in outputs:
+        table["reason"] = _refused(found["status"].values)
     return {name: table[name] for name in outputs}
+
+
+def _varied(device: DeviceFile, columns: Columns, count: int) -> dict[str, Any]:
+    """The arguments of `batched` for columns of values."""
+    own = {variable(key): value for key, value in device.values().items()}
+    given = {variable(key): values for key, values in columns.items()}
+    varied: dict[str, Any] = {name: own[name] for name in _NOT_OF_THE_DRIVE} | given
+    varied["mass"] = np.broadcast_to(varied.get("mass", device.drive.mass), (count,))
+    ratio = varied.pop("damping_ratio", own["damping_ratio"] if device.by_ratio else None)
+    if ratio is not None and "damping" not in given:
+        stiffness = varied.get("stiffness", device.drive.stiffness)
+        varied["damping"] = 2.0 * ratio * np.sqrt(varied["mass"]) * np.sqrt(stiffness)
+    return varied
 
 
 def evaluate_all(
@@ -175,16 +192,6 @@ def evaluate_all(
     return table, refusals(study, ranges.columns(study, points), table.pop("reason"))
 
 
-def follow(study: Study, at: Mapping[str, float]) -> Motion:
-    """The motion at one point, which the keys' values say.
-
-    Raises:
-        ValueError: The motion cannot be simulated, as for `simulate`.
-    """
-    columns = {key: np.array([value]) for key, value in at.items()}
-    return _motion(_point(_inputs(study.device, columns), 0))
-
-
 def is_slow(device: DeviceFile, swept: Mapping[str, object]) -> bool:
     """Return True if the points of a device must be simulated one by one."""
     changes = {
@@ -203,82 +210,12 @@ def is_slow(device: DeviceFile, swept: Mapping[str, object]) -> bool:
     )
 
 
-def _inputs(device: DeviceFile, columns: Columns) -> dict[str, Any]:
-    """Every input of a motion by its name in Python: a column, or what the device has."""
-    given: dict[str, Any] = {variable(key): value for key, value in device.values().items()}
-    given |= {name: getattr(device.release, name) for name in _RELEASE}
-    given |= {variable(key): values for key, values in columns.items()}
-    if "drive.damping_ratio" in columns or (device.by_ratio and "drive.damping" not in columns):
-        mass, stiffness = np.sqrt(given["mass"]), np.sqrt(given["stiffness"])
-        given["damping"] = 2.0 * given["damping_ratio"] * mass * stiffness
-    return given | dict.fromkeys(variable(key) for key in device.derived if key in COEFFICIENT_OF)
-
-
 def _refused(status: NDArray[np.int8]) -> NDArray[Any]:
     """Return the rejected argument of each point by its status; empty without one."""
     names = np.full(max(Status) + 1, "", object)
     for code in Status:
         names[code] = "" if code.exists else code.name
     return names[status]
-
-
-def _one_by_one(inputs: Mapping[str, Any], count: int) -> Table:
-    table: Table = {}
-    for i in range(count):
-        for name, value in _numbers(_point(inputs, i)).items():
-            if i == 0:  # a count is a float too: NaN where there is none
-                kind = object if name == "reason" else _WHOLE.get(name, np.float64)
-                table[name] = np.empty(count, kind)
-            table[name][i] = value
-    return table
-
-
-def _point(inputs: Mapping[str, Any], i: int) -> dict[str, Any]:
-    """The inputs of one point; where none varies there is a number, not an array."""
-    return {
-        name: value.item(i if value.ndim else 0) if isinstance(value, np.ndarray) else value
-        for name, value in inputs.items()
-    }
-
-
-def _numbers(given: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the numbers of one point for `evaluate`."""
-    try:
-        motion = _motion(given)
-    except ValueError as error:
-        refused = {"status": Status.refused, "ending": End.unknown, "events": 0}
-        unsettled = {"transient_settled": False, "reason": refused_by(error)}
-        return dict.fromkeys(MEASURED, nan) | refused | unsettled
-    return {name.replace(".", "_"): value for name, value in motion.numbers().items()} | {
-        "status": motion.status,
-        "ending": motion.ending.end,
-        "events": len(motion.events),
-        "reason": "",
-    }
-
-
-def _motion(given: Mapping[str, Any]) -> Motion:
-    body = {name: given[name] for name in ("mass", "stiffness", "damping")}
-    body |= {name: given[name] for name in (*PRESSING, *_STOPS)}
-    for table, stiffness in (("plate", inf), ("finger", given["finger_stiffness"] or inf)):
-        own = {n: given[f"{table}_{n}"] for pair in COEFFICIENTS.items() for n in pair}
-        own |= {n: given[f"{table}_{n}"] for n in LAW}
-        own["law"] = law_name(own["law"])
-        for kinetic, curve in (("kinetic", "curve"), ("coefficient", "coefficient_curve")):
-            if own[curve] is not None:
-                own[curve] = scaled_rows(own[curve], own[kinetic])
-        damping = given["finger_damping"] if table == "finger" else None
-        body[table] = Contact(**own, stiffness=stiffness, damping=damping)
-    release = {name: given[name] for name in _RELEASE}
-    for name in INPUTS:
-        if isinstance(release[name], Function):
-            parameters = {part: given[f"{name}_{part}"] for part in release[name].parameters}
-            release[name] = release[name].replace(**parameters) if parameters else release[name]
-    return simulated(
-        Drive(**body),
-        Release(**release),
-        **{name: given[name] for name in _NOT_OF_THE_DRIVE},
-    )
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,7 +20,7 @@ from pindrive.quantities.status import Status
 from pindrive.quantities.value import concise, equal_by_value
 from pindrive.study.design import Ranges, ranges_of
 from pindrive.study.distributions import Sample
-from pindrive.study.evaluate import RefusedPoints, evaluate, evaluate_all, exist, follow
+from pindrive.study.evaluate import RefusedPoints, evaluate, evaluate_all, exist
 from pindrive.study.outputs import NUMBERS, Constraint, Share, attributes
 from pindrive.study.study import Study
 from pindrive.views import NotebookHtml, figure
@@ -286,6 +286,6 @@ def _worst(
         return WorstCase(
             constraint, columns, float(numbers(best)[constraint.name][0]), sampled, None
         )
-    motion = follow(study, columns)
+    motion = motion_of(study.device_at(columns))
     value = motion.numbers()[NUMBERS[constraint.name].name]
     return WorstCase(constraint, columns, value, sampled, motion)
