@@ -204,6 +204,7 @@ def robustness(
         raise ValueError(f"{study.path}: of {words} none can exist: {reason}")
     points, table = points[:, designs], {name: values[designs] for name, values in table.items()}
 
+    own = evaluate(study, {}, 1, watched)
     met = {constraint: constraint.met(table[constraint.name]) for constraint in study.constraints}
     every = np.logical_and.reduce([*met.values()]) if met else None
     size = points.shape[1]
@@ -211,7 +212,7 @@ def robustness(
         ranges,
         count,
         seed,
-        _own(study, watched),
+        {name: float(own[name][0]) for name in watched},
         dict(zip(ranges.scatter, points, strict=True)),
         np.ones(size, np.bool_) if every is None else every,
         {name: table[name] for name in watched},
@@ -225,13 +226,6 @@ def robustness(
         tuple(_worst(study, ranges, d, points, table, numbers, seed) for d in study.constraints),
         study.name,
     )
-
-
-def _own(study: Study, watched: tuple[str, ...]) -> dict[str, float]:
-    """Numbers of the design itself."""
-    if study.page:
-        return {name: float(values[0]) for name, values in evaluate(study, {}, 1, watched).items()}
-    return {k.replace(".", "_"): v for k, v in motion_of(study.device).numbers().items()}
 
 
 def _worst(
