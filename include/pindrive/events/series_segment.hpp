@@ -181,7 +181,7 @@ class SeriesSegment {
   static constexpr T never = std::numeric_limits<T>::infinity();
 
   using Reached = typename SeriesMode<T>::Reached;
-  using Paths = typename SeriesMode<T>::template Guards<Polynomial<T>>;
+  using Paths = typename SeriesMode<T>::template StepGuards<Polynomial<T>>;
 
   /// Begins a motion in closed form that lasts until a guard is zero, or for `longest`; nothing where it is not used.
   ///

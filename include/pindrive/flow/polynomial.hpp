@@ -79,6 +79,9 @@ struct Polynomial {
     for (int n = 0; n <= degree; ++n) sum += abs(c[n]);
     return sum;
   }
+  bool constant() const {
+    return std::all_of(c.begin() + 1, c.end(), [](const T& each) { return each == 0; });
+  }
   /// Derivative by time, per second.
   Polynomial derivative() const {
     Polynomial rate;

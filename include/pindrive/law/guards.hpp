@@ -14,13 +14,14 @@ namespace pindrive::detail {
 
 /// Quantity that is positive while a mode lasts: distance of a sliding speed from the end of its
 /// branch or, with `ActiveGuard::none`, margin of a stick force to its limit on one side.
-template <class T>
+template <class T, class Quantity = Path<T>>
 struct Guard {
-  Path<T> path;
+  Quantity path;
   ActiveGuard bound;
   bool plate;  ///< plate or finger; the joint stick force of both belongs to the plate
   int side;
-  T zero{std::numeric_limits<T>::infinity()};  ///< s
+  T zero{std::numeric_limits<T>::infinity()};  ///< s; infinite without one
+  Real<T> error{0};  ///< of a function: a path that only touches zero within it has no zero
 };
 
 /// Sign of the first part of a path that is not zero. Of two mirrored guards the approached one is

@@ -22,6 +22,34 @@ struct InputTerm {
   T frequency{0};  ///< Ω, rad/s; >= 0
 };
 
+namespace detail {
+
+/// Calls visit(n, c, s) with the Taylor coefficients c of a term in the time σ = τ/step, in order, and with the size s of
+/// c and its conjugate, until visit returns false.
+template <class T, class Step, class Visitor>
+void each_coefficient(const InputTerm<T>& term, Step step, int order, Visitor&& visit) {
+  // Real part of (cosine − i·sine) e^((iΩ − δ)τ), whose n-th coefficient follows from the last.
+  T real = term.cosine, imaginary = -term.sine;
+  const T decay = term.decay * step, turn = term.frequency * step;
+  for (int n = 0; n <= order; ++n) {
+    if (!visit(n, real, std::abs(plain(real)) + std::abs(plain(imaginary)))) return;
+    const Real<T> part = Real<T>(1) / Real<T>(n + 1);
+    const T turned = -(decay * real + turn * imaginary) * part;
+    imaginary = (turn * real - decay * imaginary) * part;
+    real = turned;
+  }
+}
+
+/// Time over which the Taylor terms beyond an order of a term in a sum stay small beside the sum, s: `longest` over the
+/// rate of a term as large as the sum; a smaller term reaches farther.
+template <class Real>
+Real reach_of(Real amplitude, Real rate, Real sum, int order, Real longest) {
+  if (!(amplitude > 0) || !(rate > 0)) return std::numeric_limits<Real>::infinity();
+  return longest / rate * exp(log(sum / amplitude) / (order + 1));
+}
+
+}  // namespace detail
+
 /// Piece of an input from a time on: p₀ + p₁ τ + … + p₅ τ⁵ and terms. Owns no memory.
 template <class T>
 struct InputPiece {
@@ -92,14 +120,12 @@ struct InputPiece {
   /// Time after τ over which the Taylor terms beyond an order stay within a part of the size at τ, s: for a term of
   /// that size `longest` over its rate; a smaller one reaches farther.
   Real reach(T tau, int order, Real longest) const {
-    using std::abs, detail::exp, detail::log;
+    using std::abs;
     Real whole = abs(plain(polynomial[0])), least = std::numeric_limits<Real>::infinity();
     for (std::size_t j = 0; j < count; ++j) whole += amplitude(terms[j], tau);
-    for (std::size_t j = 0; j < count; ++j) {
-      const Real part = amplitude(terms[j], tau), rate = rate_of(terms[j]);
-      if (part > 0 && rate > 0)
-        least = std::min(least, longest / rate * exp(log(whole / part) / (order + 1)));
-    }
+    for (std::size_t j = 0; j < count; ++j)
+      least = std::min(least, detail::reach_of(amplitude(terms[j], tau), rate_of(terms[j]), whole,
+                                               order, longest));
     return least;
   }
   /// Bound of the Taylor terms beyond an order >= `degree` at τ, over a step.
@@ -148,23 +174,18 @@ struct InputPiece {
       const T phase = term.frequency * tau, part = exp(-term.decay * tau);
       const T plain_cosine = cos(phase), plain_sine = sin(phase);
       const T cosine = plain_cosine * part, sine = plain_sine * part;
-      // Real part of (cosine − i·sine) e^((iΩ − δ)τ), whose n-th coefficient follows from the last.
-      T real = term.cosine * cosine + term.sine * sine;
-      T imaginary = term.cosine * sine - term.sine * cosine;
-      T value = real;
+      const InputTerm<T> here{term.cosine * cosine + term.sine * sine,
+                              term.sine * cosine - term.cosine * sine, term.decay, term.frequency};
+      T value = here.cosine;
       if (turned_by(term, tau) < begun) {
         const T turn = plain_sine * plain_sine / (1 + plain_cosine);  // 1 − cos Ωτ
         value = term.cosine * (expm1(-term.decay * tau) * plain_cosine - turn) + term.sine * sine;
         start += term.cosine;
       }
-      c[0] += value;
-      for (int n = 1; n <= order; ++n) {
-        const T next = step / T(n);
-        const T turned = -(term.decay * real + term.frequency * imaginary) * next;
-        imaginary = (term.frequency * real - term.decay * imaginary) * next;
-        real = turned;
-        c[n] += real;
-      }
+      detail::each_coefficient(here, step, order, [&](int n, const T& coefficient, Real) {
+        c[n] += n > 0 ? coefficient : value;
+        return true;
+      });
     }
     c[0] += start;
   }

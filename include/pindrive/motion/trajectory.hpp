@@ -102,9 +102,55 @@ SeriesState<T> start_of(const Drive<T>& drive, const Segment<T>& segment,
   return {segment.flow.position.start, v.start, skin, v.drift};
 }
 
+/// Trajectory of a segment under functions: the quantities of a `SeriesStep` or of a `DrivenMotion`.
+template <class T, class Motion>
+class MotionTrajectory {
+ public:
+  using Path = typename Motion::Path;
+
+  const Path& position() const { return motion_.position; }
+  const Path& velocity() const { return motion_.velocity; }
+  Path acceleration() const { return motion_.velocity.derivative(); }
+  const Path& plate_force() const { return plate_force_; }
+  const Path& finger_force() const { return finger_force_; }
+  /// Velocity of a slider that has one of its own, m/s.
+  const Path& slider_velocity() const { return motion_.skin; }
+  /// Sliding speed on the plate, with its transverse part, m/s.
+  const Path& sliding_speed() const { return motion_.speed; }
+  Path input(const Curve<T>& curve) const { return motion_.input(curve); }
+  Path above(const Path& path, T level) const { return above(path, Line<T>{level, T(0)}); }
+  Path above(Path path, const Line<T>& line) const {
+    return path += Line<T>{-line.value, -line.rate};
+  }
+
+  T start(const Path& path) const { return path.start(); }
+  T at(const Path& path, T tau) const { return path.at(tau); }
+  struct Moment {
+    T tau;
+  };
+  Moment moment(T tau) const { return {tau}; }
+  T at(const Path& path, const Moment& now) const { return path.at(now.tau); }
+  Path derivative(const Path& path) const { return path.derivative(); }
+  bool constant(const Path& path) const { return path.constant(); }
+
+ protected:
+  MotionTrajectory(const Drive<T>& drive, const Mode& mode, const Motion& motion)
+      : motion_(motion), plate_force_(motion.plate_force), finger_force_(motion.input({})) {
+    const bool held = !held_by_stop(drive, mode), on_plate = mode.plate == ContactState::stick;
+    if (on_plate && held) plate_force_ = motion_.stick_force;
+    if (mode.finger == ContactState::elastic_stick)
+      finger_force_ = T(-1) * motion_.skin + (-drive.finger.damping) * motion_.velocity;
+    else if (mode.finger == ContactState::stick && held && !on_plate)
+      finger_force_ = motion_.stick_force;
+  }
+
+  Motion motion_;
+  Path plate_force_, finger_force_;
+};
+
 /// Trajectory of a segment that is one step of a series.
 template <class T>
-class BySeries {
+class BySeries : public MotionTrajectory<T, SeriesStep<T>> {
  public:
   /// Expands the series anew from the begin of the segment; only the initial state is stored.
   BySeries(const Drive<T>& drive, const Segment<T>& segment, const InputCurves<T>& lines)
@@ -112,18 +158,9 @@ class BySeries {
   /// The step by which the segment was simulated.
   BySeries(const Drive<T>& drive, const Segment<T>& segment, const InputCurves<T>& lines,
            const SeriesStep<T>& step)
-      : step_(step) {
-    const bool at_stop = held_by_stop(drive, segment.mode);
-    const bool held = segment.mode.stuck() && !at_stop;
-    plate_force_ = step_.plate_force;
-    if (segment.mode.plate == ContactState::stick && !at_stop) plate_force_ = step_.stick_force;
-    finger_force_.span = step_.span();
-    if (segment.mode.finger == ContactState::elastic_stick)
-      finger_force_ = T(-1) * step_.skin + (-drive.finger.damping) * step_.velocity;
-    else if (held && segment.mode.finger == ContactState::stick && !segment.mode.both_stuck())
-      finger_force_ = step_.stick_force;
-    else if (is_slip(segment.mode.finger))
-      finger_force_ = of_finger(drive, segment.mode, lines.finger_load);
+      : MotionTrajectory<T, SeriesStep<T>>(drive, segment.mode, step) {
+    if (is_slip(segment.mode.finger))
+      this->finger_force_ = of_finger(drive, segment.mode, lines.finger_load);
   }
 
   /// Calls visit(begin, length, expand) with each part of the segment until `to` in which quantities are
@@ -133,45 +170,12 @@ class BySeries {
     visit(T(0), plain(to), [](const Polynomial<T>& p) { return p; });
   }
   T largest_size(const Polynomial<T>& p) const { return detail::largest_size(p); }
-
-  const Polynomial<T>& position() const { return step_.position; }
-  const Polynomial<T>& velocity() const { return step_.velocity; }
-  Polynomial<T> acceleration() const { return step_.velocity.derivative(); }
-  const Polynomial<T>& plate_force() const { return plate_force_; }
-  const Polynomial<T>& finger_force() const { return finger_force_; }
-  /// Velocity of a slider that has one of its own, m/s.
-  const Polynomial<T>& slider_velocity() const { return step_.skin; }
-  const Polynomial<T>& sliding_speed() const {
-    return step_.speed;
-  }  ///< sliding speed on the plate, with its transverse part, m/s
-  Polynomial<T> input(const Curve<T>& curve) const { return polynomial_of(curve, step_.span()); }
-
-  Polynomial<T> above(Polynomial<T> p, T level) const {
-    p.c[0] -= level;
-    return p;
-  }
-  Polynomial<T> above(Polynomial<T> p, const Line<T>& line) const {
-    p.c[1] -= line.rate * p.span;
-    return above(p, line.value);
-  }
-
-  T start(const Polynomial<T>& p) const { return p.c[0]; }
-  T at(const Polynomial<T>& p, T tau) const { return p.at(tau); }
-  struct Moment {
-    T tau;
-  };
-  Moment moment(T tau) const { return {tau}; }
-  T at(const Polynomial<T>& p, const Moment& now) const { return p.at(now.tau); }
   T change(Polynomial<T> p, T tau) const {
     p.c[0] = T(0);
     return p.at(tau);
   }
-  Polynomial<T> derivative(const Polynomial<T>& p) const { return p.derivative(); }
-  bool constant(const Polynomial<T>& p) const {
-    return std::all_of(p.c.begin() + 1, p.c.end(), [](T c) { return c == 0; });
-  }
   T terms(const Polynomial<T>& p, T) const { return p.size(); }
-  T hurry_squared() const { return T(1) / (step_.span() * step_.span()); }
+  T hurry_squared() const { return T(1) / (motion_.span() * motion_.span()); }
 
   int side_after_start(const Polynomial<T>& p) const {
     for (const T c : p.c)
@@ -187,6 +191,8 @@ class BySeries {
   }
 
  private:
+  using MotionTrajectory<T, SeriesStep<T>>::motion_;
+
   static SeriesStep<T> expand(const Drive<T>& drive, const Segment<T>& segment,
                               const InputCurves<T>& lines) {
     const SeriesMode<T> mode(drive, segment.mode, lines);
@@ -207,20 +213,17 @@ class BySeries {
   Polynomial<T> of_finger(const Drive<T>& drive, const Mode& mode, const Curve<T>& given) const {
     const Branch<T> branch = drive.finger.branch(mode.finger_branch);
     const bool has_slider_state = SeriesMode<T>(drive, mode, {}).has_slider_state();
-    const Polynomial<T> load = input(given);
-    Polynomial<T> at_load_1 = branch.slope * (has_slider_state ? step_.skin : step_.velocity);
+    const Polynomial<T> load = this->input(given);
+    Polynomial<T> at_load_1 = branch.slope * (has_slider_state ? motion_.skin : motion_.velocity);
     at_load_1.c[0] += along(mode.finger, branch.intercept());
-    if (!branch.linear()) at_load_1 += along(mode.finger, T(1)) * step_.falling_at_finger;
+    if (!branch.linear()) at_load_1 += along(mode.finger, T(1)) * motion_.falling_at_finger;
     return T(-1) * load * at_load_1;
   }
-
-  SeriesStep<T> step_;
-  Polynomial<T> plate_force_, finger_force_;
 };
 
 /// Trajectory of a segment in closed form under functions.
 template <class T>
-class ByTerms {
+class ByTerms : public MotionTrajectory<T, DrivenMotion<T>> {
  public:
   /// Computes the closed form anew; only the initial state is stored.
   ByTerms(const Drive<T>& drive, const Segment<T>& segment, const InputCurves<T>& lines)
@@ -229,7 +232,7 @@ class ByTerms {
   template <class Visitor>
   void each_part(T to, Visitor&& visit) const {
     const auto reach = [&](Real<T> tau) {
-      return std::min(motion_.reach(tau), finger_force_.from(tau).reach());
+      return std::min(this->motion_.reach(tau), this->finger_force_.from(tau).reach());
     };
     each_step(T(0), to, reach, [&](T from, T end) {
       const Real<T> length = plain(end - from);
@@ -238,33 +241,9 @@ class ByTerms {
     });
   }
   T largest_size(const TermSum<T>& sum) const { return sum.size(lasts_); }
-
-  const TermSum<T>& position() const { return motion_.position; }
-  const TermSum<T>& velocity() const { return motion_.velocity; }
-  TermSum<T> acceleration() const { return motion_.velocity.derivative(); }
-  const TermSum<T>& plate_force() const { return plate_force_; }
-  const TermSum<T>& finger_force() const { return finger_force_; }
-  const TermSum<T>& slider_velocity() const { return motion_.skin; }
-  TermSum<T> input(const Curve<T>& curve) const { return curve; }
-  TermSum<T> above(const TermSum<T>& sum, T level) const {
-    return above(sum, Line<T>{level, T(0)});
-  }
-  TermSum<T> above(TermSum<T> sum, const Line<T>& line) const {
-    return sum += Line<T>{-line.value, -line.rate};
-  }
-
-  T start(const TermSum<T>& sum) const { return sum.at(T(0)); }
-  T at(const TermSum<T>& sum, T tau) const { return sum.at(tau); }
-  struct Moment {
-    T tau;
-  };
-  Moment moment(T tau) const { return {tau}; }
-  T at(const TermSum<T>& sum, const Moment& now) const { return sum.at(now.tau); }
   T change(const TermSum<T>& sum, T tau) const { return sum.at(tau) - sum.at(T(0)); }
-  TermSum<T> derivative(const TermSum<T>& sum) const { return sum.derivative(); }
-  bool constant(const TermSum<T>& sum) const { return sum.constant(); }
   T terms(const TermSum<T>& sum, T tau) const { return sum.size(tau); }
-  T hurry_squared() const { return motion_.position.hurry_squared(); }
+  T hurry_squared() const { return this->motion_.position.hurry_squared(); }
 
   /// Sign of the first Taylor coefficient that is not zero; a value within rounding is zero.
   int side_after_start(const TermSum<T>& sum) const {
@@ -293,24 +272,16 @@ class ByTerms {
  private:
   ByTerms(const Drive<T>& drive, const Segment<T>& segment, const InputCurves<T>& lines,
           const SeriesMode<T>& mode)
-      : motion_(mode.equation(), start_of(drive, segment, mode)),
+      : MotionTrajectory<T, DrivenMotion<T>>(
+            drive, segment.mode, DrivenMotion<T>(mode.equation(), start_of(drive, segment, mode))),
         lasts_(segment.end - segment.begin) {
-    const Mode& does = segment.mode;
-    const bool on_plate = does.plate == ContactState::stick;
-    plate_force_ = on_plate ? motion_.stick_force : motion_.plate_force;
-    if (does.finger == ContactState::elastic_stick) {
-      finger_force_.add(T(-1), motion_.skin).add(-drive.finger.damping, motion_.velocity);
-    } else if (does.finger == ContactState::stick && !on_plate) {
-      finger_force_ = motion_.stick_force;
-    } else if (is_slip(does.finger)) {
-      const Branch<T> branch = drive.finger.branch(does.finger_branch);
-      finger_force_.add(-pindrive::along(does.finger, branch.intercept()), lines.finger_load)
-          .add(-branch.slope * lines.finger_load.value, motion_.velocity);
-    }
+    if (!is_slip(segment.mode.finger)) return;
+    const Branch<T> branch = drive.finger.branch(segment.mode.finger_branch);
+    this->finger_force_
+        .add(-pindrive::along(segment.mode.finger, branch.intercept()), lines.finger_load)
+        .add(-branch.slope * lines.finger_load.value, this->motion_.velocity);
   }
 
-  DrivenMotion<T> motion_;
-  TermSum<T> plate_force_, finger_force_;
   T lasts_;
 };
 

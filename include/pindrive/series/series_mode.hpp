@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "pindrive/law/contact_point.hpp"
+#include "pindrive/law/guards.hpp"
 #include "pindrive/model/input_curves.hpp"
 #include "pindrive/model/model.hpp"
 #include "pindrive/numbers/inlining.hpp"
@@ -142,38 +143,28 @@ class SeriesMode {
     }
   };
 
-  /// Quantity that is positive during the mode: distance of a sliding speed from the end of its branch or (none)
-  /// margin of a stick force on one side.
+  /// Guards of the mode along a step or a driven motion.
   template <class Path>
-  struct Guard {
-    Path path;
-    ActiveGuard bound;
-    bool plate;
-    int side;
-    /// Rounding of a function in the path: a path that only touches zero within it has no zero.
-    Real error{0};
-    T zero{never};  ///< time at which a polynomial becomes negative, s; infinite if never
-  };
+  class StepGuards {
+    using Guard = detail::Guard<T, Path>;
 
-  template <class Path>
-  class Guards {
    public:
-    const Guard<Path>* begin() const { return list_.data(); }
-    const Guard<Path>* end() const { return list_.data() + count_; }
+    const Guard* begin() const { return list_.data(); }
+    const Guard* end() const { return list_.data() + count_; }
     /// Guard with the earliest zero; null without one.
-    const Guard<Path>* earliest() const {
-      const Guard<Path>* first = nullptr;
-      for (const Guard<Path>& guard : *this)
+    const Guard* earliest() const {
+      const Guard* first = nullptr;
+      for (const Guard& guard : *this)
         if (guard.zero < (first == nullptr ? never : first->zero)) first = &guard;
       return first;
     }
     /// Takes the guards of another list without their paths; a given guard is zero at 0.
     template <class Other>
-    void assign(const Guards<Other>& others, const Guard<Other>* zero) {
+    void assign(const StepGuards<Other>& others, const detail::Guard<T, Other>* zero) {
       count_ = 0;
-      for (const Guard<Other>& guard : others)
-        list_[count_++] = {{},         guard.bound, guard.plate,
-                           guard.side, guard.error, &guard == zero ? T(0) : never};
+      for (const detail::Guard<T, Other>& guard : others)
+        list_[count_++] = {
+            {}, guard.bound, guard.plate, guard.side, &guard == zero ? T(0) : never, guard.error};
     }
 
    private:
@@ -185,11 +176,11 @@ class SeriesMode {
       const bool speed = bound == ActiveGuard::lower || bound == ActiveGuard::upper;
       const bool beyond = speed && !at_zero && path.c[0] < -error && path.c[1] < 0;
       const T zero = beyond ? T(0) : zero_beyond(path, error);
-      list_[count_++] = {path, bound, plate, side, error, zero};
+      list_[count_++] = {path, bound, plate, side, zero, error};
     }
     void add(const TermSum<T>& path, bool, ActiveGuard bound, bool plate, int side,
              Real error = 0) {
-      list_[count_++] = {path, bound, plate, side, error};
+      list_[count_++] = {path, bound, plate, side, never, error};
     }
     /// Makes exact the start that the selection of the mode implies: coefficients of the wrong sign
     /// are rounding, or the path turns back within the rounding of its start.
@@ -199,15 +190,15 @@ class SeriesMode {
       c[0] = turns ? c[1] * c[1] / (2 * c[2]) : T(0);  // twice the depth of the minimum
       for (int n = 1; n <= 3 && !turns && !(c[n] > 0); ++n) c[n] = T(0);
     }
-    std::array<Guard<Path>, 8> list_;
+    std::array<Guard, 8> list_;
     int count_{0};
   };
   /// Guards of the mode along a series step, with their zeros, or a motion in closed form; guards of a stick force
   /// come first.
   template <class Along>
-  Guards<typename Along::Path> guards(const Along& along, const Reached& at = {}) const {
+  StepGuards<typename Along::Path> guards(const Along& along, const Reached& at = {}) const {
     using Path = typename Along::Path;
-    Guards<Path> found;
+    StepGuards<Path> found;
     if (held_by_stop(drive_, mode_)) {
       const int end = stop_sign(mode_.stop);
       found.add(T(-end) * along.stick_force, at.push, ActiveGuard::push, false, end);
@@ -286,7 +277,7 @@ class SeriesMode {
     return given_rounding(plate) + ratio * given_rounding(across);
   }
   template <class Path>
-  void between(Guards<Path>& found, const Path& speed, const Branch<T>& range, ActiveGuard at,
+  void between(StepGuards<Path>& found, const Path& speed, const Branch<T>& range, ActiveGuard at,
                bool is_plate, bool oblique, Real error) const {
     Path above = speed, below = T(-1) * speed;
     above += Line<T>{-range.from, T(0)};
@@ -297,7 +288,7 @@ class SeriesMode {
       found.add(below, at == ActiveGuard::upper, ActiveGuard::upper, is_plate, 0, error);
   }
   template <class Along>
-  void stops(Guards<typename Along::Path>& found, const Along& along, const Reached& at) const {
+  void stops(StepGuards<typename Along::Path>& found, const Along& along, const Reached& at) const {
     using Path = typename Along::Path;
     const Stops<T>& stops = drive_.stops;
     const auto beyond = [&](int end, int sense) {
@@ -322,8 +313,8 @@ class SeriesMode {
     found.add(push, at.push, ActiveGuard::push, false, end);
   }
   template <class Path>
-  void within(Guards<Path>& found, const Path& force, const Path& most, int at_limit, bool is_plate,
-              Real error = 0) const {
+  void within(StepGuards<Path>& found, const Path& force, const Path& most, int at_limit,
+              bool is_plate, Real error = 0) const {
     for (const int side : {1, -1}) {
       Path left = T(-side) * force;
       left += most;

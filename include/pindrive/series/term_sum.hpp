@@ -138,12 +138,10 @@ class TermSum {
   Real reach() const {
     const Real whole = largest();
     Real least = std::numeric_limits<Real>::infinity();
-    for (const InputTerm<T>& term : *this) {
-      const Real amplitude = amplitude_of(term), rate = rate_of(term);
-      if (amplitude > negligible * whole && rate > 0)
-        least = std::min(
-            least, Real(longest_input) / rate * exp(log(whole / amplitude) / (series_order + 1)));
-    }
+    for (const InputTerm<T>& term : *this)
+      if (amplitude_of(term) > negligible * whole)
+        least = std::min(least, reach_of(amplitude_of(term), rate_of(term), whole, series_order,
+                                         Real(longest_input)));
     return least;
   }
   /// Its Taylor polynomial over a step within its reach.
@@ -203,27 +201,12 @@ class TermSum {
   /// Adds the Taylor coefficients of a term in the time σ = τ/step, up to an order.
   template <class Number, class Coefficients>
   static void add_taylor(const InputTerm<Number>& term, Real step, int order, Coefficients& c) {
-    // Real part of (cosine − i·sine) e^((iΩ − δ)τ), whose n-th coefficient follows from the last.
-    Number real = term.cosine, imaginary = -term.sine;
-    const Number decay = term.decay * step, turn = term.frequency * step;
-    const Real error = negligible * (std::abs(plain(real)) + std::abs(plain(imaginary)));
-    for (int n = 0; n <= order; ++n) {
-      c[n] += real;
-      const Real part = inverses[n];
-      const Number turned = -(decay * real + turn * imaginary) * part;
-      imaginary = (turn * real - decay * imaginary) * part;
-      real = turned;
-      // Later ones are smaller.
-      if (n >= farthest_reach && std::abs(plain(real)) + std::abs(plain(imaginary)) < error) return;
-    }
+    const Real error = negligible * (std::abs(plain(term.cosine)) + std::abs(plain(term.sine)));
+    each_coefficient(term, step, order, [&](int n, const Number& coefficient, Real size) {
+      c[n] += coefficient;
+      return n < farthest_reach || size >= error;  // later ones are smaller
+    });
   }
-  /// 1/(n + 1), for the orders n of a series.
-  static constexpr std::array<Real, series_order + 1> inverses = [] {
-    std::array<Real, series_order + 1> each{};
-    for (int n = 0; n <= series_order; ++n) each[n] = Real(1) / Real(n + 1);
-    return each;
-  }();
-
   /// The term with its time counted from τ on.
   static InputTerm<T> moved(const InputTerm<T>& term, const T& tau) {
     const T part = term.decay == 0 ? T(1) : T(exp(-term.decay * tau));
