@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from core import test_oracle_piecewise as piecewise
-from core.test_oracle_piecewise import STATE_TOLERANCE, TIME_TOLERANCE, Case
 from oracle import mp_piecewise
+from oracle.answers import STATE_TOLERANCE, TIME_TOLERANCE, Case, told_events
 from pindrive import Contact, Drive, Motion, Profile, Release, simulate, simulate_batch
 
 DRIVE = Drive(
@@ -99,7 +99,7 @@ def against_thirty_digits(of: Case, times: int) -> tuple[Motion, int]:
     piecewise.NUMBERS[id(of)] = 0
     true: Case = {**of, "events": events, "times": at.tolist(), **states}
     found = piecewise.deviations(
-        true, piecewise.told_events(motion), reported, TIME_TOLERANCE, STATE_TOLERANCE
+        true, told_events(motion), reported, TIME_TOLERANCE, STATE_TOLERANCE
     )
     assert not found, "\n".join(found)
     return motion, len(events)

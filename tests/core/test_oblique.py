@@ -15,6 +15,7 @@ import pytest
 from core import test_oracle_piecewise as piecewise
 from core.test_external_force import CURVE, case
 from oracle import explicit_piecewise
+from oracle.answers import told_events
 from pindrive import Contact, Drive, Motion, Profile, Release, simulate
 
 DRIVE = Drive(
@@ -69,7 +70,7 @@ def test_oblique_motions_are_those_of_explicit_modes(name: str) -> None:
     answer: Any = {**of, "events": run.events, "times": times.tolist(), "family": "", **rows}
     piecewise.NUMBERS[id(answer)] = 0
     motion = piecewise.release(of)
-    reported = [e for e in piecewise.told_events(motion) if e[1] != "plate"]
+    reported = [e for e in told_events(motion) if e[1] != "plate"]
     found = piecewise.deviations(
         answer,
         reported,

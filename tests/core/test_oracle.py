@@ -6,21 +6,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 from oracle import explicit_modes, make_cases, mp_oracle
+from oracle.answers import (
+    STATE_TOLERANCE,
+    TIME_TOLERANCE,
+    Case,
+    Told,
+    event_deviations,
+    state_deviations,
+    told_events,
+)
 from pindrive import Contact, Drive, Motion, Release, simulate
-
-TIME_TOLERANCE = 1e-10  # s, of event times
-STATE_TOLERANCE = 1e-10  # of the scales of x, v and a, see `scales`
-
-Case = dict[str, Any]
 
 DATA = make_cases.load(Path(__file__).parents[1] / "oracle" / "cases.json.gz")
 CASES: list[Case] = DATA["cases"]
@@ -32,7 +35,7 @@ def start_velocity(case: Case) -> float:
     return float(case["inputs"]["mouse_velocity"] if velocity is None else velocity)
 
 
-def scales(case: Case) -> tuple[float, float, float]:
+def scales(case: Case) -> dict[str, float]:
     """Return the scales of x, v and a.
 
     Of x, the release displacement, or where that is 0 the largest |x| of the oracle; of v, the
@@ -42,7 +45,7 @@ def scales(case: Case) -> tuple[float, float, float]:
     frequency = (pin["stiffness"] / pin["mass"]) ** 0.5
     length = abs(pin["displacement"]) or max(map(abs, case["x"]))
     speed = max(frequency * length, abs(pin["mouse_velocity"]), abs(start_velocity(case)))
-    return length, speed, frequency * speed
+    return {"x": length, "v": speed, "a": frequency * speed}
 
 
 def release(case: Case) -> Motion:
@@ -61,59 +64,21 @@ def release(case: Case) -> Motion:
     )
 
 
-Told = tuple[float, str, str, float, float]  # time, contact, kind, position, velocity
-
-
-def told_events(motion: Motion) -> list[Told]:
-    """All events up to the duration: of a stick-slip cycle the core tells one round."""
-    events: list[Told] = [
-        (e.time, e.contact, e.kind, e.position, e.velocity) for e in motion.events
-    ]
-    if motion.ending.cycle != "stick-slip":
-        return events
-    period, last = motion.ending.period, events[-1][0]
-    one_round = [event for event in events if event[0] > last - period * (1 - 1e-9)]
-    rounds = int(max(0.0, motion.duration - last) / period) + 1
-    events += [(e[0] + n * period, *e[1:]) for n in range(1, rounds + 1) for e in one_round]
-    return [event for event in events if event[0] < motion.duration]
-
-
 def deviations(
     case: Case,
     events: Sequence[Told],
-    states: Sequence[NDArray[np.float64]],
+    states: Mapping[str, NDArray[np.float64]],
     time_tolerance: float,
     state_tolerance: float,
 ) -> list[str]:
-    """Return the deviations from the stored answer; `states` are x, v and a at its times."""
+    """Return the deviations from the stored answer; `states` are at its times."""
     name = f"case {NUMBERS[id(case)]} ({case['family']})"
     reported, stored = ([f"{e[1]} {e[2]}" for e in es] for es in (events, case["events"]))
     if reported != stored:
         return [f"{name}: events {reported}, the oracle has {stored}; inputs {case['inputs']}"]
-    found = []
-    length, speed, push = scales(case)
-    for event, true in zip(events, case["events"], strict=True):
-        for what, column, allowed in (
-            ("time", 0, time_tolerance),
-            ("position", 3, state_tolerance * length),
-            ("velocity", 4, state_tolerance * speed),
-        ):
-            off = abs(float(event[column]) - true[column])
-            if not off <= allowed:
-                found.append(f"{name}: {true[1]} {true[2]} at {true[0]} s, {what} off {off}")
-    for what, scale, ours, theirs in zip(
-        ("position", "velocity", "acceleration"),
-        (length, speed, push),
-        states,
-        (case["x"], case["v"], case["a"]),
-        strict=True,
-    ):
-        offs = np.abs(ours - theirs) / scale
-        worst = int(np.argmax(offs))
-        if not offs[worst] <= state_tolerance:
-            time = case["times"][worst]
-            found.append(f"{name}: {what} at {time} s off {offs[worst]} of its scale")
-    return found
+    scale, pairs = scales(case), zip(events, case["events"], strict=True)
+    found = event_deviations(name, pairs, scale, time_tolerance, state_tolerance)
+    return found + state_deviations(name, case, states, scale, state_tolerance)
 
 
 def of_family(family: str) -> list[Case]:
@@ -127,7 +92,11 @@ def test_core_gives_the_oracle_answers(family: str) -> None:
     for case in of_family(family):
         motion = release(case)
         times = np.array(case["times"])
-        states = [motion.position(times), motion.velocity(times), motion.acceleration(times)]
+        states = {
+            "x": motion.position(times),
+            "v": motion.velocity(times),
+            "a": motion.acceleration(times),
+        }
         found += deviations(case, told_events(motion), states, TIME_TOLERANCE, STATE_TOLERANCE)
         if not motion.ending.cycle and motion.segments[-1].mode != case["mode"]:
             found.append(f"case {NUMBERS[id(case)]} ({family}): ends in {motion.segments[-1].mode}")
@@ -145,7 +114,7 @@ def test_explicit_modes_give_the_oracle_answers(family: str) -> None:
         assert not deviations(
             case,
             run.events,
-            list(states),
+            dict(zip(("x", "v", "a"), states, strict=True)),
             explicit_modes.PHASE_TOLERANCE / frequency,
             explicit_modes.STATE_TOLERANCE,
         )

@@ -17,15 +17,20 @@ import pytest
 from numpy.typing import NDArray
 
 from oracle import explicit_piecewise, make_piecewise, mp_piecewise, sundials_modes
+from oracle.answers import (
+    STATE_TOLERANCE,
+    TIME_TOLERANCE,
+    Case,
+    Told,
+    event_deviations,
+    state_deviations,
+    told_events,
+)
 from pindrive import Contact, Drive, Motion, Profile, Release, simulate
 
-TIME_TOLERANCE = 1e-10  # s, of event times
-STATE_TOLERANCE = 1e-10  # of the scales of x, v, a and force, see `scales`
 SAME_INSTANT = 1e-12  # s
 STATES = ("x", "v", "a", "finger_force", "stretch")
 
-Case = dict[str, Any]
-Told = tuple[float, str, str, float, float]  # time, contact, kind, position, velocity
 
 DATA = make_piecewise.load(Path(__file__).parents[1] / "oracle" / "piecewise_cases.json.gz")
 CASES: list[Case] = DATA["cases"]
@@ -33,7 +38,7 @@ NUMBERS = {id(case): number for number, case in enumerate(CASES)}
 
 
 def name(case: Case) -> str:
-    return f"case {NUMBERS.get(id(case), 'of another file')} ({case['family']})"
+    return f"case {NUMBERS.get(id(case), 'of another file')} ({case.get('family', 'no family')})"
 
 
 def natural_frequency(case: Case) -> float:
@@ -128,20 +133,6 @@ def alike(reported: list[Told], true: list[Told]) -> bool:
     return kinds(reported) == kinds(true)
 
 
-def told_events(motion: Motion) -> list[Told]:
-    """All events up to the duration: of a stick-slip cycle the core tells one round."""
-    events: list[Told] = [
-        (e.time, e.contact, e.kind, e.position, e.velocity) for e in motion.events
-    ]
-    if motion.ending.cycle != "stick-slip":
-        return events
-    period, last = motion.ending.period, events[-1][0]
-    one_round = [event for event in events if event[0] > last - period * (1 - 1e-9)]
-    rounds = int(max(0.0, motion.duration - last) / period) + 1
-    events += [(e[0] + n * period, *e[1:]) for n in range(1, rounds + 1) for e in one_round]
-    return [event for event in events if event[0] < motion.duration]
-
-
 def deviations(
     case: Case,
     events: list[Told],
@@ -154,25 +145,10 @@ def deviations(
     if len(reported) != len(stored) or not all(map(alike, reported, stored)):
         lists = ([f"{e[1]} {e[2]}" for e in es] for es in (events, case["events"]))
         return ["{}: events {}, the oracle has {}; {}".format(name(case), *lists, case["inputs"])]
-    found, scale = [], scales(case)
-    for event, true in (
-        (ours[0], theirs[0]) for ours, theirs in zip(reported, stored, strict=True)
-    ):
-        for what, column, allowed in (
-            ("time", 0, time_tolerance),
-            ("position", 3, state_tolerance * scale["x"]),
-            ("velocity", 4, state_tolerance * scale["v"]),
-        ):
-            off = abs(float(event[column]) - float(true[column]))
-            if not off <= allowed:
-                found.append(f"{name(case)}: {true[1]} {true[2]} at {true[0]} s, {what} off {off}")
-    for what, values in states.items():
-        offs = np.abs(values - case[what]) / scale[what]
-        worst = int(np.argmax(offs))
-        if not offs[worst] <= state_tolerance:
-            time = case["times"][worst]
-            found.append(f"{name(case)}: {what} at {time} s off {offs[worst]} of its scale")
-    return found
+    scale = scales(case)
+    pairs = ((ours[0], theirs[0]) for ours, theirs in zip(reported, stored, strict=True))
+    found = event_deviations(name(case), pairs, scale, time_tolerance, state_tolerance)
+    return found + state_deviations(name(case), case, states, scale, state_tolerance)
 
 
 def of_family(family: str) -> list[Case]:

@@ -15,8 +15,8 @@ import numpy as np
 import pytest
 
 from core import test_oracle_piecewise as piecewise
-from core.test_oracle_piecewise import STATE_TOLERANCE, TIME_TOLERANCE, Case
 from oracle import explicit_piecewise, make_piecewise
+from oracle.answers import STATE_TOLERANCE, TIME_TOLERANCE, Case, told_events
 from pindrive import Contact, Drive, Motion, Profile, Release, simulate
 
 DATA = make_piecewise.load(Path(__file__).parents[1] / "oracle" / "series_motions.json.gz")
@@ -49,7 +49,7 @@ def test_core_gives_the_oracle_answers(family: str) -> None:
         }
         if "stretch" in case:
             states["stretch"] = motion.stretch(times)
-        reported = piecewise.told_events(motion)
+        reported = told_events(motion)
         found += piecewise.deviations(case, reported, states, TIME_TOLERANCE, STATE_TOLERANCE)
     assert not found, "\n".join(found)
 

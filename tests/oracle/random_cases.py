@@ -22,6 +22,7 @@ import numpy as np
 
 from core import test_oracle_piecewise as piecewise
 from oracle import make_piecewise, mp_oblique, mp_piecewise, mp_slider, oblique_draws, slider_draws
+from oracle.answers import Told, told_events
 from oracle.mp_modes import DoubtError
 
 CLOSE = 1e-11  # of the scales of position, velocity and force, and of a radian of the frequency
@@ -56,7 +57,7 @@ KINDS: dict[str, Callable[[int], tuple[Case, Path]]] = {
 }
 
 
-def events(case: Case, reported: list[piecewise.Told]) -> list[list[piecewise.Told]]:
+def events(case: Case, reported: list[Told]) -> list[list[Told]]:
     """Return the events that both report: none of an oblique plate or of an unloaded contact."""
     if "across" in case["inputs"]:
         reported = [event for event in reported if event[1] != "plate"]
@@ -67,8 +68,8 @@ def events(case: Case, reported: list[piecewise.Told]) -> list[list[piecewise.To
 def deviation(case: Case, path: Path) -> float:
     """Return the deviation of the core relative to the scales; infinity: other events."""
     motion = piecewise.release(case)
-    reported = events(case, piecewise.told_events(motion))
-    answer: list[piecewise.Told] = [
+    reported = events(case, told_events(motion))
+    answer: list[Told] = [
         (float(e.time), e.contact, e.kind, float(e.position), float(e.velocity))
         for e in path.events
     ]
