@@ -9,18 +9,12 @@
 
 #include "pindrive/motion/quadrature.hpp"
 #include "pindrive/numbers/dual.hpp"
+#include "slow_steps.hpp"
 
 namespace pd = pindrive;
+using slow_steps::expect, slow_steps::failures, slow_steps::follow;
 
 namespace {
-
-int failures = 0;
-
-void expect(bool holds, const char* what, double found) {
-  if (holds) return;
-  ++failures;
-  std::printf("%s: %.17g\n", what, found);
-}
 
 /// A pin at full pull under a hand of 60 mm/s.
 template <class T>
@@ -31,30 +25,6 @@ pd::detail::SeriesEquation<T> pulled(T across) {
   e.across = {across, T(0)};
   e.plate_force = T(0.697);
   return e;
-}
-
-template <class T>
-struct End {
-  pd::detail::SeriesState<T> state;
-  int steps{0};
-  T bounds{0};  ///< sum of the velocity bounds
-};
-
-/// Follows a mode for a time: by creep where it creeps, or by the Taylor series alone.
-template <class T>
-End<T> follow(pd::detail::SeriesEquation<T> e, pd::detail::SeriesState<T> state, double duration,
-              bool creep) {
-  End<T> end{state};
-  for (double t = 0; t < duration * (1 - 1e-15) && end.steps < 200000; ++end.steps) {
-    const T left = duration - t;
-    const pd::detail::SeriesStep<T> step = creep ? pd::detail::series_step(e, end.state, left)
-                                                 : pd::detail::SeriesFlow<T>(e, end.state, left);
-    end.state = step.at(step.span());
-    e = e.from(step.span());
-    end.bounds += step.v_bound;
-    t += double(step.span());
-  }
-  return end;
 }
 
 /// 200 random cases agree with the Taylor series to rounding, in fewer steps.

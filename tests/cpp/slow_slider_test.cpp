@@ -8,19 +8,12 @@
 #include <random>
 
 #include "pindrive/numbers/dual.hpp"
-#include "pindrive/series/creep.hpp"
+#include "slow_steps.hpp"
 
 namespace pd = pindrive;
+using slow_steps::expect, slow_steps::failures, slow_steps::follow;
 
 namespace {
-
-int failures = 0;
-
-void expect(bool holds, const char* what, double found) {
-  if (holds) return;
-  ++failures;
-  std::printf("%s: %.17g\n", what, found);
-}
 
 /// A pin of 10 g that skin of this stiffness holds back with 0.5 N s/m and 0.2 N, under a load that changes by
 /// this part a second.
@@ -35,28 +28,6 @@ pd::detail::SeriesEquation<T> held_back(T stiffness, T rate, T damping = T(0.64)
   e.skin_drift = T(0.2) * rate;
   e.force = {T(-0.2), T(-0.2) * rate};
   return e;
-}
-
-template <class T>
-struct End {
-  pd::detail::SeriesState<T> state;
-  int steps{0};
-};
-
-/// Follows a mode for a time: by valid slow steps, or by the Taylor series alone.
-template <class T>
-End<T> follow(pd::detail::SeriesEquation<T> e, pd::detail::SeriesState<T> state, double duration,
-              bool slow) {
-  End<T> end{state};
-  for (double t = 0; t < duration * (1 - 1e-15) && end.steps < 200000; ++end.steps) {
-    const T left = duration - t;
-    const pd::detail::SeriesStep<T> step = slow ? pd::detail::series_step(e, end.state, left)
-                                                : pd::detail::SeriesFlow<T>(e, end.state, left);
-    end.state = step.at(step.span());
-    e = e.from(step.span());
-    t += double(step.span());
-  }
-  return end;
 }
 
 /// Within rounding of the Taylor series in 19 digits, in a hundredth of its steps.
