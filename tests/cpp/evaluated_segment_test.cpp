@@ -1,6 +1,6 @@
 // A segment evaluated at an instant: the pin as the motion has it, the force of a stop, the sliding velocity on
 // skin, and how far a force is from that of a plate that slides across too.
-#include "pindrive/motion/evaluated_segment.hpp"
+#include "pindrive/certificate/evaluated_segment.hpp"
 
 #include <vector>
 

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pindrive/certificate/evaluated_segment.hpp"
+#include "pindrive/certificate/tolerances.hpp"
 #include "pindrive/model/model.hpp"
-#include "pindrive/motion/evaluated_segment.hpp"
 #include "pindrive/numbers/functions.hpp"
-#include "pindrive/numbers/limits.hpp"
 
 namespace pindrive::detail {
 
@@ -95,7 +95,7 @@ class Breakaways {
   template <class Trajectory>
   static bool is_brief(const EvaluatedSegment<T, Trajectory>& segment, const PinState<T>& s) {
     return !(segment.segment.end > segment.segment.begin) &&
-           !(within_limit(segment, s) > difference_error<T> * segment.scales.force);
+           !(within_limit(segment, s) > tolerance::difference<T> * segment.scales.force);
   }
 
   /// Margin of the stick force to its limit, N; 0 without stick.
@@ -121,14 +121,14 @@ class Breakaways {
     const Drive<T>& drive = segment.drive;
     const Curve<T>& plate_velocity = segment.plate_velocity;
     // A given velocity is exact: next to that of the plate, the pin slides.
-    const T still = segment.segment.begin > 0 ? T(still_velocity) * segment.scales.v : T(0);
+    const T still = segment.segment.begin > 0 ? T(tolerance::still) * segment.scales.v : T(0);
     const bool with_plate = abs(s.v - plate_velocity.value) <= still;
     // With both sliding velocities zero, the direction of the plate's friction is that in which the plate begins to
     // slide; within the resolution of time it is unknown.
     const Curve<T>& across = segment.across;
     if (segment.oblique() && with_plate) {
-      const T slow =
-          least_across<T> * segment.segment.begin * (abs(across.rate) + abs(plate_velocity.rate));
+      const T slow = tolerance::transverse<T> * segment.segment.begin *
+                     (abs(across.rate) + abs(plate_velocity.rate));
       if (across.value == 0)
         s.plate_force = -segment.load.value * kinetic_friction(drive.plate, T(0)) *
                         ObliqueSlip<T>(T(0), -plate_velocity.rate, plate_velocity, across).along();

@@ -15,9 +15,10 @@
 
 #include "pindrive/certificate/breakaway.hpp"
 #include "pindrive/certificate/certificate.hpp"
+#include "pindrive/certificate/evaluated_segment.hpp"
 #include "pindrive/certificate/segment_guards.hpp"
+#include "pindrive/certificate/tolerances.hpp"
 #include "pindrive/flow/positivity.hpp"
-#include "pindrive/motion/evaluated_segment.hpp"
 #include "pindrive/motion/motion.hpp"
 #include "pindrive/motion/period_samples.hpp"
 #include "pindrive/motion/quadrature.hpp"
@@ -43,7 +44,7 @@ class Certifier {
       const Numbers last = motion_.along(segment, [&](const auto& along) -> Numbers {
         const auto evaluated = evaluate(segment, along);
         // Within the resolution of time nothing moves, and forces may turn.
-        if (evaluated.span <= detail::rounding<T> * segment.begin) return evaluated.at(T(0));
+        if (evaluated.span <= detail::tolerance::sum<T> * segment.begin) return evaluated.at(T(0));
         worst(result_.transitions, breakaways_.spare(evaluated), scales_.force);
         return walk(evaluated);
       });
@@ -58,7 +59,7 @@ class Certifier {
     worst(result_.energy, unaccounted_, energy);
     // Forces are known to their rounding, and so is what they do on the way.
     const T time = std::min(duration_, motion_.outcome().until);
-    const T error = detail::rounding<T> * scales_.force * scales_.v * time;
+    const T error = detail::tolerance::sum<T> * scales_.force * scales_.v * time;
     worst(result_.dissipation, std::max(gained_ - error, T(0)), energy);
     repetition();
     return result_;
@@ -79,7 +80,7 @@ class Certifier {
     if (!outcome.cycles()) return;  // a mode of its own begins where its mode does
     // Continuity from the last segment to the begin of the cycle closes a round: it lasts one period.
     const T round = std::prev(motion_.end())->end - outcome.cycle_begin;
-    const T error = detail::rounding<T> * outcome.until;
+    const T error = detail::tolerance::sum<T> * outcome.until;
     update_max(result_.period,
                std::max(abs(round - outcome.period) - error, T(0)) / outcome.period);
     const T begin = std::max(samples.begin(tolerance), detail::last_breakpoint(motion_.inputs()));
@@ -177,9 +178,9 @@ class Certifier {
     for (int panels = 0; low < evaluated.span && go_on_(); ++panels) {
       const bool grows = !oscillator.oscillates() || -alpha * low > 40;
       const T length = !waves ? evaluated.span : grows ? std::max(quick, low / 2) : quick;
-      const bool leaps = panels == detail::walked_panels &&
-                         evaluated.span - low > (detail::walked_panels + 1) * length;
-      T high = leaps ? evaluated.span - detail::walked_panels * length
+      const bool leaps = panels == detail::tolerance::walked_panels &&
+                         evaluated.span - low > (detail::tolerance::walked_panels + 1) * length;
+      T high = leaps ? evaluated.span - detail::tolerance::walked_panels * length
                      : std::min(low + length, evaluated.span);
       if (!(high > low)) high = evaluated.span;  // so late that a panel is lost in rounding
       const auto to = evaluated.at(high);
@@ -206,7 +207,7 @@ class Certifier {
       const auto to = evaluated.at(low + length);
       const T error = std::max(evaluated.unsure(from), evaluated.unsure(to));
       for (const auto& [guard, law, scale, slid] : guards) {
-        const T least = lowest(expanded(guard), T(detail::unseen_violation) * scale) +
+        const T least = lowest(expanded(guard), T(detail::tolerance::unseen_violation) * scale) +
                         (law == &Certificate<T>::force_bound ? error : slid);
         if (!(least >= 0)) worst(result_.*law, least, scale);
       }
@@ -249,7 +250,7 @@ class Certifier {
       for (int i = 0; i < guards.size(); ++i) {
         const auto& [guard, law, scale, slid] = guards[i];
         const T lowest = guard.lowest(oscillator, guard.at(before.moment), guard.at(now.moment),
-                                      flatness[i], T(detail::unseen_violation) * scale);
+                                      flatness[i], T(detail::tolerance::unseen_violation) * scale);
         if (!(lowest >= 0)) worst(result_.*law, lowest, scale);
       }
       laws(evaluated, now, errors);
@@ -412,13 +413,14 @@ class Certifier {
       worst(result_.continuity, abs(left.x) - drive_.stops.travel, scales_.x);
     } else {
       // The time at which it is, and so how long the pin is accelerated, is known to its rounding.
-      // A pin that creeps follows the transverse velocity, until that is within `least_across` of zero.
+      // A pin that creeps follows the transverse velocity, until that is within `tolerance::transverse` of zero.
       const T drifts =
           before.mode.plate == ContactState::slip_oblique
               ? abs(motion_.inputs().across_velocity.from(before.begin).rate_at(left.tau))
               : T(0);
-      const T error = before.end * (detail::rounding<T> * std::max(abs(left.a), abs(right.a)) +
-                                    detail::least_across<T> * drifts);
+      const T error =
+          before.end * (detail::tolerance::sum<T> * std::max(abs(left.a), abs(right.a)) +
+                        detail::tolerance::transverse<T> * drifts);
       worst(result_.continuity, std::max(abs(left.v - right.v) - error, T(0)), scales_.v);
     }
     if (!drive_.finger.compliant()) return;
@@ -478,7 +480,7 @@ class Certifier {
     const T slope = is_slip(mode.finger) ? finger.branch(mode.finger_branch).slope : T(0);
     const T limit = finger.static_limit;
     const T follows = slope > 0 ? 1 / slope : limit > 0 ? abs(v) / limit : T(0);
-    const T error = time * (detail::first_grip<T> + detail::rounding<T>);
+    const T error = time * detail::tolerance::unloaded_time<T>;
     return load.value <= error * (finger.stiffness * follows - load.rate);
   }
 

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "pindrive/certificate/certificate.hpp"
+#include "pindrive/certificate/evaluated_segment.hpp"
 #include "pindrive/flow/positivity.hpp"
-#include "pindrive/motion/evaluated_segment.hpp"
 
 namespace pindrive::detail {
 

@@ -202,22 +202,6 @@ inline constexpr int most_half_turns = 4096;
 /// kernel_test fails.
 inline constexpr int most_rounds = 1 << 18;
 
-// ---- certificate -------------------------------------------------------------------------------
-
-/// Depth, as a fraction of the largest value, to which a guard may be negative between two nodes
-/// unnoticed. Saves a quarter of the time of a certificate; no violation is that small.
-inline constexpr double unseen_violation = 1e-10;
-/// Relative part of the force scale by which skin may stretch near a load of zero, where it is not
-/// simulated. Without it: fuzz fails.
-template <class T>
-inline constexpr T unloaded_stretch = 256 * rounding<T>;
-/// Panels at each end of a segment that are evaluated before its middle is skipped. Without it:
-/// fuzz --replay fails.
-inline constexpr int walked_panels = 2048;
-/// Relative velocity, as a fraction of the largest velocity, below which a pin is at rest on a
-/// surface. Without it: fuzz fails.
-inline constexpr double still_velocity = 1e-12;
-
 }  // namespace detail
 
 /// Events after which a motion is terminated: friction and damping are too weak to end the motion,

@@ -7,10 +7,10 @@
 #include <type_traits>
 #include <utility>
 
+#include "pindrive/certificate/tolerances.hpp"
 #include "pindrive/motion/motion.hpp"
 #include "pindrive/motion/skin_along.hpp"
 #include "pindrive/numbers/functions.hpp"
-#include "pindrive/numbers/limits.hpp"
 
 namespace pindrive::detail {
 
@@ -41,7 +41,7 @@ T kinetic_friction(const Contact<T>& contact, T speed) {
 /// Error of the skin tension, N: its change within the time resolution.
 template <class T>
 T skin_unsure(const Drive<T>& drive, T time, const PinState<T>& s) {
-  return drive.finger.rigid() ? T(0) : rounding<T> * time * abs(s.stretch_force_rate);
+  return drive.finger.rigid() ? T(0) : tolerance::sum<T> * time * abs(s.stretch_force_rate);
 }
 
 template <class T, class Trajectory>
@@ -136,7 +136,7 @@ class EvaluatedSegment {
   /// within the time resolution, N.
   T lifted_unsure() const {
     if (!drive.finger.compliant() || finger_load.rate == 0 || !(span > 0)) return T(0);
-    return unloaded_stretch<T> * scales.force * (segment.begin + span) / span;
+    return tolerance::unloaded_stretch<T> * scales.force * (segment.begin + span) / span;
   }
   /// Error of the slider speed, m/s: from the time resolution and from the error of the force.
   const T slider_unsure = unsure_slider();
@@ -145,7 +145,7 @@ class EvaluatedSegment {
     if (!(span < std::numeric_limits<T>::infinity())) return T(0);
     const T begins = abs(along.at(acceleration, along.moment(T(0)))),
             ends = abs(along.at(acceleration, along.moment(span)));
-    return rounding<T> * (segment.begin + span) * std::max(begins, ends);
+    return tolerance::sum<T> * (segment.begin + span) * std::max(begins, ends);
   }
 
  private:
@@ -161,7 +161,7 @@ class EvaluatedSegment {
     if (!(speed > 0)) return T(0);
     const T drifts = scales.across + time * abs(across.rate_at(s.tau));
     const T turn = (moves * abs(w) + drifts * abs(u)) / speed;  // change of direction, times speed
-    return difference_error<T> * strength * abs(w) / speed * turn / speed;
+    return tolerance::difference<T> * strength * abs(w) / speed * turn / speed;
   }
 
   T unsure_slider() const {
@@ -176,7 +176,7 @@ class EvaluatedSegment {
                                   2 * finger_load.at(tau) * finger_at_rest());
     }
     const T rate = span > 0 ? terms / (drive.finger.stiffness * span) : T(0);
-    return rounding<T> * (most * (segment.begin + span) + rate);
+    return tolerance::sum<T> * (most * (segment.begin + span) + rate);
   }
   /// Friction of the finger branch extrapolated to zero speed, N.
   T finger_at_rest() const {
