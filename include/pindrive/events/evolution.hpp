@@ -293,6 +293,7 @@ class Evolution {
       pin.plate.surface = inputs_.mouse_velocity.from(pin.time);
     else
       look_ahead();
+    // rounding: tests/hard/load-step-from-zero-with-skin-at-rest.txt
     const T now = pin.finger.load.value,
             error = rounding<T> * (abs(value) + 2 * abs(rate) * pin.time);
     if (abs(value - now) > error + rounding<T> * abs(now)) return abs(value) > error ? value : T(0);

@@ -40,7 +40,7 @@ Flow<T> mode_flow(const Pin<T>& pin, const SelectedMotion<T>& selected,
   pull += pin.stop.spring_force(s);
   Oscillator<T> oscillator = plain_oscillator;
   if (!has_plain_flow(pin)) {
-    // Damping cancelled by falling friction within rounding is zero.
+    // rounding: damping that falling friction cancels is zero (cancelled_damping_test).
     const T error = rounding<T> / 2 * pin.drive.damping + plate.rounding + finger.rounding;
     if (abs(damping) <= error) damping -= plain(damping);
     oscillator = Oscillator<T>(pin.drive.mass, damping, stiffness);

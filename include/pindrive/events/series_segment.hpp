@@ -109,9 +109,6 @@ class SeriesSegment {
       const T fall = path.derivative().at(guard.zero - since) * (tau - guard.zero);
       return stays_at_bound(fall, path.at(tau - since), force_error);
     });
-    if (equation.held && equation.side == 0 && first_ < end && !ends_early &&
-        rests(equation.plate_velocity, first_, span) && rests(equation.across, first_, span))
-      first_ = end;
     T velocity = equation.held ? equation.surface.value : start.v, stick{0};
     if (driven_) {
       stick = driven_->stick_force.start();
@@ -245,18 +242,12 @@ class SeriesSegment {
     return since;
   }
 
-  /// True if a polynomial that is positive reaches zero within a time after its end.
+  /// rounding: true if a polynomial that is positive reaches zero within a time after its end, where a mode without
+  /// duration would begin (simulation_test).
   static bool falls_to_zero(const Polynomial<T>& path, T late, detail::Real<T> error) {
     const T end(path.span), value = path.at(end);
     if (value * end > late * T(series_order) * path.size()) return false;
     return value + late * path.derivative().at(end) <= -error;
-  }
-  /// True if an input is zero within rounding from a time to another: at its ends and at a time between them that is
-  /// no period.
-  static bool rests(const Curve<T>& input, T from, T to) {
-    const T error = input.rounding();
-    const auto is_zero = [&](T tau) { return abs(input.at(tau)) <= error; };
-    return is_zero(from) && is_zero(to) && is_zero(from + T(0.382) * (to - from));
   }
 
   static constexpr T most_driven_steps{4096};  ///< between which a simulation can be interrupted

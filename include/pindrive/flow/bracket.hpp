@@ -85,15 +85,6 @@ Path<T> exact_at_start(const Oscillator<T>& oscillator, Path<T> path, int side) 
   return path;
 }
 
-/// Path with a zero centre if the centre is within rounding: a wave that decays towards zero does
-/// not end on one side by chance.
-template <class T>
-Path<T> exact_at_centre(Path<T> path) {
-  if (path.straight() && abs(path.centre()) <= rounding<T> * (abs(path.start) + abs(path.value)))
-    path.value = path.start;
-  return path;
-}
-
 /// Earliest τ > 0 at which start + drift·τ + curvature·τ²/2 leaves its side.
 template <class T>
 T parabola_root(Path<T> path, int side) {

@@ -175,14 +175,13 @@ bool too_small(const Oscillator<T>& oscillator, const Path<T>& path, int side) {
 
 /// Calls visit(τ) at each sign change of a path in (0, horizon], until visit returns false.
 template <class T, class Visitor>
-void each_root(const Oscillator<T>& oscillator, const Path<T>& given, int side, T horizon,
+void each_root(const Oscillator<T>& oscillator, const Path<T>& path, int side, T horizon,
                Visitor&& visit) {
-  const Path<T> path = exact_at_centre(given);
   const auto all = [&](auto roots) {
     for (;;) {
       const T root = roots.next();
       if (!(root < std::numeric_limits<T>::infinity())) return;
-      if (!visit(Rooted<T>::at(oscillator, given, root))) return;
+      if (!visit(Rooted<T>::at(oscillator, path, root))) return;
     }
   };
   if (!path.oscillates()) {
@@ -236,17 +235,14 @@ T first_root(const Oscillator<T>& oscillator, const Path<T>& path, int side, T h
   }
 }
 
-/// Sign of a path just after τ = 0; 0 if the path stays zero. A second derivative within the
-/// rounding of its terms is zero; the third derivative then decides.
+/// Sign of a path just after τ = 0, of its first derivative that is not zero; 0 if the path stays zero.
 template <class T>
 int side_after_start(const Oscillator<T>& oscillator, const Path<T>& path) {
   const auto sign = [](T value) { return value > 0 ? 1 : value < 0 ? -1 : 0; };
   if (path.start != 0) return sign(path.start);
   if (path.slope + path.drift != 0) return sign(path.slope + path.drift);
-  const T pulled = oscillator.bend(path.value, T(0)), damped = oscillator.bend(T(0), path.slope);
-  const T bend = pulled + damped + path.curvature;
-  if (abs(bend) > rounding<T> * (abs(pulled) + abs(damped) + abs(path.curvature)))
-    return sign(bend);
+  const T bend = oscillator.bend(path.value, path.slope) + path.curvature;
+  if (bend != 0) return sign(bend);
   return sign(oscillator.bend(path.slope, -path.curvature));
 }
 

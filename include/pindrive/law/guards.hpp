@@ -82,11 +82,11 @@ class Guards {
                     (side.contact.rigid() ? T(0) : side.stretch_rate(range.force));
     const Path<T> above{side.mode.guard == ActiveGuard::lower ? T(0) : speed - range.from,
                         to * v.value, to * v.slope, to * (v.drift - side.surface.rate)};
-    add_nearer(above, ActiveGuard::lower, plate, to > 0, v.start);
+    add_nearer(above, ActiveGuard::lower, plate, to > 0);
     if (!(range.to < std::numeric_limits<T>::infinity())) return;
     Path<T> below = T(-1) * above;
     below.start = side.mode.guard == ActiveGuard::upper ? T(0) : range.to - speed;
-    add_nearer(below, ActiveGuard::upper, plate, to < 0, v.start);
+    add_nearer(below, ActiveGuard::upper, plate, to < 0);
   }
 
   const Guard<T>* begin() const { return list_.data(); }
@@ -175,14 +175,12 @@ class Guards {
  private:
   /// Adds the distance of a speed from the end of its branch; `falls` if it decreases with the
   /// velocity v. Of two parallel distances only the smaller is kept, as its zero comes first.
-  void add_nearer(const Path<T>& path, ActiveGuard bound, bool plate, bool falls, T v) {
+  void add_nearer(const Path<T>& path, ActiveGuard bound, bool plate, bool falls) {
     int& nearest = falls ? below_ : above_;
     if (nearest >= 0 && list_[nearest].path.drift == path.drift) {
       Guard<T>& other = list_[nearest];
-      const T apart = path.start - other.path.start;
-      const T error = rounding<T> * (std::max(path.start, other.path.start) + abs(v));
-      if (apart > error) return;
-      if (apart < -error) {
+      if (path.start > other.path.start) return;
+      if (path.start < other.path.start) {
         other = {path, bound, plate, 0};
         return;
       }

@@ -145,8 +145,7 @@ class Selection {
     const auto rate = pin_.plate.force_rate(T(0), T(0)), skin = pin_.finger.force_rate(T(0), T(0));
     const Path<T> push{end * force, T(0), T(0), end * (applied_rate() + rate.value + skin.value),
                        end * (applied_second_rate() + rate.second + skin.second)};
-    return pin_.stop.try_hold(push, abs(applied_rate()) + rate.scale + skin.scale, pin_.no_push(),
-                              pin_.state.force_error, selected_.guards);
+    return pin_.stop.try_hold(push, pin_.no_push(), pin_.state.force_error, selected_.guards);
   }
 
   /// Tests stick of one contact beside each candidate of the second contact, from `option` on.
@@ -293,8 +292,9 @@ class Selection {
                              : own - holding_force(side, of_other);
       const bool releases = side.before == ContactState::stick && pin_.stays_at_limit();
       const T error = starts ? T(0) : pin_.force_error() + pin_.plate.force_error(pin_.state.v);
+      // rounding: tests/hard/creep-across-curve-point-of-finger.txt
       const bool none = abs(force) <= error;
-      if (!selected_.tangential && (none || releases || turns_at_once(side, force))) {
+      if (!selected_.tangential && (none || releases)) {
         selected_.tangential = true;
         selected_.acceleration = side.surface.rate;
       }
@@ -333,14 +333,6 @@ class Selection {
     };
     return is_admissible(pin_.plate, pin_.finger, at_plate) &&
            is_admissible(pin_.finger, pin_.plate, at_finger);
-  }
-
-  /// True if the force that moves a sliding speed off a breakpoint changes its sign within the time
-  /// resolution.
-  bool turns_at_once(const ContactPoint& side, T force) const {
-    if (side.may_stick() || side.has_slider_state() || !side.sliding()) return false;
-    const T rate = force_rate().value;
-    return force * rate < 0 && 2 * abs(force) <= rounding<T> * pin_.time * abs(rate);
   }
 
   /// Derivatives of the inertial and external force, N/s and N/s².
@@ -394,12 +386,11 @@ class Selection {
     return pin_.stop.is_consistent(pin_.state.v, selected_.acceleration, jerk());
   }
 
-  /// Jerk of a slipping pin, m/s³, zero within its error; and the derivative of the jerk.
+  /// Jerk of a slipping pin, m/s³, and the derivative of the jerk.
   Line<T> jerk() const {
     if (follows_plate_) return creeping_jerk();
-    const auto [rate, scale, second] = force_rate();
-    return {abs(rate) <= rounding<T> * scale ? T(0) : rate / pin_.drive.mass,
-            second / pin_.drive.mass};
+    const Line<T> force = force_rate();
+    return {force.value / pin_.drive.mass, force.rate / pin_.drive.mass};
   }
   /// Jerk of a pin on a plate that begins to slide across, with the acceleration of the plate: u = w d/√(1 − d²). The
   /// slope is the next later coefficient that is not zero, of which the sign is used.
@@ -428,13 +419,12 @@ class Selection {
         return {pull, n};
     return {T(0), beginning_orders};
   }
-  /// Derivatives of the force on a slipping pin.
-  ForceRate<T> force_rate() const {
+  /// Derivatives of the force on a slipping pin, N/s and N/s².
+  Line<T> force_rate() const {
     const auto plate = pin_.plate.force_rate(pin_.state.v, selected_.acceleration);
     const auto finger = pin_.finger.force_rate(pin_.state.v, selected_.acceleration);
     const T spring = stiffness() * pin_.state.v, damper = damping() * selected_.acceleration;
     return {applied_rate() + plate.value + finger.value - spring - damper,
-            abs(applied_rate()) + plate.scale + finger.scale + abs(spring) + abs(damper),
             applied_second_rate() + plate.second + finger.second -
                 stiffness() * selected_.acceleration};
   }

@@ -272,6 +272,7 @@ template <class T, class Point>
     return std::min(breakpoint, time + u / round * delay);
   }
   if (load.rate > 0) return breakpoint;
+  // rounding: tests/hard/slider-under-load-just-above-zero.txt
   const T ends = load.at(breakpoint - time);
   const T follows = point.has_slider_state()   ? 1 / point.branch().slope
                     : contact.static_limit > 0 ? u / contact.static_limit

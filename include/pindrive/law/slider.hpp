@@ -38,15 +38,17 @@ class Slider {
   Slider(const Contact<T>& contact, T speed, T stretch_rate)
       : contact_(contact), speed_(speed), stretch_rate_(stretch_rate) {}
 
-  /// Slider speed at which a friction stays constant, m/s; zero within its error.
+  /// Slider speed at which a friction stays constant, m/s.
   T stationary_speed(T friction) const {
     const T pin = stretch_rate_ == 0 ? speed_ : speed_ - stretch_rate_ * friction;
+    // rounding: a pin as fast as the skin stretches leaves the slider without a speed (slider_test).
     return abs(pin) < rounding<T> * abs(speed_) ? T(0) : pin;
   }
 
   /// Stationary speed at a friction, minus a speed, m/s; zero within its error.
   T excess(T speed, T friction) const {
     const T left = stationary_speed(friction) - speed;
+    // rounding: tests/hard/slip-at-curve-point-within-rounding-under-load-growing-from-zero.txt
     return abs(left) < rounding<T> * abs(speed_) ? T(0) : left;
   }
 
@@ -133,6 +135,7 @@ class Slider {
   static constexpr T unbounded = std::numeric_limits<T>::infinity();
   /// True if two frictions are equal within their error.
   static bool same(T one, T other) {
+    // rounding: tests/hard/skin-force-at-curve-point-within-rounding.txt
     return one == other || abs(one - other) < rounding<T> * other;
   }
 

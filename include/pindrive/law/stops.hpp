@@ -95,11 +95,10 @@ class EndStops {
 
   /// Adds the guard of the push of a rigid stop that holds the pin. Returns false if the push is
   /// negative or becomes negative at once.
-  bool try_hold(Path<T> push, T rate_size, bool exactly, T force_error, Guards<T>& guards) const {
+  bool try_hold(Path<T> push, bool exactly, T force_error, Guards<T>& guards) const {
     if (push.start < -force_error && !exactly) return false;
     if (!(push.start > force_error) || exactly) {
       push.start = T(0);
-      if (abs(push.drift) <= rounding<T> * rate_size) push.drift = T(0);
       if ((push.drift != 0 ? push.drift : push.curvature) < 0) return false;
     }
     guards.clear();

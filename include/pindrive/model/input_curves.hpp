@@ -51,11 +51,12 @@ struct InputCurves {
                             inputs.mouse_velocity.next_breakpoint(time)) -
                    time;
     const T changes = time * (abs(line.rate) + abs(along.rate));
+    // rounding: tests/hard/plate-rest-in-both-directions-with-reversing-axis.txt
     if (held && along.rate != 0 && along.straight() && line.straight() &&
         abs(line.at(rest)) + abs(along.at(rest)) <= detail::difference_error<T> * changes)
       return {-line.rate * rest, line.rate};
-    // Two functions, or a function and a line, may reach zero at the same time. Setting one of them to zero before would
-    // turn the sliding direction.
+    // rounding: two functions, or a function and a line, may reach zero at the same time. Setting one of them to zero
+    // before would turn the sliding direction (tests/hard/oblique-plate-stops-as-a-function-turns.txt).
     const T there = abs(along.value * line.rate - along.rate * line.value);
     const int lines = int(line.straight()) + int(along.straight());
     const bool together =
@@ -63,12 +64,13 @@ struct InputCurves {
     const T beside = together ? T(0) : changes;
     if (abs(line.value) <= detail::least_across<T> * (beside + abs(along.value))) line.value = T(0);
     if (line.straight()) return line;
+    // rounding: tests/hard/oblique-plate-touches-rest-at-two-frequencies.txt, and fuzz 1
     if (touches_zero(line, time)) line.value = line.rate = T(0);
     if (along.value == 0 && passes_zero(along, line, time)) line.value = T(0);
     return line;
   }
-  /// Makes exact that a plate turns back, or comes to rest, on a path: both its velocities are zero within rounding,
-  /// of which no direction follows.
+  /// rounding: makes exact that a plate turns back, or comes to rest, on a path. Both its velocities are zero within
+  /// rounding, of which no direction follows (tests/hard/oblique-plate-turns-back-in-a-stroke.txt).
   static void stop_at_rest(Curve<T>& along, const Curve<T>& across, T time) {
     if (across.straight()) return;
     if (passes_zero(along, across, time)) along.value = T(0);

@@ -172,11 +172,7 @@ class SeriesMode {
     void add(Polynomial<T> path, bool at_zero, ActiveGuard bound, bool plate, int side,
              Real error = 0) {
       if (at_zero) leave_zero(path.c);
-      // A step that begins beyond the guard by rounding and moves away ends at once.
-      const bool speed = bound == ActiveGuard::lower || bound == ActiveGuard::upper;
-      const bool beyond = speed && !at_zero && path.c[0] < -error && path.c[1] < 0;
-      const T zero = beyond ? T(0) : zero_beyond(path, error);
-      list_[count_++] = {path, bound, plate, side, zero, error};
+      list_[count_++] = {path, bound, plate, side, zero_beyond(path, error), error};
     }
     void add(const TermSum<T>& path, bool, ActiveGuard bound, bool plate, int side,
              Real error = 0) {
@@ -263,7 +259,8 @@ class SeriesMode {
   }
   static int begins_with(const TermSum<T>& sum) { return sum.start() < 0 ? -1 : 1; }
 
-  /// Rounding of a function; lines do not touch zero.
+  /// rounding: the error of a function; lines do not touch zero
+  /// (tests/hard/creep-touches-rest-as-the-transverse-velocity-touches-zero.txt).
   static Real given_rounding(const Curve<T>& input) {
     return input.straight() ? Real(0) : input.rounding();
   }
