@@ -85,7 +85,7 @@ class Coil {
 
   const PullPiece<T>& pull_piece() const { return pull_; }
   T pull(T time) const { return pull_.at(time); }
-  /// Flux linkage; at a closing or opening of the gap that of the change, to the bit.
+  /// Flux linkage; at the instant at which the gap closes or opens, exactly that of the change.
   T flux(T time) const {
     return time == closing_ ? magnet_->given().closing_flux
                             : piece_.flux_after(time - piece_.begin);

@@ -38,7 +38,7 @@ class LiveHand {
          y_.back() + 0.5 * (row.velocity.y + vy_.back()) * lasts},
         axis);
   }
-  /// Forgets the rows before the stretch that leads to a time, s.
+  /// Deletes the rows that are not needed from a time on, s.
   void forget(double before) {
     std::size_t past = 0;
     while (past + 2 < times_.size() && times_[past + 1] < before) ++past;

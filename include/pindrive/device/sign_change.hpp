@@ -7,8 +7,8 @@
 
 namespace pindrive::device {
 
-/// First number in (low, high] at which f, negative at `low` and at least 0 at `high`, is no longer
-/// negative; `low` if it is not negative there. Of several sign changes one is found. The secant
+/// Returns the number in (low, high] at which f ceases to be negative, for f negative at `low` and at least 0 at `high`;
+/// `low` if f is not negative there. If the sign changes more than once, one of the changes is found. The secant
 /// between both ends (Illinois method), moved off the ends, narrows the bracket until its ends are
 /// neighbouring numbers; every third step halves it.
 template <class Function>

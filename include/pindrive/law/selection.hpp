@@ -240,9 +240,9 @@ class Selection {
   T stiffness_with_skin() const {
     return stiffness() + (pin_.finger.elastic() ? pin_.drive.finger.stiffness : T(0));
   }
-  /// First coefficient from the third on of the margin of a stick force on a side, by its sign; 0 without one. Where
-  /// the force of the other contact depends on its speed, the third coefficient alone is known, and only while that
-  /// contact does not accelerate.
+  /// Returns the lowest coefficient, from the third on, of the margin of a stick force on a side that is not zero; 0
+  /// without one. If the force of the other contact depends on its speed, only the third coefficient is known, and only
+  /// while that contact does not accelerate.
   T later_margin(const ContactPoint& on, const ContactPoint& other, T side) const {
     const bool any_order = follows_load(other);
     const T relative = on.surface.rate - other.surface.rate;

@@ -24,8 +24,8 @@ struct InputJump {
 
 namespace detail {
 
-/// Time since the begin of a piece that grows for ever after which each value exceeds the value at the begin, s;
-/// infinite if the piece falls for ever, zero without a polynomial (Cauchy's bound of the roots).
+/// Returns the time since the begin of a piece, s, after which every value exceeds the value at the begin; infinite if
+/// the polynomial falls for ever, zero without a polynomial (Cauchy's bound of the roots).
 inline double growing_after(const InputPiece<double>& piece) {
   int order = InputPiece<double>::degree;
   while (order > 0 && piece.polynomial[order] == 0) --order;
