@@ -1,4 +1,4 @@
-"""Events and states of a motion beside those that an oracle has stored."""
+"""Comparison of the events and states of a motion with the stored answer of an oracle."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def event_deviations(
     time_tolerance: float,
     state_tolerance: float,
 ) -> list[str]:
-    """Return the deviations of events from those stored, by the scales of x and v."""
+    """Return the deviations of pairs of events, by the scales of x and v."""
     found = []
     for event, true in pairs:
         for what, column, allowed in (

@@ -8,9 +8,10 @@
 namespace pindrive::device {
 
 /// Returns the number in (low, high] at which f ceases to be negative, for f negative at `low` and at least 0 at `high`;
-/// `low` if f is not negative there. If the sign changes more than once, one of the changes is found. The secant
-/// between both ends (Illinois method), moved off the ends, narrows the bracket until its ends are
-/// neighbouring numbers; every third step halves it.
+/// `low` if f is not negative there.
+///
+/// If the sign changes more than once, one of the changes is found. The secant between both ends (Illinois method),
+/// moved off the ends, narrows the bracket until its ends are neighbouring numbers; every third step halves it.
 template <class Function>
 double sign_change(Function&& f, double low, double high) {
   double below = f(low), above = f(high);
