@@ -10,7 +10,7 @@ namespace pindrive::device {
 /// Returns the number in (low, high] at which f ceases to be negative, for f negative at `low` and at least 0 at `high`;
 /// `low` if f is not negative there.
 ///
-/// If the sign changes more than once, one of the changes is found. The secant between both ends (Illinois method),
+/// If the sign changes more than once, any change may be found. The secant between both ends (Illinois method),
 /// moved off the ends, narrows the bracket until its ends are neighbouring numbers; every third step halves it.
 template <class Function>
 double sign_change(Function&& f, double low, double high) {
