@@ -158,6 +158,8 @@ void decays() {
   const double end = motion.decay_time();
   expect(end > 30 && end < 40, "a decay takes some 36 time constants to its rounding");
   expect(std::abs(motion.velocity.at(end)) < 1e-17, "... after which the velocity is rounding");
+  expect(std::isinf(pd::detail::DrivenMotion<double>(e, {}).decay_time()),
+         "a pin at rest has nothing that decays");
   e.damping = 0;
   expect(std::isinf(pd::detail::DrivenMotion<double>(e, start).decay_time()),
          "an oscillation lasts");

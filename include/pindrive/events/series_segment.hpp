@@ -201,9 +201,9 @@ class SeriesSegment {
       clear = T(0.9375) * step_->span();  // guards are positive there
     }
     const T reach = motion.reach(plain(clear));
-    // A pin that has decayed may be at rest.
-    const T latest =
-        std::min({longest, T(clear + most_driven_steps * reach), T(clear + motion.decay_time())});
+    // A pin that no contact holds may be at rest once its motion has decayed.
+    const T decayed = equation.held ? never : clear + motion.decay_time();
+    const T latest = std::min({longest, T(clear + most_driven_steps * reach), decayed});
     if (!(latest < never)) return T(0);
     T end = clear;
     for (T length = reach; end < latest; length *= 4) {

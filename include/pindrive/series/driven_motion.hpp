@@ -90,16 +90,16 @@ class DrivenMotion {
     return std::max(position.size(tau), forced_) <=
            T(most_cancelled) * std::max(largest, abs(position.at(tau)));
   }
-  /// Time in which a velocity that decays to zero has decayed to rounding, s; infinite if another part of the velocity
-  /// lasts.
+  /// Time in which a velocity that decays to zero has decayed to rounding, s; infinite for any other velocity.
   T decay_time() const {
-    Real<T> slowest = std::numeric_limits<Real<T>>::infinity();
+    constexpr Real<T> never = std::numeric_limits<Real<T>>::infinity();
+    Real<T> slowest = never;
     for (const InputTerm<T>& term : velocity)
       if (term.cosine != 0 || term.sine != 0) slowest = std::min(slowest, plain(term.decay));
     for (const T& lasting : velocity.polynomial)
-      if (abs(plain(lasting)) > difference_error<Real<T>> * plain(velocity.size(T(0)))) slowest = 0;
-    return slowest > 0 ? -log(rounding<Real<T>>) / slowest
-                       : std::numeric_limits<Real<T>>::infinity();
+      if (abs(plain(lasting)) > difference_error<Real<T>> * plain(velocity.size(T(0))))
+        return never;
+    return slowest > 0 && slowest < never ? -log(rounding<Real<T>>) / slowest : never;
   }
   SeriesState<T> at(T tau) const { return {position.at(tau), velocity.at(tau), skin.at(tau)}; }
   TermSum<T> input(const Curve<T>& curve) const { return curve; }
