@@ -185,8 +185,8 @@ MUTANTS = (
     Mutant(
         "of two bounds the farther one is watched",
         "law/guards.hpp",
-        "if (apart > error) return;",
-        "if (apart < -error) return;",
+        "if (path.start > other.path.start) return;",
+        "if (path.start < other.path.start) return;",
     ),
     Mutant(
         "a cycle is closed a thousandth too soon",
