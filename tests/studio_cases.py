@@ -135,7 +135,9 @@ def compare(found: dict[str, Any], motion: Motion) -> None:
     time at which a decay is known to be one.
     """
     assert found["status"] == int(motion.status)
-    assert found["end"] == motion.ending.end.name
+    ends = {found["end"], motion.ending.end.name}
+    # Within a duration a decay may be known to be one on the page alone.
+    assert len(ends) == 1 or (motion.drive.finger.damping and ends == {"decaying", "moving"})
     if motion.drive.finger.damping:
         t = doubles(found["times"])
         for page, true in zip(
@@ -145,8 +147,8 @@ def compare(found: dict[str, Any], motion: Motion) -> None:
         ):
             np.testing.assert_allclose(page, true, rtol=0.0, atol=1e-9 * np.abs(true).max())
         return
-    ends = [end for segment in motion.segments for end in (segment.begin, segment.end)]
-    np.testing.assert_array_equal(doubles(found["segments"]), ends)
+    bounds = [end for segment in motion.segments for end in (segment.begin, segment.end)]
+    np.testing.assert_array_equal(doubles(found["segments"]), bounds)
     numbers = motion.numbers()
     expected = [float(numbers[name]) for name in NAMES]
     np.testing.assert_array_equal(doubles(found["numbers"]), expected)
