@@ -129,7 +129,7 @@ def evaluate(
 
     A point that cannot be simulated has a status other than 0 and no numbers. A device that
     `simulate_batch` does not take (a friction curve, an input that changes, a given stretch of the
-    skin) is simulated point by point: the same numbers, fifty times slower.
+    skin) is simulated point by point: the same numbers, some hundred times slower.
 
     Args:
         study: Study with the device.
