@@ -72,10 +72,13 @@ class DampedSkinCandidates {
   }
   /// Fastest stable slip below a branch, under a tension in its direction.
   Slip slower(int below, T tension) const {
-    for (int j = below - 1; j >= 0; --j)
-      if (const T begins = tension_at_begin(j);
-          rise(j) > 0 && tension > begins && !same(tension, begins))
-        return {j, std::min(speed_on(j, tension), contact_.branch(j).to)};
+    for (int j = below - 1; j >= 0; --j) {
+      const T begins = tension_at_begin(j), to = contact_.branch(j).to;
+      if (!(rise(j) > 0 && tension > begins) || same(tension, begins)) continue;
+      const T speed = speed_on(j, tension);
+      if (speed < to) return {j, speed};
+      return {j, to, ActiveGuard::upper};
+    }
     return {0, T(0), ActiveGuard::none, true};
   }
 
@@ -87,12 +90,13 @@ class DampedSkinCandidates {
     add(ContactMode<T>::slip(slip_sign, slip.guard, slip.branch), slip.speed);
   }
   void add_stick(ActiveGuard guard) { add({ContactState::elastic_stick, guard, 0, T(0)}, T(0)); }
-  /// Adds the slip after a jump of the speed; without a stable slip, stick or slip in the other direction.
+  /// Adds the slip after a jump of the speed, at the end of a branch also that beyond; without a stable slip, stick or
+  /// slip in the other direction.
   void add_jump(const Slip& slip, T slip_sign) {
-    if (!slip.none)
-      add_slip(slip, slip_sign);
-    else
-      stick_or_slip();
+    if (slip.none) return stick_or_slip();
+    add_slip(slip, slip_sign);
+    if (slip.guard == ActiveGuard::upper)
+      add_slip(faster(slip.branch + 1, slip_sign * tension_), slip_sign);
   }
 
   /// Adds the candidates of a slider that slips. Returns false if it may stick.
