@@ -251,7 +251,9 @@ class Evolution {
         !(pin.drive.finger.damped() && abs(s.slider_velocity) <= rest_speed()))
       return false;
     // Slow by strong damping is not at rest.
-    const T net = pin.drive.mass * abs(selected.acceleration) + pin.drive.damping * abs(s.v);
+    const T damping =
+        pin.drive.damping - pin.plate.force_by_speed(s.v) - pin.finger.force_by_speed(s.v);
+    const T net = pin.drive.mass * abs(selected.acceleration) + abs(damping * s.v);
     return abs(s.v) <= rest_speed() &&
            net <= T(rest_tolerance) * pin.drive.stiffness * s.position_scale;
   }
