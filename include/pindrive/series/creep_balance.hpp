@@ -25,9 +25,9 @@ class CreepBalance {
   /// |w| and its rate, m/s.
   const Line<T>& across() const { return across_; }
 
-  /// Time until the inputs or the zero of a linear w end a step, up to a limit, s.
+  /// Time until the inputs, the skin or the zero of a linear w end a step, up to a limit, s.
   Real farthest(const SeriesEquation<T>& e, Real limit) const {
-    const Real reach = std::min(limit, e.input_reach());
+    const Real reach = std::min({limit, e.input_reach(), Real(longest_step) / e.skin_rate()});
     const bool ends = across_.rate < 0 && e.across.straight();
     return ends ? std::min(reach, -plain(across_.value) / plain(across_.rate)) : reach;
   }
@@ -92,10 +92,8 @@ class CreepBalance {
                          abs(plain(e.skin_stiffness) * v) +
                          abs(plain(e.skin_decay) * plain(s.skin)) + abs(plain(e.skin_drift)) +
                          abs(plain(e.damping_rate) * v);
-    const Real f = plain(e.skin_factor.value);
     const Real left = load * F * (1 - abs(t) / root);
-    return 1 / (changes / left + k * w * root * root * root / (load * F) +
-                (f != 0 ? abs(plain(e.skin_decay) / f) : Real(0)) +
+    return 1 / (changes / left + k * w * root * root * root / (load * F) + e.skin_rate() +
                 abs(plain(across_.rate)) * k / (load * F) + sqrt(k / plain(e.mass)) / 64);
   }
 

@@ -83,12 +83,11 @@ class SeriesFlow : public SeriesExpansion<T> {
 
   /// Estimate of the fastest rate of the equation without transverse velocity, 1/s.
   static Real linear_rate(const SeriesEquation<T>& e) {
-    const Real m = plain(e.mass), f = plain(e.skin_factor.value);
+    const Real m = plain(e.mass);
     // Damping delays no pin that is held.
     const Real damping =
         e.held ? Real(0) : abs(plain(e.damping)) + abs(plain(e.load.value) * plain(e.plate_slope));
-    return damping / m + (f != 0 ? abs(plain(e.skin_decay) / f) : Real(0)) +
-           sqrt((plain(e.stiffness) + plain(e.skin_stiffness)) / m);
+    return damping / m + e.skin_rate() + sqrt((plain(e.stiffness) + plain(e.skin_stiffness)) / m);
   }
   /// Part of the rate by the falling parts of friction, 1/s.
   static Real falling_rate(const SeriesEquation<T>& e, const SeriesState<T>& s) {

@@ -80,6 +80,12 @@ struct SeriesEquation {
     return skin_damping == 0 ? T(0) : skin_pull.value * skin_damping / skin_factor.value;
   }
 
+  /// Rate at which y decays to the stretching of the skin, 1/s.
+  Real<T> skin_rate() const {
+    const Real<T> f = plain(skin_factor.value);
+    return f != 0 ? std::abs(plain(skin_decay) / f) : Real<T>(0);
+  }
+
   /// Time over which the terms of the inputs beyond the last order stay within rounding, s.
   Real<T> input_reach() const {
     Real<T> least = std::numeric_limits<Real<T>>::infinity();
