@@ -129,6 +129,7 @@ class Evolution {
   /// Ends a segment and advances the state to the event: each guard at its zero is exactly zero
   /// there.
   void jump(Segment<T>& segment, T tau) {
+    // rounding: tests/hard/two-events-within-the-time-resolution.txt
     const T coincident = tau + rounding<T> * (pin.time + tau);
     const bool breakpoint = tau == until_breakpoint();
     const T end = breakpoint ? next_breakpoint : time_after(tau);
@@ -268,14 +269,17 @@ class Evolution {
   }
 
   /// Applies the rest criterion (MODEL, section 10) where an input changes: a pin that slides so slowly on a
-  /// rigid surface at rest is at rest, and its friction may hold it.
+  /// rigid surface at rest is at rest, and its friction may hold it; so is a slider of damped skin under such a pin.
   void come_to_rest() {
-    if (pin.state.v == 0 || !(abs(pin.state.v) <= rest_speed())) return;
+    State<T>& s = pin.state;
+    if (!(abs(s.v) <= rest_speed())) return;
     for (ContactPoint<T>* side : {&pin.plate, &pin.finger}) {
-      if (!side->sliding() || side->oblique() || !side->contact.rigid()) continue;
-      if (!side->surface.is_zero()) continue;
-      pin.state.v = T(0);
-      pin.neglected_force = T(rest_tolerance) * pin.drive.stiffness * pin.state.position_scale;
+      if (!side->sliding() || side->oblique()) continue;
+      T& speed = side->contact.rigid() ? s.v : s.slider_velocity;
+      if (!side->contact.rigid() && !side->contact.damped()) continue;
+      if (!side->surface.is_zero() || speed == 0 || !(abs(speed) <= rest_speed())) continue;
+      speed = T(0);
+      pin.neglected_force = T(rest_tolerance) * pin.drive.stiffness * s.position_scale;
       side->reached_guard = ActiveGuard::lower;
     }
   }
@@ -298,7 +302,7 @@ class Evolution {
     // rounding: tests/hard/load-step-from-zero-with-skin-at-rest.txt
     const T now = pin.finger.load.value,
             error = rounding<T> * (abs(value) + 2 * abs(rate) * pin.time);
-    if (abs(value - now) > error + rounding<T> * abs(now)) return abs(value) > error ? value : T(0);
+    if (abs(value - now) > error) return abs(value) > error ? value : T(0);
     if (!series.has_eliminated_slider()) keep_force(pin.finger, pin.state, value);
     return now;
   }
@@ -315,6 +319,7 @@ class Evolution {
       pin.plate.across =
           InputCurves<T>::across_from(inputs_, pin.time, pin.plate.surface, pin.held());
       next_breakpoint = std::min(inputs_.next_breakpoint(pin.time), next_period());
+      // rounding: tests/hard/load-steps-separated-by-rounding.txt
       if (next_breakpoint - pin.time > rounding<T> * pin.time) return;
     }
   }
