@@ -87,11 +87,12 @@ class SeriesSegment {
         if (!input->straight()) sum += input->rounding(tau);
       return sum;
     };
+    // rounding: tests/hard/plate-rest-in-both-directions-with-reversing-axis.txt
     stops_ = equation.held && equation.side == 0 &&
              left <= difference_error<T> * (segment.begin + span) * turns + rounding_at(span);
     first_ = guards.earliest_known(end);
     // An immediate end may be deferred to the end of the step, as to a breakpoint.
-    const bool ends_early = end < (1 - rounding<T>)*span;
+    const bool ends_early = end < span;
     const T breakpoint = ends_early && first_ > 0 ? never : end;
     const auto speed_of = [&](bool on_plate) {
       if (!last) return T(0);
@@ -102,6 +103,7 @@ class SeriesSegment {
     const bool follows = plate.stuck() || segment.eliminated == EliminatedPart::of_friction;
     first_ = guards.defer_grazing(first_, breakpoint, [&](const Guard<T>& guard, T tau) {
       const Polynomial<T>& path = paths.begin()[&guard - guards.begin()].path;
+      // rounding: tests/hard/slider-at-curve-point-under-falling-load.txt
       const T force_error = guard.bound == ActiveGuard::none || guard.bound == ActiveGuard::push
                                 ? state.force_error
                                 : rounding<T> * (path.size() + speed_of(guard.plate)) +
@@ -166,6 +168,7 @@ class SeriesSegment {
     const T still = rounding<T> * size * sqrt(drive.stiffness / drive.mass);
     const T pull = drive.mass * step.velocity.derivative().at(tau) + drive.damping * state.v +
                    finger.branch().slope * finger.load.at(tau) * state.slider_velocity;
+    // rounding: tests/hard/slider-at-rest-on-damped-skin-without-load.txt
     const T error = 2 * abs(pull) / (rounding<T> * drive.stiffness);
     if (finger.mode.branch != 0 || abs(state.v) > still || abs(state.slider_velocity) > still)
       return;
@@ -191,9 +194,8 @@ class SeriesSegment {
     const DrivenMotion<T> motion(equation, start);
     const auto guards = mode.guards(motion);
     T clear{0};  // no guard has a zero until then
-    if (reached.any() || std::any_of(guards.begin(), guards.end(), [](const auto& guard) {
-          return !(guard.path.start() > difference_error<T> * guard.path.size(T(0)));
-        })) {
+    if (reached.any() || std::any_of(guards.begin(), guards.end(),
+                                     [](const auto& guard) { return !(guard.path.start() > 0); })) {
       step_.emplace(series_step(equation, start, span));
       paths = mode.guards(*step_, reached);
       const bool ends = paths.earliest() != nullptr || step_->span() * shortest_driven >= span;

@@ -29,7 +29,8 @@ Held<T> held_from(T now, const Curve<T>& given) {
   return given.straight() ? Held<T>(now, given.line()) : Held<T>(*given.piece);
 }
 
-/// Ends a velocity at a horizon at which it reaches zero within rounding.
+/// Ends a velocity at a horizon at which it reaches zero within rounding
+/// (rounding: set_inputs_test).
 template <class T>
 void end_at(Held<T>& velocity, const T& now, const T& horizon) {
   constexpr T never = std::numeric_limits<T>::infinity();
@@ -74,7 +75,8 @@ bool is_zero(const T& x) {
     return x.value == 0 && x.slope == 0;
 }
 
-/// Difference between an input and its continuation; zero within rounding.
+/// Difference between an input and its continuation; zero within rounding
+/// (rounding: set_inputs_test).
 template <class T>
 T change_to(const T& given, const Held<T>& held, T now) {
   const Curve<T> line = held.from(now);

@@ -161,17 +161,13 @@ class Oscillator {
                                      (1 - z / 72 * (1 - z / 110 * (1 - z / 156 * (1 - z / 210))))));
   }
 
-  /// Zero of the sum of two real exponentials. An exponential whose amplitude is within rounding of
-  /// zero is absent, and a single exponential has no zero.
+  /// Zero of the sum of two real exponentials; a single one has no zero.
   T only_zero(T value, T slope) const {
     using detail::log1p;
     using std::abs;
     constexpr T never = std::numeric_limits<T>::infinity();
     const T steady = gentle() * value, apart = to_other_root(), other = steady + apart * value;
-    const auto cancels = [&](T wave) {
-      return abs(wave - slope) <= detail::rounding<T> * (abs(wave) + abs(slope));
-    };
-    if (cancels(steady) || cancels(other)) return never;
+    if (steady == slope || other == slope) return never;
     const T ratio = value / (steady - slope);
     if (!(ratio > 0) || apart * ratio <= -1) return never;
     return omega_ > 0 ? log1p(apart * ratio) / apart : ratio;

@@ -78,6 +78,7 @@ struct ContactPoint {
   T relative_speed(T v) const {
     if (start.keeps_speed) return T(0);
     const T relative_speed = mode.slip_sign * v - stretch_rate(start.friction) - start.slider_speed;
+    // rounding: tests/hard/skin-slip-at-pin-speed-within-rounding-at-plate-breakaway.txt
     return abs(relative_speed) < rounding<T> * abs(v) ? T(0) : relative_speed;
   }
   /// Velocities by which damping shifts a relative speed, from derivatives of the pin velocity, m/s.
@@ -98,6 +99,7 @@ struct ContactPoint {
   /// Pin velocity minus the stationary velocity, m/s; zero within its error.
   T excess_velocity(T v) const {
     const T off = v - stationary_velocity();
+    // rounding: tests/hard/skin-relaxation-at-rate-of-falling-limit-within-rounding.txt
     return abs(off) < rounding<T> * abs(v) ? T(0) : off;
   }
   /// Skin tension in slip for a load factor, N; of skin with damping, if the slider stuck.
@@ -239,6 +241,7 @@ struct ContactPoint {
   /// across.
   T force_error(T v) const {
     if (!oblique() || v == 0) return T(0);
+    // rounding: tests/hard/creep-across-curve-point-of-finger.txt
     return rounding<T> * abs(v * oblique_slip(v, surface.rate).steepness(linear_branch(v), load));
   }
   /// Magnitude of the terms that the contact adds to a sum of forces, N.
@@ -310,8 +313,7 @@ struct ContactPoint {
     const T moves = sign * v - (elastic() ? T(0) : start.slider_speed);
     const T damped = sign * by_damping(first), unloads = stretch_rate(friction);
     const T sum = moves + damped - unloads;
-    const T size = abs(v) + start.slider_speed + abs(damped) + abs(unloads);
-    const bool none = abs(sum) <= rounding<T> * size + by_damping(error);
+    const bool none = abs(sum) <= by_damping(error);
     const T later = sign * (first + by_damping(second));
     const T faster = !none ? sum : later != 0 ? later : sign * (second + by_damping(third));
     if (slips_either_way && elastic())

@@ -57,15 +57,13 @@ class DampedSkinCandidates {
   T speed_on(int branch, T tension) const {
     return contact_.branch(branch).from + (tension - tension_at_begin(branch)) / rise(branch);
   }
-  bool same(T one, T other) const { return abs(one - other) <= rounding<T> * other + error_; }
 
   /// Least stable slip, from a branch upwards, under a tension in its direction.
   Slip faster(int from, T tension) const {
     for (int j = from;; ++j) {
       const T begins = tension_at_begin(j);
       if (!(rise(j) > 0)) continue;
-      if (!(tension > begins) || same(tension, begins))
-        return {j, contact_.branch(j).from, ActiveGuard::lower};
+      if (!(tension > begins + error_)) return {j, contact_.branch(j).from, ActiveGuard::lower};
       const T speed = speed_on(j, tension);
       if (j + 1 >= contact_.branches || speed < contact_.branch(j).to) return {j, speed};
     }
@@ -74,7 +72,7 @@ class DampedSkinCandidates {
   Slip slower(int below, T tension) const {
     for (int j = below - 1; j >= 0; --j) {
       const T begins = tension_at_begin(j), to = contact_.branch(j).to;
-      if (!(rise(j) > 0 && tension > begins) || same(tension, begins)) continue;
+      if (!(rise(j) > 0 && tension > begins + error_)) continue;
       const T speed = speed_on(j, tension);
       if (speed < to) return {j, speed};
       return {j, to, ActiveGuard::upper};
@@ -112,8 +110,9 @@ class DampedSkinCandidates {
                                                   : range.from;
     const T tension = slip_sign * tension_;
     const T most = range.at(speed) * load_ + contact_.damping * speed;
-    const bool jumps = abs(tension - most) > difference_error<T> * (abs(tension) + most) + error_;
+    const bool jumps = abs(tension - most) > error_;
     if (jumps || !(rise(branch) > 0)) {  // a load or the velocity of the pin has jumped
+      // rounding: tests/hard/pin-held-at-a-stop-on-damped-skin.txt
       error_ += rounding<T> * most;
       const bool up = jumps && tension > most;
       return add_jump(up ? faster(branch, tension) : slower(branch + 1, tension), slip_sign), true;
@@ -135,7 +134,7 @@ class DampedSkinCandidates {
   /// kinetic friction it begins with a speed.
   void stick_or_slip() {
     const T most = contact_.static_limit * load_, tension = abs(tension_);
-    const bool exceeds = tension > most + rounding<T> * most + error_;
+    const bool exceeds = tension > most + error_;
     const T slip_sign = tension_ < 0 ? T(-1) : T(1);
     point_.slip_sign = -slip_sign;  // sign of the force
     point_.slips_either_way = most == 0 && tension_ == 0;

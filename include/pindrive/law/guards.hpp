@@ -68,6 +68,7 @@ class Guards {
         Path<T> margin = limit + T(to) * segment.finger_force;
         if (limit.drift != 0 && side.mode.guard == ActiveGuard::upper && to == near) {
           margin.start = T(0);
+          // rounding: tests/hard/skin-at-limit-falling-at-rate-of-force.txt
           if (abs(margin.slope + margin.drift) < rounding<T> * abs(margin.slope))
             margin.drift = -margin.slope;
         }

@@ -31,8 +31,7 @@ Departure<T> departure_of(T mass, T friction, T across_rate, T pull, T error = T
   const T w = abs(across_rate);
   if (w == 0) {
     const T excess = abs(pull) - friction, side = pull < 0 ? T(-1) : T(1);
-    if (excess <= difference_error<T> * friction + error)
-      return {T(0), excess < 0 ? pull / friction : friction > 0 ? side : T(0)};
+    if (excess <= error) return {T(0), excess < 0 ? pull / friction : friction > 0 ? side : T(0)};
     return {side * excess / mass, side};
   }
   // Newton in t = p/w', from larger |t|, where the left side is convex.
@@ -82,7 +81,8 @@ class ObliqueSlip {
     return u_[1] * u_[1] + w_[1] * w_[1] + u_[0] * jerk + w_[0] * across;
   }
   T velocity() const { return u_[0]; }  ///< u, m/s
-  /// Error of the derivative of ρ²/2, for a surface with this velocity.
+  /// Error of the derivative of ρ²/2, for a surface with this velocity
+  /// (rounding: tests/hard/transverse-speed-peaks-at-a-curve-breakpoint.txt).
   T rounding_of(T surface) const { return rounding<T> * speed() * (speed() + abs(surface)); }
   /// Decrease of the force with the axial velocity, N s/m.
   T steepness(const Branch<T>& branch, const Curve<T>& load) const {
@@ -177,6 +177,7 @@ template <class T, class Point>
 void end_oblique_slip(State<T>& state, Point& plate, bool on_finger, T across, T mass, T time) {
   if (!plate.oblique() || plate.across.value != 0) return;
   const T changes = plate.load.value * plate.start.friction / mass + abs(plate.surface.rate);
+  // rounding: tests/hard/oblique-plate-passes-zero-within-time-resolution.txt and oblique-plate-stops-with-a-slow-pin.txt
   const T crept = abs(across) + rounding<T> * (abs(state.v) + abs(plate.surface.value)) +
                   difference_error<T> * time * changes;
   if (abs(state.v - plate.surface.value) > crept) return;

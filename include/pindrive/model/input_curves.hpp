@@ -83,7 +83,8 @@ struct InputCurves {
     const auto fastest = T(input.fastest());
     return fastest > 0 ? time + 1 / fastest : time;
   }
-  /// True if both velocities are zero within the resolution of time.
+  /// True if both velocities are zero within the resolution of time
+  /// (rounding: tests/hard/oblique-plate-passes-zero-within-time-resolution.txt).
   static bool passes_zero(const Curve<T>& along, const Curve<T>& across, T time) {
     using std::abs;
     return abs(along.value) + abs(across.value) <=

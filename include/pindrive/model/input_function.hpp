@@ -255,8 +255,8 @@ struct Curve {
     const Real time =
         abs(plain(of.begin)) + abs(plain(after)) + (fastest > 0 ? 1 / fastest : Real(0));
     if (abs(plain(value)) < near_zero * size) refine_beside_touch(relative_error * size);
-    // A zero or an extremum within the resolution of time and phase is now; so is a zero that the function only
-    // touches.
+    // rounding: a zero or an extremum within the resolution of time and phase is now; so is a zero that the function
+    // only touches (tests/hard/plate-fastest-at-curve-point-by-phase.txt, and five more drives).
     if (abs(plain(value)) <= relative_error * time * abs(plain(rate))) value -= plain(value);
     if (abs(plain(rate)) > relative_error * time * abs(2 * plain(c[2]))) return;
     rate -= plain(rate);
@@ -302,7 +302,8 @@ struct Curve {
     if (straight()) return abs(plain(value)) + abs(plain(rate * tau));
     return raised ? abs(plain(at(tau))) + abs(plain(rate_at(tau) * tau)) : piece->size(since + tau);
   }
-  /// Rounding of the value after τ: the terms of a function may cancel.
+  /// Rounding of the value after τ: the terms of a function may cancel
+  /// (tests/hard/both-plate-velocities-touch-zero-at-one-instant.txt).
   detail::Real<T> rounding(T tau = T(0)) const {
     return detail::rounding<detail::Real<T>> * size(tau);
   }

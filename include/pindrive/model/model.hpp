@@ -277,7 +277,8 @@ class Profile {
     if (i == 0) return {held_.line.value, T(0)};
     if (i == count_) return {values_[count_ - 1], T(0)};
     const Line<T> line = between(i);
-    const T after = t - times_[i - 1];  // a time after a row within rounding is at the row
+    // rounding: tests/hard/breakpoints-separated-by-rounding-with-skin-at-stick-limit.txt
+    const T after = t - times_[i - 1];
     return {after > detail::rounding<T> * t ? line.at(after) : line.value, line.rate};
   }
   /// The line at time t of an input that is not a function, before it is raised to a power.
@@ -292,8 +293,7 @@ class Profile {
     using std::abs;
     const LineSince<T> was = given_line(before), is = given_line(t);
     const T value = was.line.at(is.since - was.since);
-    return is.line.rate != was.line.rate ||
-           abs(is.line.value - value) > detail::rounding<T> * abs(value);
+    return is.line.rate != was.line.rate || is.line.value != value;
   }
   /// First breakpoint after time t, s; infinite without one.
   T next_breakpoint(T t) const { return raised() ? next_of_raised(t) : next_given(t); }
@@ -355,8 +355,7 @@ class Profile {
   [[gnu::noinline]] Curve<T> part_of_function(std::size_t i, T t) const {
     if (i == 0) return {first(), T(0)};
     const InputPiece<T>& piece = pieces_[i - 1];
-    const T since = t - piece.begin, after = since > detail::rounding<T> * t ? since : T(0);
-    return Curve<T>::part(piece, after, t >= piece.begin + piece.decayed());
+    return Curve<T>::part(piece, t - piece.begin, t >= piece.begin + piece.decayed());
   }
   std::size_t breakpoints_until(T t) const {
     if (pieces_ != nullptr) {

@@ -238,7 +238,8 @@ class CreepFlow : public SlowStep<T> {
   }
   static Real rounding_of(const Sums& sums) { return eliminated_error<Real> * sums[0]; }
 
-  /// True if the pin has the velocity of creep: a deviation within rounding decays at once.
+  /// True if the pin has the velocity of creep: a deviation within rounding decays at once
+  /// (rounding: tests/hard/creep-across-a-falling-curve.txt).
   bool starts_from(const SeriesEquation<T>& e, const SeriesState<T>& start) const {
     return abs(plain(start.v - velocity.c[0])) <=
            difference_error<Real> * sums_of(velocity.c)[0] + unsure(e, start);
@@ -252,11 +253,13 @@ class CreepFlow : public SlowStep<T> {
                        abs(plain(e.skin_pull.value) * plain(start.skin));
     const Real changes =
         abs(plain(e.plate_velocity.rate)) + abs(plain(balance_.across().rate * balance_.ratio()));
+    // rounding: tests/hard/creep-turn-within-rounding-at-breakpoint.txt and creep-with-weak-friction-and-strong-skin.txt
     const Real by_forces = difference_error<Real> * sizes * plain(balance_.across().value) /
                            plain(e.load.value * balance_.friction(e));
     const Real root = hypot(Real(1), plain(balance_.ratio()));
     const Real here =
         std::min(by_forces * root * root * root, creep_error<Real> * abs(plain(start.v)));
+    // rounding: tests/hard/creep-velocity-known-to-the-time.txt
     return std::max(by_forces, here) + rounding<Real> * plain(start.time) * changes +
            rounding_of(e.plate_velocity) + abs(plain(balance_.ratio())) * rounding_of(e.across);
   }
@@ -295,7 +298,7 @@ T pull_on(const SeriesEquation<T>& e, const SeriesState<T>& start) {
 template <class T>
 [[gnu::noinline]] T lag_at_limit(const SeriesEquation<T>& e, T pull, T time) {
   const T friction = e.load.value * (e.plate_force + e.plate_falling.excess);
-  if (abs(pull) < (1 - difference_error<T>)*friction) return T(0);
+  if (abs(pull) < friction) return T(0);
   const T w = e.across.at(time), order = time * e.across.rate_at(time) / w;
   const T cube = T(1.5) * friction / e.mass * w * w * time / (2 * order + 1);
   return cube > 0 ? (pull < 0 ? -1 : 1) * exp(log(cube) / 3) : T(0);
@@ -325,7 +328,7 @@ T time_carried(const SeriesEquation<T>& e, const SeriesState<T>& start, T longes
   const T over = T(turned_by_carrying) * lag / w;
   const T order = longest * e.across.rate_at(longest) / e.across.at(longest);
   const T shorter = longest * exp(3 * log(over) / (order - 1));
-  return std::min(longest, std::max(shorter, T(difference_error<T> * start.time)));
+  return std::min(longest, shorter);
 }
 /// Returns a step of a pin that follows the plate. The series diverges, but is exact to rounding over a short time.
 template <class T>

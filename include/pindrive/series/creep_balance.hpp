@@ -63,6 +63,7 @@ class CreepBalance {
       const T at_plate = friction * along;
       const T slope = friction / (root * root * root) + falls + linear;
       const T missing = needed - at_plate - others - linear * t, move = missing / slope;
+      // rounding: tests/hard/creep-at-begin-of-slow-stroke.txt, and most drives with creep
       const bool balanced = abs(missing) <= rounding<Real> * (abs(needed) + abs(at_plate) +
                                                               abs(others) + abs(linear * t));
       const T most = 1 + abs(t);  // a longer move overshoots near the friction limit

@@ -123,6 +123,8 @@ class SlowSliderFlow : public SlowStep<T, SeriesFlow<T>> {
     x_bound = h * v_bound;
     skin_bound = (K * v_bound + missed_skin) / stays;
     speed_bound = v_bound + turning.root;
+    // rounding: tests/hard/nearly-flat-curve-on-stiff-skin.txt, and
+    // step-with-change-of-acceleration-alone.txt for the turning direction
     return v_bound <= rounding<Real> * sums_of(velocity.c)[0] &&
            turning.root <= rounding<Real> * sums_of(speed.c)[0] &&
            skin_bound <= eliminated_error<Real> * sums_of(skin.c)[0];

@@ -18,7 +18,8 @@ struct Slant {
   T along, across;
 };
 
-/// True if two velocities are parallel within rounding.
+/// True if two velocities are parallel within rounding
+/// (rounding: straight_path_test).
 template <class T>
 bool parallel(const Slant<T>& a, const Slant<T>& b) {
   using std::abs;
