@@ -4,7 +4,7 @@
 /// closed form the acceleration y obeys y'' = 2α y' − ω₀² y, so that |y| stays below √(y² + (y'/ω₀)²),
 /// times e^(2ατ) where falling friction makes it grow; in a series, below its largest Bernstein
 /// coefficient. With |y| of both together below A, a difference is nowhere in a time h more than A h²/8
-/// below both its ends. Times in which it might be smaller than the smallest so far are halved.
+/// below both its ends. An interval in which it may be smaller than the smallest difference so far is halved.
 #pragma once
 
 #include <algorithm>

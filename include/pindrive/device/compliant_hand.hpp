@@ -152,7 +152,7 @@ class CompliantHand {
       }
     }
   }
-  /// Adds a piece of both from a time to another; returns the displacement of the hand.
+  /// Adds the intended position and the force for it between two times, s; returns the displacement, m.
   double intend(const Hand& hand, const InputPiece<double>& velocity, double begin, double end,
                 double place) {
     constexpr int degree = InputPiece<double>::degree;

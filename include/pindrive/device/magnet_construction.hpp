@@ -60,7 +60,7 @@ T closing_flux(const MagnetParameters<T>& magnet, T force) {
          sqrt((force - magnet.residual) / (magnet.hold_force - magnet.residual));
 }
 
-/// Construction by the keys of a device file; `number` returns the value of a key.
+/// Returns the construction that a device file gives; `number` returns the value of a key.
 template <class Number, class T = std::decay_t<std::invoke_result_t<Number, const char*>>>
 CoilConstruction<T> construction_by_keys(const Number& number) {
   return {number("magnet.turns"),

@@ -103,7 +103,7 @@ class PinFollower {
  private:
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 
-  /// Release with the inputs at the begin.
+  /// Inputs of a release, with their values at the begin of the scan.
   Inputs<double> release(const ScanInputs& scan, const PinState& from) {
     const PlateVelocity& plate = scan.plate;
     const Held<double> along = detail::held_from(0.0, plate.along().from(0));
@@ -131,7 +131,7 @@ class PinFollower {
     if (!piece.straight()) return Held<double>(piece);
     return {piece.begin, {piece.polynomial[0], piece.polynomial[1]}};
   }
-  /// A coil beyond the changes until a time since the begin, s.
+  /// Advances a coil past its changes until a time, s, which counts from the begin of the scan.
   static Coil<double> passed(Coil<double> coil, double begin, double time) {
     while (coil.next() - begin <= time) coil.pass(coil.next());
     return coil;

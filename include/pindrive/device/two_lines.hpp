@@ -111,7 +111,7 @@ class TwoLines {
   static double zero_for_nan(double value) { return std::isnan(value) ? 0 : value; }
 
   double interval() const { return 1 / device_.controller.sample_rate; }
-  /// Place of the hand at the begin, m: the first line begins at 0.
+  /// Position of the hand at the begin of the trial, m; the first line begins at 0.
   double begin(double speed) const { return -speed * (moment + interval()); }
   /// Time from the end of a line until the pull of its magnet has decayed, s.
   double clear() const {

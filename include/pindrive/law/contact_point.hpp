@@ -55,7 +55,7 @@ struct ContactPoint {
   /// True if the contact exerts no stick force until the next breakpoint.
   bool powerless() const { return contact.static_limit == 0 || load.is_zero(); }
 
-  /// Takes a candidate as the mode.
+  /// Sets the mode and its start to those of a candidate.
   void choose(int index) {
     mode = candidates[index].mode;
     start = candidates[index].start;
