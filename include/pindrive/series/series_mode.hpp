@@ -304,7 +304,7 @@ class SeriesMode {
     if (stops.damping == 0) return;
     Path push = T(sense * end) * stops.stiffness * along.position;
     push += T(sense * end) * stops.damping * along.velocity;
-    // Its first value is computed anew: the sum of the paths has more rounding.
+    // A first value that is computed anew has less rounding than the sum of the paths.
     push.begin_at(sense * (stops.stiffness * (end * along.position.start() - stops.travel) +
                            stops.damping * end * along.velocity.start()));
     found.add(push, at.push, ActiveGuard::push, false, end);
